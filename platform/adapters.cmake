@@ -4,7 +4,7 @@ set(T3R_ADAPTER_SOURCES)
 set(T3R_ADAPTER_DEFINITIONS)
 set(T3R_ADAPTER_LIBS)
 
-# t3r_adapter(NAME FOUND WHAT): T3R_NAME_THERE, by the option T3R_NAME and whether it was found.
+# t3r_adapter(NAME FOUND WHAT): sets T3R_NAME_THERE by the option T3R_NAME and whether the library was found.
 function(t3r_adapter name found what)
   set(there OFF)
   if(T3R_${name} AND found)
@@ -35,7 +35,7 @@ if(T3R_MJPEG_THERE)
   list(APPEND T3R_ADAPTER_LIBS PkgConfig::T3R_JPEG)
 endif()
 
-# C++ is asked for only where a library that needs it is there.
+# C++ is enabled only if a library that needs it was found.
 if(T3R_LIBCAMERA)
   pkg_check_modules(T3R_LIBCAMERA_LIB QUIET IMPORTED_TARGET libcamera)
 endif()
@@ -60,7 +60,7 @@ endif()
 t3r_adapter(LIBCAMERA "${T3R_LIBCAMERA_LIB_FOUND}" "libcamera or a C++ compiler")
 t3r_adapter(OPENCV "${T3R_OPENCV_FOUND}" "OpenCV's videoio or a C++ compiler")
 
-# t3r_module(NAME SOURCE LIBS...): a module in C++ beside the program.
+# t3r_module(NAME SOURCE LIBS...): a module in C++ next to the program.
 function(t3r_module name source)
   add_library(trim3r_${name} MODULE ${source})
   target_include_directories(trim3r_${name} PRIVATE .)

@@ -9,7 +9,8 @@
 #include "stages.h"
 #include "state/state.h"
 
-/* Histograms by size: OCTAVES x STEPS bins from 2^LOWEST on; bin 0 holds all that is smaller, the last all larger. */
+/* Histograms by magnitude: OCTAVES x STEPS bins from 2^LOWEST on; bin 0 holds all smaller values, the last all larger
+ * ones. */
 #define LOWEST (-24)
 #define OCTAVES 48
 #define STEPS 64
@@ -23,7 +24,7 @@ typedef struct channel {
 struct calibration {
     const float_head *head;
     uint64_t pixels;
-    channel *layers[T3R_MAX_LAYERS]; /* [outputs]; NULL of the last */
+    channel *layers[T3R_MAX_LAYERS]; /* [outputs]; NULL for the last layer */
 };
 
 calibration *calibration_start(const float_head *head)

@@ -1,4 +1,4 @@
-/* Finds the ranges of a float head's activations by running it on what the runtime sees. */
+/* Finds the ranges of a float head's activations by running it on the runtime's input. */
 #ifndef T3R_QUANT_CALIBRATE_H
 #define T3R_QUANT_CALIBRATE_H
 
@@ -8,23 +8,23 @@
 
 typedef struct calibration calibration;
 
-/* The head must outlive the calibration. NULL without memory; calibration_free() takes NULL. */
+/* Starts a calibration. The head must outlive it. Returns NULL without memory; calibration_free() takes NULL. */
 calibration *calibration_start(const float_head *head);
 void calibration_free(calibration *c);
 
-/* Takes in one view's features and retained pixels (float_run.h). 0, or -1 without memory. */
+/* Adds one view's features and retained pixels (float_run.h). Returns 0, or -1 without memory. */
 int calibration_add(calibration *c, const int8_t *features, const uint8_t *retained, uint32_t width, uint32_t height);
-/* Takes in every context view of a runtime that holds a scene and its analysis (keep_analysis), as its last budget
- * left them. 0, or -1 without either or without memory. */
+/* Adds every context view of a runtime that holds a scene and its analysis (keep_analysis), as its last budget left
+ * them. Returns 0, or -1 without either or without memory. */
 int calibration_add_views(calibration *c, const t3r_runtime *runtime);
 
-/* Pixels taken in so far, views and budgets together. */
+/* Returns the number of pixels added so far, over all views and budgets. */
 uint64_t calibration_pixels(const calibration *c);
 
-/* Gives every layer of `head` but the last (its formats are fixed) the ranges that it lacks: what `percentile` (0..100]
- * of a channel's values do not exceed, found to 1/64, times `headroom`; of a linear layer their amounts. 100 is the
- * maximum, exactly. A channel that was never anything but 0 gets the largest range of its layer. Returns the number of
- * layers that lacked theirs; -1 without memory, or without a pixel where one was needed. */
+/* Sets the missing ranges of every layer of `head` except the last, whose formats are fixed: the `percentile` (0..100]
+ * of a channel's values, found to 1/64, times `headroom`; for a linear layer, of their magnitudes. 100 is the exact
+ * maximum. A channel that was always 0 gets the largest range of its layer. Returns the number of layers whose ranges
+ * were missing; -1 without memory, or without a pixel if one was needed. */
 int calibration_finish(const calibration *c, float_head *head, double percentile, double headroom);
 
 #endif

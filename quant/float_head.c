@@ -28,7 +28,7 @@ static int fail(const reader *r, const char *field, const char *what)
 
 /* ---- the description ------------------------------------------------------------------------------------------- */
 
-/* Unknown keys are most likely misspelt ones. */
+/* Refuses unknown keys, which are probably misspelt. */
 static int check_keys(const reader *r, const cJSON *object, const char *const *known, size_t count)
 {
     const cJSON *item;
@@ -45,7 +45,7 @@ static int check_keys(const reader *r, const cJSON *object, const char *const *k
     return 0;
 }
 
-/* 0..65535; `absent` where there is none, unless that is negative. */
+/* Reads 0..65535; `absent` if missing, unless that is negative. */
 static int read_number(const reader *r, const cJSON *object, const char *key, int absent, uint32_t *value)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
@@ -177,7 +177,7 @@ static int read_graph(reader *r, head_graph *graph)
 
 /* ---- tensors --------------------------------------------------------------------------------------------------- */
 
-/* "layerN.part" of the shape; NULL with a reason, without one where it is optional and absent. */
+/* Finds the tensor "layerN.part" of the shape; NULL with a reason, or without one if it is optional and absent. */
 static const safetensors_tensor *find(const reader *r, const char *part, const uint32_t *shape, uint32_t rank,
                                       bool optional, int *status)
 {
@@ -203,7 +203,7 @@ static const safetensors_tensor *find(const reader *r, const char *part, const u
     return same ? tensor : NULL;
 }
 
-/* A tensor as it stands; NULL in *out where it is absent. */
+/* Copies a tensor unchanged; NULL in *out if it is absent. */
 static int copy(const reader *r, const char *part, const uint32_t *shape, uint32_t rank, bool optional, float **out)
 {
     int status;

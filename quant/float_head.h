@@ -4,12 +4,12 @@
 
 #include "head_graph.h"
 
-#define FLOAT_FEATURE_SCALE (1.0 / 64) /* a feature's int8 number to what the float head reads */
+#define FLOAT_FEATURE_SCALE (1.0 / 64) /* what a step of an int8 feature means to the float head */
 
 typedef struct float_layer {
     float *weight; /* in the order of the weight file (head_weight_index()) */
     float *bias;   /* [phases][outputs] */
-    float *range;  /* [outputs]: what an output's positive full scale stands for, > 0; NULL = not known yet */
+    float *range;  /* [outputs]: value of an output's positive full scale, > 0; NULL = not known yet */
 } float_layer;
 
 typedef struct float_head {
@@ -17,7 +17,7 @@ typedef struct float_head {
     float_layer layers[T3R_MAX_LAYERS];
 } float_head;
 
-/* 0, and float_head_free() is due; or -1 with "what, where" in error[]. */
+/* Returns 0, after which float_head_free() is due; or -1 with "what, where" in error[]. */
 int float_head_parse(float_head *head, const void *bytes, size_t count, char *error, size_t error_bytes);
 void float_head_free(float_head *head);
 

@@ -3,13 +3,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One layer in work: its weights as [taps][inputs][outputs], so that the innermost loop runs over neighbours. */
+/* The layer being run: its weights as [taps][inputs][outputs], so that the innermost loop is contiguous. */
 typedef struct run {
     const head_layer *layer;
     const float *bias;
     float *weight;
     const float_plane *from[2];
-    uint32_t from_level[2]; /* of the sources, less the level of the grid that the kernel walks: >= 0 */
+    uint32_t from_level[2]; /* the sources' levels minus the level of the grid that the kernel walks: >= 0 */
     float_plane *to;
 } run;
 
@@ -32,7 +32,7 @@ static const float *pixel(const float_plane *plane, uint32_t x, uint32_t y)
     return plane->values + ((size_t)y * plane->width + x) * plane->channels;
 }
 
-/* Adds what the sources at grid position (x, y) give through tap t. */
+/* Adds the contributions of the sources at grid position (x, y) through tap t. */
 static void add_dense(const run *r, float *out, uint32_t x, uint32_t y, uint32_t t)
 {
     const uint32_t outputs = r->layer->outputs;
@@ -63,7 +63,7 @@ static void rectify(const run *r, float *out)
     }
 }
 
-/* grid_width x grid_height: what the kernel walks, outside of which all is 0. */
+/* Runs a layer's kernel over grid_width x grid_height; outside the grid all is 0. */
 static void run_kernel(const run *r, uint32_t grid_width, uint32_t grid_height)
 {
     const uint32_t k = r->layer->kernel, s = r->layer->stride, p = (k - s + 1) / 2;
@@ -72,7 +72,8 @@ static void run_kernel(const run *r, uint32_t grid_width, uint32_t grid_height)
             float *out = r->to->values + ((size_t)y * r->to->width + x) * r->to->channels;
             memcpy(out, r->bias, r->layer->outputs * sizeof *out);
             for (uint32_t t = 0; t < k * k; t++) {
-                uint32_t gx = s * x + t % k - p, gy = s * y + t / k - p; /* before the grid: wraps to beyond it */
+                uint32_t gx = s * x + t % k - p,
+                         gy = s * y + t / k - p; /* before the grid: wraps to a position beyond it */
                 if (gx >= grid_width || gy >= grid_height) {
                     continue;
                 }

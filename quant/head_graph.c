@@ -116,7 +116,7 @@ static int check_layer(const checker *c)
     return check_sources(c);
 }
 
-/* What holds of all layers together. */
+/* Checks rules that involve all layers. */
 static int check_whole(checker *c)
 {
     uint64_t macs_q8 = 0;

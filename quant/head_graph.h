@@ -1,5 +1,5 @@
-/* The layers of a head: which reads which, and how large they are (runtime/head/weights.h says what they mean). What
- * the float head, the quantized head and the weight file have in common. */
+/* The layers of a head: their sources and sizes (runtime/head/weights.h has their meaning). Shared by the float head,
+ * the quantized head and the weight file. */
 #ifndef T3R_QUANT_HEAD_GRAPH_H
 #define T3R_QUANT_HEAD_GRAPH_H
 
@@ -9,7 +9,7 @@
 
 #include "head/weights.h"
 
-#define HEAD_NAME_BYTES 16 /* with the zero: 1..15 of a-z 0-9 _ */
+#define HEAD_NAME_BYTES 16 /* with the terminating zero: 1..15 of a-z 0-9 _ */
 
 typedef struct head_layer {
     t3r_layer_kind kind;
@@ -25,31 +25,31 @@ typedef struct head_graph {
     head_layer layers[T3R_MAX_LAYERS]; /* layer n is layers[n - 1] */
 } head_graph;
 
-/* 0 when every rule of weights.h holds; otherwise -1 with "layer N: what" in error[]. */
+/* Returns 0 when every rule of weights.h holds; otherwise -1 with "layer N: what" in error[]. */
 int head_graph_check(const head_graph *graph, char *error, size_t error_bytes);
 int head_name_check(const char *name, char *error, size_t error_bytes);
 
-/* "conv", "depthwise", "point"; NULL when out of range. */
+/* Returns "conv", "depthwise", "point"; NULL when out of range. */
 const char *head_kind_name(t3r_layer_kind kind);
 
-/* Numbers in a layer's blocks; of a layer that passed head_graph_check(). */
+/* Returns the count of numbers in the blocks of a layer that passed head_graph_check(). */
 size_t head_weight_count(const head_layer *layer);
 size_t head_bias_count(const head_layer *layer);
-/* Where the weight of (output o, input i, tap t = ky k + kx, or phase t of a point layer) stands. */
+/* Returns the index of the weight of (output o, input i, tap t = ky k + kx, or phase t of a point layer). */
 size_t head_weight_index(const head_layer *layer, uint32_t o, uint32_t i, uint32_t t);
-/* Inputs that one output sums over: all, or 1 of a depthwise layer. */
+/* Returns the number of inputs that an output sums over: all, or 1 in a depthwise layer. */
 uint32_t head_fan_in(const head_layer *layer);
-/* Taps of a kernel, or phases of a point layer: the range of t. */
+/* Returns the taps of a kernel, or phases of a point layer: the range of t. */
 uint32_t head_taps(const head_layer *layer);
-/* Multiply-accumulates a pixel at 100 % kept, Q8, exact. */
+/* Returns the multiply-accumulates per pixel with 100 % of the points kept, Q8, exact. */
 uint32_t head_macs_q8(const head_layer *layer);
 
-/* Channels of a source, and the source and channel behind a layer's input. */
+/* Return the channels of a source, and the source and channel of a layer's input. */
 uint32_t head_source_channels(const head_graph *graph, uint32_t source);
 uint32_t head_input_source(const head_graph *graph, const head_layer *layer, uint32_t input, uint32_t *channel);
 
-/* What the last layer's outputs are multiplied with to be t3r_head_output's formats: its natural units are offsets and
- * L21 in spacings, log2, opacity 0..1 and colour in 64 8-bit levels. */
+/* Returns the factor from the last layer's outputs to t3r_head_output's formats. The natural units are: offsets and L21
+ * in spacings, log2, opacity 0..1 and colour in 64 8-bit levels. */
 double head_output_scale(t3r_head_output output);
 
 #endif

@@ -8,7 +8,7 @@
 #include "head/weights.h"
 #include "weight_file.h"
 
-/* What stands for them, and beside 16-bit activations that much more. */
+/* The constants for the features, and the larger ones for 16-bit activations. */
 static const struct {
     uint32_t channel;
     int64_t value;
@@ -17,7 +17,7 @@ enum { HIDDEN = sizeof hidden / sizeof hidden[0], WIDE_FEATURE = 256 };
 
 typedef struct layer_blocks {
     t3r_layer layer;
-    uint32_t weight_bytes, bias_bytes; /* of a number */
+    uint32_t weight_bytes, bias_bytes; /* per number */
     uint8_t *weights, *bias;
 } layer_blocks;
 
@@ -41,8 +41,8 @@ static size_t biases_of(const t3r_layer *layer)
     return (size_t)layer->phases * layer->outputs;
 }
 
-/* Sets one weight to 0 and adds value times it to the bias it belongs to. |bias| + 2^7 (2^15) sum |weight| does not
- * grow, for |value| is below 2^7 (2^15). */
+/* Sets one weight to 0 and adds value times the weight to its bias. |bias| + 2^7 (2^15) sum |weight| does not grow,
+ * since |value| is below 2^7 (2^15). */
 static void fold(const layer_blocks *blocks, size_t weight, size_t bias, int64_t value)
 {
     uint8_t *at = blocks->weights + weight * blocks->weight_bytes, *to = blocks->bias + bias * blocks->bias_bytes;
@@ -51,7 +51,7 @@ static void fold(const layer_blocks *blocks, size_t weight, size_t bias, int64_t
     weight_number_put(to, sum, blocks->bias_bytes);
 }
 
-/* Every weight of input `channel`. */
+/* Folds every weight of input `channel`. */
 static void fold_channel(const layer_blocks *blocks, uint32_t channel, int64_t value)
 {
     const t3r_layer *layer = &blocks->layer;
@@ -73,7 +73,7 @@ static void fold_layer(const layer_blocks *blocks, bool wide)
 {
     const t3r_layer *layer = &blocks->layer;
     for (int source = 0; source < 2; source++) {
-        /* the second source's channels stand behind the first's */
+        /* the second source's channels follow the first's */
         uint32_t first = source == 0 ? 0 : layer->inputs - T3R_FEATURES;
         for (int h = 0; h < HIDDEN && layer->source[source] == T3R_SOURCE_FEATURES; h++) {
             fold_channel(blocks, first + hidden[h].channel, hidden[h].value * (wide ? WIDE_FEATURE : 1));

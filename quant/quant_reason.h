@@ -1,11 +1,11 @@
-/* The one way in which quant/ says what went wrong. */
+/* The only way in which quant/ reports what went wrong. */
 #ifndef T3R_QUANT_REASON_H
 #define T3R_QUANT_REASON_H
 
 #include <stddef.h>
 
-/* Writes the reason, cut to fit, '?' for what is not printable ASCII (names come from untrusted files); error may be
- * NULL. Always -1, so that `return quant_reason(...)` reads well. */
+/* Writes the reason, cut to fit, with '?' for what is not printable ASCII (names come from untrusted files); error may
+ * be NULL. Always returns -1, for use as `return quant_reason(...)`. */
 int quant_reason(char *error, size_t error_bytes, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 #endif

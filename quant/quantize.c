@@ -6,7 +6,7 @@
 #include "quant_reason.h"
 
 #define LEAST_MULTIPLIER 0x1p-31 /* mantissa 1/2, shift -30 */
-#define MOST_MULTIPLIER 0x1p14   /* one octave below the shift's limit: rounding upwards may take half of it */
+#define MOST_MULTIPLIER 0x1p14   /* one octave below the shift's limit, since rounding upwards may take half of it */
 
 int quantize_multiplier(double scale, int32_t *multiplier, int8_t *shift)
 {
@@ -46,7 +46,7 @@ typedef struct work {
     double reach;       /* 2^(activation bits - 1) */
 } work;
 
-/* The input behind (output, i): a depthwise output has its own alone. */
+/* Returns the input channel of (output, i): a depthwise output has only its own. */
 static uint32_t input_of(const head_layer *layer, uint32_t o, uint32_t i)
 {
     return layer->kind == T3R_LAYER_DEPTHWISE ? o : i;
@@ -58,21 +58,21 @@ static int32_t input_zero(const work *w, uint32_t input)
     return source == T3R_SOURCE_FEATURES ? 0 : w->out->layers[source - 1].zero;
 }
 
-/* The bias of (output, tap): one a phase of a point layer, else one. */
+/* Returns the index of the bias of (output, phase): one per phase of a point layer, else one. */
 static size_t bias_index(const head_layer *layer, uint32_t o, uint32_t phase)
 {
     return (size_t)phase * layer->outputs + o;
 }
 
-/* The weight with its input's scale folded in. */
+/* Returns the weight with its input's scale folded in. */
 static double folded(const work *w, uint32_t o, uint32_t i, uint32_t t)
 {
     return w->from->weight[head_weight_index(w->layer, o, i, t)] *
            quantized_input_scale(w->out, w->layer, input_of(w->layer, o, i));
 }
 
-/* Bounds of an output over its phases: the largest folded weight, and the largest |bias'| + reach x sum |weight|, both
- * in the float head's units. |zero| <= reach, so zero points may double the reach. */
+/* Computes bounds of an output over its phases: the largest folded weight, and the largest |bias'| + reach x sum
+ * |weight|, both in the float head's units. |zero| <= reach, so zero points may double the reach. */
 static void measure(const work *w, uint32_t o, double *most, double *sum_most)
 {
     const bool point = w->layer->kind == T3R_LAYER_POINT;
@@ -99,7 +99,8 @@ static double output_scale(const work *w, uint32_t o, bool last)
     return w->from->range[o] / steps;
 }
 
-/* The next multiplier at or above `scale` with a mantissa of 15 bits: exact in int16 activations' arithmetic too. */
+/* Returns the least multiplier at or above `scale` with a mantissa of 15 bits, which is also exact with int16
+ * activations. */
 static double multiplier_above(double scale)
 {
     int exponent;
@@ -107,14 +108,14 @@ static double multiplier_above(double scale)
     return ldexp(ceil(mantissa * 0x1p15) * 0x1p-15, exponent);
 }
 
-/* Scales of output o. The weights' is the smallest that clips none, keeps the accumulator in its width and has a
- * multiplier that is exact: so requantization adds no error but its rounding. */
+/* Chooses the scales of output o. The weights' scale is the smallest that clips no weight, keeps the accumulator within
+ * its width and has an exact multiplier, so that requantization adds no error except its rounding. */
 static void choose_scales(const work *w, uint32_t o, bool last)
 {
     double most, sum_most, to = output_scale(w, o, last);
     measure(w, o, &most, &sum_most);
     double scale = fmax(most / w->weight_most, sum_most / w->sum_most);
-    /* of a channel whose accumulator would be coarser than 2^14 output steps, the output is coarser instead */
+    /* if the accumulator would be coarser than 2^14 output steps, make the output coarser instead */
     if (!last) {
         to = fmax(to, scale / MOST_MULTIPLIER);
     }
@@ -128,7 +129,7 @@ static void quantize_weights(const work *w, uint32_t o)
     const double scale = w->to->weight_scale[o];
     for (uint32_t t = 0; t < head_taps(w->layer); t++) {
         for (uint32_t i = 0; i < head_fan_in(w->layer); i++) {
-            /* clipping: the quotient may exceed the most by its last bit */
+            /* clips, since the quotient may exceed the maximum by its last bit */
             double q = round(folded(w, o, i, t) / scale);
             w->to->weight[head_weight_index(w->layer, o, i, t)] =
                 (int16_t)fmax(-w->weight_most, fmin(w->weight_most, q));
@@ -165,7 +166,7 @@ static int quantize_layer(quantized_head *out, const float_head *head, uint32_t 
               .to = to,
               .weight_most = out->weight_bits == 8 ? 127 : 32767,
               .reach = out->activation_bits == 8 ? 0x1p7 : 0x1p15};
-    /* an eighth less: rounding moves every weight by half a step and the bias by one */
+    /* a margin of an eighth: rounding moves every weight by up to half a step and the bias by one */
     w.sum_most = out->activation_bits == 8 ? 0x1p31 * 7 / 8 : 0x1p47 * 7 / 8;
     if (!last && w.from->range == NULL) {
         return quant_reason(error, error_bytes, "layer %u has no range: calibrate", (unsigned)n);

@@ -1,4 +1,4 @@
-/* A float head with ranges to integers (README.md, "Quantization"; the arithmetic is runtime/head/weights.h's). */
+/* Quantizes a float head with ranges (README.md, "Quantization"; runtime/head/weights.h has the arithmetic). */
 #ifndef T3R_QUANT_QUANTIZE_H
 #define T3R_QUANT_QUANTIZE_H
 
@@ -9,7 +9,7 @@ typedef struct quantized_layer {
     int64_t *bias;   /* [phases][outputs], zero points folded in */
     int32_t *multiplier;
     int8_t *shift;
-    int16_t zero;         /* of the output */
+    int16_t zero;         /* zero point of the output */
     double *weight_scale; /* [outputs]: a step of the accumulator, in the float head's units */
     double *output_scale; /* [outputs]: a step of the output, likewise */
 } quantized_layer;
@@ -20,21 +20,21 @@ typedef struct quantized_head {
     quantized_layer layers[T3R_MAX_LAYERS];
 } quantized_head;
 
-/* Every layer but the last must have its range. 0, and quantized_head_free() is due; or -1 with "what, where" in
- * error[]. */
+/* Every layer except the last must have its range. Returns 0, after which quantized_head_free() is due; or -1 with
+ * "what, where" in error[]. */
 int quantize_head(quantized_head *out, const float_head *head, uint32_t weight_bits, uint32_t activation_bits,
                   char *error, size_t error_bytes);
 void quantized_head_free(quantized_head *head);
 
-/* Signal to noise of the weights of layer n (from 1) as they went into its accumulators, dB; infinite where there is no
- * noise. */
+/* Returns the signal-to-noise ratio of the weights of layer n (from 1) as used in its accumulators, in dB; infinite
+ * without noise. */
 double quantized_weight_snr(const quantized_head *out, const float_head *head, uint32_t n);
 
-/* scale > 0 as multiplier / 2^31 x 2^shift, as TFLite's QuantizeMultiplier: multiplier in [2^30, 2^31), rounded to
- * nearest. 0, or -1 where shift would leave [-30, 15]. */
+/* Converts scale > 0 to multiplier / 2^31 x 2^shift, like TFLite's QuantizeMultiplier: multiplier in [2^30, 2^31),
+ * rounded to nearest. Returns 0, or -1 if shift would leave [-30, 15]. */
 int quantize_multiplier(double scale, int32_t *multiplier, int8_t *shift);
 
-/* A step of input i of a layer: the scale of that channel of its source. */
+/* Returns a step of input i of a layer: the scale of that channel of its source. */
 double quantized_input_scale(const quantized_head *head, const head_layer *layer, uint32_t input);
 
 #endif

@@ -11,11 +11,11 @@
 #include "quant_reason.h"
 
 #define LENGTH_BYTES 8u
-#define MAX_HEADER_BYTES (1u << 20) /* a head's is a few KB; each two bytes may be a value of 80 in memory */
+#define MAX_HEADER_BYTES (1u << 20) /* a head's is a few KB; every two bytes may be a value that takes 80 in memory */
 #define METADATA "__metadata__"
 
 typedef struct reader {
-    const uint8_t *data; /* behind the header */
+    const uint8_t *data; /* after the header */
     uint64_t data_bytes;
     char *error;
     size_t error_bytes;
@@ -26,7 +26,7 @@ static int fail(const reader *r, const char *name, const char *what)
     return quant_reason(r->error, r->error_bytes, "tensor '%.64s': %s", name, what);
 }
 
-/* A whole number from 0 to 2^53. */
+/* Reads a whole number from 0 to 2^53. */
 static bool whole(const cJSON *item, uint64_t *value)
 {
     if (!cJSON_IsNumber(item) || !(item->valuedouble >= 0 && item->valuedouble <= 0x1p53) ||
@@ -53,7 +53,7 @@ static int read_shape(const reader *r, const cJSON *item, safetensors_tensor *te
         if (!whole(side, &n)) {
             return fail(r, tensor->name, "shape holds something else than whole numbers");
         }
-        /* no file is this large, and no product of two such overflows */
+        /* no file is this large, and products of two such numbers do not overflow */
         if (n > UINT32_MAX || tensor->elements * n > UINT32_MAX) {
             return fail(r, tensor->name, "shape has more than 2^32 elements");
         }
@@ -98,11 +98,11 @@ static int by_place(const void *left, const void *right)
     if (a->bytes != b->bytes) {
         return a->bytes < b->bytes ? -1 : 1;
     }
-    /* an empty tensor comes before what begins where it lies */
+    /* at the same place an empty tensor comes first */
     return a->elements < b->elements ? -1 : a->elements > b->elements;
 }
 
-/* Sorted by place, each must begin where the one before ends. */
+/* Checks that the tensors, sorted by place, each begin where the previous one ends. */
 static int check_places(const reader *r, const safetensors *file)
 {
     safetensors_tensor *sorted = malloc((file->count + 1) * sizeof *sorted);
@@ -132,7 +132,7 @@ static int by_name(const void *left, const void *right)
     return strcmp(*(const char *const *)left, *(const char *const *)right);
 }
 
-/* cJSON keeps both of two equal keys. */
+/* Refuses duplicate keys, which cJSON keeps. */
 static int check_names(const reader *r, const cJSON *object, const char *where)
 {
     size_t count = (size_t)cJSON_GetArraySize(object), i = 0;
@@ -198,7 +198,7 @@ static int read_tensors(const reader *r, safetensors *file)
     return check_places(r, file);
 }
 
-/* The header as cJSON takes it, with nothing but spaces behind. */
+/* Parses the header, which only spaces may follow. */
 static struct cJSON *parse_header(const char *text, size_t bytes)
 {
     const char *end = NULL;

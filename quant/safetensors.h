@@ -1,6 +1,6 @@
 /* Reads .safetensors: 8 bytes of header length, a JSON header, then the tensors' bytes, all little-endian. Nothing in
- * it is trusted: the header must be one JSON object, names differ, every tensor be F32 and of the bytes that its shape
- * says, and the tensors fill the bytes behind the header without overlap or gap. */
+ * it is trusted: the header must be one JSON object, names must differ, every tensor must be F32 with the bytes of its
+ * shape, and the tensors must fill the bytes after the header without overlap or gap. */
 #ifndef T3R_QUANT_SAFETENSORS_H
 #define T3R_QUANT_SAFETENSORS_H
 
@@ -23,15 +23,16 @@ typedef struct safetensors {
     struct cJSON *header;
 } safetensors;
 
-/* `bytes` must outlive the result. 0, and safetensors_free() is due; or -1 with "what, where" in error[]. */
+/* Parses `bytes`, which must outlive the result. Returns 0, after which safetensors_free() is due; or -1 with "what,
+ * where" in error[]. */
 int safetensors_parse(safetensors *file, const void *bytes, size_t count, char *error, size_t error_bytes);
 void safetensors_free(safetensors *file);
 
-/* The tensor of that name; NULL without it. */
+/* Returns the tensor of that name, or NULL. */
 const safetensors_tensor *safetensors_find(const safetensors *file, const char *name);
-/* A text of __metadata__; NULL without it. */
+/* Returns a text of __metadata__, or NULL. */
 const char *safetensors_metadata(const safetensors *file, const char *key);
-/* Element i, i < elements. */
+/* Returns element i, i < elements. */
 float safetensors_element(const safetensors_tensor *tensor, uint64_t i);
 
 #endif

@@ -88,7 +88,7 @@ void weight_file_seal(uint8_t *bytes, size_t count)
 
 static void put_header(uint8_t *to, const quantized_head *head)
 {
-    memcpy(to + WEIGHT_AT_MAGIC, "T3RW", 4); /* no text. NOLINT(bugprone-not-null-terminated-result) */
+    memcpy(to + WEIGHT_AT_MAGIC, "T3RW", 4); /* not a string. NOLINT(bugprone-not-null-terminated-result) */
     t3r_store_le16(to + WEIGHT_AT_FORMAT, T3R_WEIGHTS_FORMAT);
     t3r_store_le16(to + WEIGHT_AT_EPOCH, T3R_BITS_EPOCH);
     to[WEIGHT_AT_WEIGHT_BITS] = (uint8_t)head->weight_bits;

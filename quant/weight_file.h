@@ -45,14 +45,14 @@ enum {
 /* The blocks of a layer, in the order of their offsets in its row. */
 enum weight_block { BLOCK_WEIGHTS, BLOCK_BIAS, BLOCK_MULTIPLIER, BLOCK_SHIFT, WEIGHT_BLOCKS };
 
-/* Bytes of one number of a block, and of the whole block without padding. */
+/* Return the bytes of one number of a block, and of the whole block without padding. */
 uint32_t weight_block_step(enum weight_block block, uint32_t weight_bits, uint32_t activation_bits);
 size_t weight_block_bytes(const head_layer *layer, enum weight_block block, uint32_t weight_bits,
                           uint32_t activation_bits);
-/* Bytes of the whole file, padding included. */
+/* Returns the bytes of the whole file, with padding. */
 size_t weight_file_bytes(const head_graph *graph, uint32_t weight_bits, uint32_t activation_bits);
 
-/* The sums in the header. */
+/* Return the sums in the header. */
 uint32_t weight_macs_q8(const head_graph *graph);
 uint32_t weight_parameters(const head_graph *graph);
 
@@ -63,8 +63,8 @@ int64_t weight_number(const uint8_t *from, uint32_t bytes);
 /* Writes the number of bytes and the CRC into the header. */
 void weight_file_seal(uint8_t *bytes, size_t count);
 
-/* The file's bytes, free() them; NULL without memory. Blocks of layers without numbers (all pointers NULL) are 0: such
- * a file tells what the head needs, but t3r_weights_check() refuses it. */
+/* Returns the file's bytes, to be freed by free(); NULL without memory. Blocks of layers without numbers (all pointers
+ * NULL) are 0: such a file shows the requirements of the head, but t3r_weights_check() refuses it. */
 uint8_t *weight_file_make(const quantized_head *head, size_t *count);
 
 #endif

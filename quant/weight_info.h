@@ -18,7 +18,7 @@ int weight_info_read(weight_info *info, const uint8_t *bytes, size_t count, char
 /* What a float head would be as a file of these bits: no CRC. */
 void weight_info_of_graph(weight_info *info, const head_graph *graph, uint32_t weight_bits, uint32_t activation_bits);
 
-/* Bytes of layer n's blocks (counted from 1), padding left out. */
+/* Returns the bytes of layer n's blocks (counted from 1) without padding. */
 size_t weight_info_layer_bytes(const weight_info *info, uint32_t n);
 
 #endif

@@ -1,5 +1,6 @@
-/* Frames as a driver leaves them in memory: a file with a head, a plane of R G B and one of depth a frame. It takes
- * next to no flash, so what is linked is the runtime. tools/boards writes such files (tools/study/boards/planes.c). */
+/* Frames as a driver leaves them in memory: a file with a head, and per frame a plane of R G B and one of depth. The
+ * source takes next to no flash, so flash sizes are the runtime's. tools/boards writes such files
+ * (tools/study/boards/planes.c). */
 #include "frames.h"
 
 #include "planes.h"
@@ -8,7 +9,7 @@
 
 static struct {
     int32_t file;
-    uint32_t next; /* where the next frame begins, and the planes of the one at hand end */
+    uint32_t next; /* start of the next frame and end of the current one's planes */
     uint32_t width, height;
     frames_strip strip;
 } source;
@@ -50,7 +51,7 @@ void frames_next(t3r_frame *frame, t3r_camera *camera)
 
 void frames_rows(t3r_frame *frame, uint32_t row, uint32_t rows)
 {
-    (void)frame; /* its planes begin with the strip */
+    (void)frame; /* the planes begin with the strip */
     const uint32_t width = source.width, depth = source.next - width * source.height * 2;
     const uint32_t colour = depth - width * source.height * 3;
     take(colour + row * width * 3, source.strip.colour, (size_t)rows * width * 3);

@@ -1,4 +1,4 @@
-/* Frames of a recording. */
+/* Reads frames from a recording. */
 #include "frames.h"
 
 #include "recording/frame_reader.h"

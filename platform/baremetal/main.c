@@ -22,13 +22,13 @@
 #include "trim3r_heads.h"
 #endif
 
-/* What each stage said of itself: a stage that reports several times has its reports chained. */
+/* The hash of each stage; the reports of a stage that reports several times are chained. */
 typedef struct hashes {
     uint64_t of[T3R_STAGE_COUNT];
     bool there[T3R_STAGE_COUNT];
 } hashes;
 
-/* The front of what is free. */
+/* Allocates from the front of the free memory. */
 static uint8_t *deal(ram_part *left, size_t bytes)
 {
     uint8_t *dealt = left->begin;
@@ -43,7 +43,7 @@ static uint8_t *deal(ram_part *left, size_t bytes)
 static void check(t3r_status status, const char *function)
 {
     if (status != T3R_OK) {
-        report_refusal(function, (uint32_t) - (int32_t)status); /* t3r_error_text() would take more than a kilobyte */
+        report_refusal(function, (uint32_t) - (int32_t)status); /* t3r_error_text() would add more than a kilobyte */
     }
 }
 
@@ -61,7 +61,7 @@ static void on_hash(void *user, t3r_stage stage, uint64_t hash)
     h->there[stage] = true;
 }
 
-/* Each stage's, and one for all and the view: that of `trim3r replay`. */
+/* Reports the hash of each stage, and one for all stages and the view: the hash that `trim3r replay` prints. */
 static void report_hashes(const hashes *h, const uint8_t *view, size_t bytes)
 {
     uint64_t whole = T3R_HASH_START;
@@ -80,7 +80,7 @@ static t3r_config configure(const options *o)
     config.clusters = o->clusters != 0 ? o->clusters : config.clusters;
     config.cluster_batches = o->cluster_batches != 0 ? o->cluster_batches : config.cluster_batches;
     config.refine = o->refine;
-    /* the same work and bits, whatever the library was built with */
+    /* the same work and bits whatever features the library was built with */
     config.fit_passes = config.fit_widths = config.align = 0;
 #ifdef HEAD
     if (o->learned != 0) {
@@ -91,8 +91,8 @@ static t3r_config configure(const options *o)
     return config;
 }
 
-/* The kernels that the command line names, or those for this core, as far as the compiler knows it. PLAIN_C links none,
- * for firmwares that must be small. */
+/* Chooses the kernels that the command line names, or those for this core as far as the compiler knows it. PLAIN_C
+ * links none, for small firmware. */
 static t3r_status choose_kernels(t3r_runtime *rt, uint32_t cpu)
 {
     (void)rt, (void)cpu;
@@ -119,7 +119,7 @@ static void write_file(const char *path, const char *head, const void *bytes, si
     semihost_close(file);
 }
 
-/* As a camera delivers it: no more than a strip is in memory. */
+/* Adds a view as a camera delivers it: no more than a strip is in memory. */
 static void add_view(t3r_runtime *rt, uint32_t height)
 {
     t3r_frame frame;

@@ -1,5 +1,5 @@
-/* Where a stage begins, as something outside can see: a function of its own for each stage, at a place that the symbol
- * table names. tools/boards counts instructions between them. A profiler or a pin may stand there as well. */
+/* Marks where a stage begins, visibly from outside: a function for each stage, at an address in the symbol table.
+ * tools/boards counts instructions between the marks. A profiler or a pin may use them as well. */
 #ifndef T3R_BAREMETAL_MARKS_H
 #define T3R_BAREMETAL_MARKS_H
 
@@ -7,7 +7,7 @@
 
 /* Calls mark_<stage>(). */
 void mark_stage(t3r_stage stage);
-/* What follows belongs to no stage. */
+/* Marks the start of code outside all stages. */
 void mark_other(void);
 
 #endif

@@ -27,7 +27,7 @@ static _Noreturn void refuse(const char *word, const char *why)
     semihost_exit(1);
 }
 
-/* The text behind "key=", or NULL. */
+/* Returns the text after "key=", or NULL. */
 static const char *value_of(const char *word, const char *key)
 {
     while (*key != '\0' && *word == *key) {

@@ -8,11 +8,11 @@ typedef struct ram_part {
     uint8_t *begin, *end;
 } ram_part;
 
-/* Variables, with a value at first or without. */
+/* Returns the variables, initialised or not. */
 ram_part ram_data(void);
-/* What main() deals out; it begins at a multiple of T3R_ARENA_ALIGN. */
+/* Returns the memory that main() allocates from; it begins at a multiple of T3R_ARENA_ALIGN. */
 ram_part ram_free(void);
-/* It grows from its end to its beginning. Both are multiples of 4. */
+/* Returns the stack, which grows from its end to its beginning. Both are multiples of 4. */
 ram_part ram_stack(void);
 
 #endif

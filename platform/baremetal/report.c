@@ -7,7 +7,7 @@
 
 enum { LINE_BYTES = 256, NUMBER_BYTES = 11 };
 
-/* Decimal digits of the value, in `text`. */
+/* Writes the value as decimal digits into `text`. */
 static const char *decimal(uint32_t value, char text[NUMBER_BYTES])
 {
     char *at = text + NUMBER_BYTES - 1;

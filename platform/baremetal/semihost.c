@@ -23,7 +23,9 @@ int semihost_read(int32_t handle, uint32_t offset, void *bytes, size_t count)
 {
     const uintptr_t seek[2] = {(uintptr_t)handle, offset};
     const uintptr_t read[3] = {(uintptr_t)handle, (uintptr_t)bytes, count};
-    return semihost_call(SYS_SEEK, seek) == 0 && semihost_call(SYS_READ, read) == 0 ? 0 : -1; /* what is left to read */
+    return semihost_call(SYS_SEEK, seek) == 0 && semihost_call(SYS_READ, read) == 0
+               ? 0
+               : -1; /* 0: no bytes are left to read */
 }
 
 int semihost_write(int32_t handle, const void *bytes, size_t count)
@@ -53,7 +55,7 @@ char *semihost_command_line(char *text, size_t room)
     if (semihost_call(SYS_GET_CMDLINE, block) != 0) {
         return NULL;
     }
-    char *behind = text; /* the program's name */
+    char *behind = text; /* end of the program's name */
     while (*behind != ' ' && *behind != '\0') {
         behind++;
     }

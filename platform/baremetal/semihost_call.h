@@ -1,10 +1,10 @@
-/* One request to the debugger, the emulator, or what stands for it. */
+/* One request to the debugger, the emulator or a substitute. */
 #ifndef T3R_BAREMETAL_SEMIHOST_CALL_H
 #define T3R_BAREMETAL_SEMIHOST_CALL_H
 
 #include <stdint.h>
 
-/* The operations that the firmware asks for. */
+/* The operations that the firmware uses. */
 enum {
     SYS_OPEN = 0x01,
     SYS_CLOSE = 0x02,
@@ -16,7 +16,8 @@ enum {
     SYS_EXIT_EXTENDED = 0x20
 };
 
-/* `block` holds the operation's words, each as large as an address; what it returns is the operation's, too. */
+/* `block` holds the operation's words, each as large as an address. The meaning of the result depends on the
+ * operation. */
 int32_t semihost_call(uint32_t operation, const void *block);
 
 #endif

@@ -3,7 +3,7 @@
 #include "ram.h"
 
 #define PAINT UINT32_C(0xdeadbeef)
-#define SPARED_BYTES 64 /* of this function's own frame and its caller's */
+#define SPARED_BYTES 64 /* frames of this function and its caller */
 
 void stack_paint(void)
 {

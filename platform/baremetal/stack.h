@@ -1,14 +1,14 @@
-/* How deep the stack went: it is painted before main(), and the paint that is left is counted. */
+/* Measures the depth of the stack: it is painted before main(), and the paint that is left is counted. */
 #ifndef T3R_BAREMETAL_STACK_H
 #define T3R_BAREMETAL_STACK_H
 
 #include <stdint.h>
 
-/* Paints what lies below the caller's frame. */
+/* Paints the stack below the caller's frame. */
 void stack_paint(void);
-/* The most bytes that were used so far; all of them where no paint is left, which may be an overflow. */
+/* Returns the most bytes used so far; all bytes if no paint is left, which may be an overflow. */
 uint32_t stack_used_bytes(void);
-/* The bytes that there are. */
+/* Returns the size of the stack in bytes. */
 uint32_t stack_bytes(void);
 
 #endif

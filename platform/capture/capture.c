@@ -1,4 +1,4 @@
-/* What all sources share: counting, telling, defaults. */
+/* What all sources share: counting, events, defaults. */
 #include "capture.h"
 
 #include <inttypes.h>

@@ -1,12 +1,12 @@
-/* Adapters written in C++ are modules beside the program, loaded when they are asked for: their libraries need not be
- * where they are not used, and cost nothing where they are. */
+/* Adapters written in C++ are modules next to the program, loaded on demand: the libraries that they need may be absent
+ * where they are not used. */
 #ifndef T3R_PLATFORM_CAPTURE_MODULE_H
 #define T3R_PLATFORM_CAPTURE_MODULE_H
 
 #include <stddef.h>
 
-/* The table `t3r_shim` of the module "NAME", from the folder of the program, else from where the system looks for
- * libraries. Stays loaded. NULL with a reason in error[]. */
+/* Returns the table `t3r_shim` of the module "NAME". The module is searched for in the program's folder, then where the
+ * system looks for libraries, and stays loaded. Returns NULL with a reason in error[] on failure. */
 const void *t3r_capture_module(const char *name, char *error, size_t error_bytes);
 
 #endif

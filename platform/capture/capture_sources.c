@@ -54,7 +54,7 @@ t3r_capture_adapter t3r_capture_adapter_of(uint32_t index)
     return adapter;
 }
 
-/* Devices name themselves: any text. */
+/* Devices name themselves, so a line may hold any text. */
 typedef struct listener {
     void (*say)(void *user, const char *line);
     void *user;

@@ -1,5 +1,5 @@
-/* A progressive JPEG may spread its picture over thousands of scans, each a pass over all of it. libjpeg's progress
- * monitor sees them come and stops the reading. */
+/* A progressive JPEG may have thousands of scans, each a pass over the whole picture. libjpeg's progress monitor counts
+ * them and stops the reading. */
 #ifndef T3R_PLATFORM_JPEG_SCANS_H
 #define T3R_PLATFORM_JPEG_SCANS_H
 
@@ -24,7 +24,7 @@ static inline void t3r_jpeg_count_scans(j_common_ptr jpeg)
     }
 }
 
-/* Of a decompressor that has been created; `scans` must live as long. */
+/* Watches a decompressor that has been created; `scans` must live as long as the decompressor. */
 static inline void t3r_jpeg_watch_scans(j_decompress_ptr jpeg, t3r_jpeg_scans *scans,
                                         void (*refuse)(j_common_ptr jpeg, const char *reason))
 {

@@ -1,4 +1,4 @@
-/* The adapter `libcamera`: one stream of a camera. Frames are handed on where the library put them. */
+/* The adapter `libcamera`: one stream of a camera. Frames stay where the library put them. */
 #include "libcamera.h"
 
 #include <inttypes.h>
@@ -11,7 +11,7 @@
 #include "recording/pixel_layout.h"
 #include "host/reason.h"
 
-#define FAR_AHEAD 0x80000000u /* a sequence that is "ahead" by more went backwards */
+#define FAR_AHEAD 0x80000000u /* a sequence "ahead" by more has gone backwards */
 #define NO_BUFFER UINT32_MAX
 #define MOST_STAMP_NS ((uint64_t)1000000000 << 31)
 
@@ -62,7 +62,7 @@ static bool format_of(const char *name, t3r_pixel_format *format)
     return false;
 }
 
-/* NULL, or what is wrong with what was agreed on: every row of every plane must lie in its buffer. */
+/* Returns NULL, or what is wrong with the negotiated format: every row of every plane must lie in its buffer. */
 static const char *check_agreed(libcamera_capture *self)
 {
     const t3r_libcamera_agreed *a = &self->agreed;
@@ -155,7 +155,7 @@ static int give_back(libcamera_capture *self, uint32_t buffer)
     return t3r_capture_lose(&self->capture, "libcamera:%s: takes no buffers", self->camera);
 }
 
-/* One finished buffer to a frame; NOTHING when it was damaged. */
+/* Turns a finished buffer into a frame; NOTHING if the buffer was damaged. */
 static int deliver(libcamera_capture *self, const t3r_libcamera_done *done, t3r_capture_frame *frame)
 {
     self->alive_ns = now_ns();
@@ -214,9 +214,9 @@ static int next(t3r_capture *capture, t3r_capture_frame *frame)
 {
     libcamera_capture *self = (libcamera_capture *)capture;
     if (self->stream == NULL) {
-        return T3R_CAPTURE_LOST; /* told already */
+        return T3R_CAPTURE_LOST; /* already reported */
     }
-    /* buffers that the library could fill while the caller kept one */
+    /* time that the library can fill buffers for while the caller holds one */
     int64_t lasts_ns = self->interval_ns * (self->agreed.buffers - (self->lent != NO_BUFFER));
     if (self->interval_ns > 0 && now_ns() - self->left_ns > lasts_ns) {
         self->slow = self->agreed.buffers;

@@ -1,8 +1,8 @@
-// libcamera behind a table in C; exceptions and the library's threads stay in here.
+// libcamera as a table in C; exceptions and the library's threads stay in here.
 //
-// Written for and tested with libcamera 0.0.3 (Debian 12). Of what later versions changed this meets two things:
-//   0.1   generateConfiguration() takes a Span of roles in the place of a vector: the list in braces below is either
-//   0.2   CameraConfiguration has `orientation` in the place of `transform`: neither is touched
+// Written for and tested with libcamera 0.0.3 (Debian 12). Two changes of later versions matter here:
+//   0.1   generateConfiguration() takes a Span of roles instead of a vector: the list in braces below fits both
+//   0.2   CameraConfiguration has `orientation` instead of `transform`: neither is used
 #include "libcamera_shim.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ namespace lc = libcamera;
 namespace
 {
 
-// DRM's names tell the order in a little-endian word, so its BGR888 is R, G, B in memory.
+// DRM names the order within a little-endian word, so its BGR888 is R, G, B in memory.
 struct named_format {
     const char *name;
     lc::PixelFormat format;
@@ -45,7 +45,7 @@ const std::array<named_format, 6> formats = {{{"YUYV", lc::formats::YUYV},
                                               {"BGR3", lc::formats::RGB888},
                                               {"GREY", lc::formats::R8}}};
 
-// The process's only one, as the library asks; kept while it is in use.
+// Returns the process's only manager, which the library demands; it is kept while in use.
 std::shared_ptr<lc::CameraManager> manager(char *error, size_t error_bytes)
 {
     static std::weak_ptr<lc::CameraManager> shared;
@@ -82,18 +82,18 @@ struct t3r_libcamera_stream {
     std::vector<mapping> mappings;
     bool acquired = false, started = false;
 
-    std::mutex lock; // of what follows
+    std::mutex lock; // guards the following
     std::condition_variable more;
     std::array<t3r_libcamera_done, T3R_LIBCAMERA_MOST_BUFFERS> done{};
-    size_t first = 0, count = 0; // a ring: a buffer is in it at most once
-    bool gone = false;           // as the library was told by udev
-    bool refused = false;        // the device took a buffer no more
+    size_t first = 0, count = 0; // a ring: holds a buffer at most once
+    bool gone = false;           // as udev reported to the library
+    bool refused = false;        // the device took a buffer no longer
 
     void on_done(lc::Request *request)
     {
         const lc::FrameMetadata &m = request->buffers().at(stream)->metadata();
         std::lock_guard<std::mutex> held(lock);
-        // handed back, a buffer that was cancelled would be cancelled again, without end
+        // a cancelled buffer that is queued again would be cancelled again, without end
         refused = refused || request->status() == lc::Request::RequestCancelled;
         if (count < done.size() && !refused) {
             t3r_libcamera_done &d = done[(first + count++) % done.size()];
@@ -137,7 +137,7 @@ std::shared_ptr<lc::Camera> find(lc::CameraManager &cameras, const std::string &
     return cameras.get(wish);
 }
 
-// Configures the first wished format that the camera takes as it is. nullptr, or why there is none.
+// Configures the first wished format that the camera accepts unchanged. Returns nullptr, or why there is none.
 const char *configure(t3r_libcamera_stream &s, const t3r_libcamera_request &r, t3r_libcamera_agreed &agreed)
 {
     for (const named_format &f : formats) {
@@ -168,7 +168,7 @@ const char *configure(t3r_libcamera_stream &s, const t3r_libcamera_request &r, t
     return r.format != nullptr ? "does not offer the format" : "offers no format that is read";
 }
 
-// Planes may share one file descriptor or not; each is mapped from its start to its own end.
+// Maps the planes of a buffer. They may share a file descriptor; each is mapped from its start to its own end.
 const char *map_buffer(t3r_libcamera_stream &s, const lc::FrameBuffer &buffer, t3r_libcamera_agreed &agreed)
 {
     const std::vector<lc::FrameBuffer::Plane> &planes = buffer.planes();
@@ -233,7 +233,7 @@ const char *prepare(t3r_libcamera_stream &s, const t3r_libcamera_request &r, t3r
     return nullptr;
 }
 
-// The video devices that this process has open and that are there no more, as many as there is room for.
+// Finds the video devices that this process has open but that no longer exist, as many as there is room for.
 size_t gone_devices(std::array<int, 16> &found)
 {
     size_t count = 0;
@@ -243,7 +243,7 @@ size_t gone_devices(std::array<int, 16> &found)
         if (entry == nullptr) {
             break;
         }
-        char path[32] = ""; // what is behind /dev/video matters not
+        char path[32] = ""; // the rest after /dev/video does not matter
         ssize_t length = readlinkat(dirfd(folder), entry->d_name, path, sizeof path - 1);
         int fd = std::atoi(entry->d_name);
         v4l2_capability can;
@@ -272,10 +272,10 @@ bool heard_of_unplugging(t3r_libcamera_stream *s)
     return s->gone;
 }
 
-// Where udevd's messages do not come (containers) the library does not hear of an unplugging, and its stop() of a
-// device that is gone ends the process (an assertion). So its thread is ended with its manager, and what belongs to the
-// camera is never touched again, nor freed; its devices are closed, for the next one to get their names. A manager made
-// later looks for cameras anew. Whether a device was left in this way.
+// Abandons a stream whose device is gone; returns whether it had to. Where udevd's messages do not arrive (in
+// containers), the library does not notice an unplugging, and its stop() on a missing device fails an assertion and
+// ends the process. So the manager and its thread are ended, what belongs to the camera is neither touched nor freed
+// again, and the devices are closed so that their names are free. A later manager looks for cameras anew.
 bool abandon(t3r_libcamera_stream *s)
 {
     std::array<int, 16> devices;

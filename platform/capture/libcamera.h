@@ -1,11 +1,11 @@
-/* Capture by libcamera over the table of its module: how tests stand in for the library. */
+/* Capture by libcamera over the table of its module, so that tests can stand in for the library. */
 #ifndef T3R_PLATFORM_LIBCAMERA_H
 #define T3R_PLATFORM_LIBCAMERA_H
 
 #include "capture.h"
 #include "libcamera_shim.h"
 
-/* With the module given. Settings are filled (capture_adapter.h). */
+/* Opens a camera with the given module. Settings must be filled (capture_adapter.h). */
 t3r_capture *t3r_libcamera_open_on(const t3r_libcamera_shim *shim, const char *camera,
                                    const t3r_capture_settings *settings, char *error, size_t error_bytes);
 

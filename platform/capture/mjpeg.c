@@ -23,7 +23,7 @@ static void give_up(j_common_ptr jpeg)
     longjmp(self->back, 1);
 }
 
-/* Warnings are of damaged data: as bad as errors. */
+/* Treats warnings as errors: they mean damaged data. */
 static void emit(j_common_ptr jpeg, int level)
 {
     if (level < 0) {

@@ -1,4 +1,4 @@
-/* Motion JPEG: one picture decoded into RGB, in integers that are the same for every version of libjpeg-turbo (slow,
+/* Motion JPEG: decodes one picture into RGB, in integers that are the same for every version of libjpeg-turbo (slow,
  * exact inverse DCT; plain upsampling). The library allocates while it works. */
 #ifndef T3R_PLATFORM_MJPEG_H
 #define T3R_PLATFORM_MJPEG_H
@@ -8,11 +8,11 @@
 
 typedef struct t3r_mjpeg t3r_mjpeg;
 
-/* NULL when memory is out. */
+/* Returns NULL when memory is out. */
 t3r_mjpeg *t3r_mjpeg_open(void);
 void t3r_mjpeg_close(t3r_mjpeg *decoder);
-/* A JPEG of exactly width x height into rgb (3 bytes a pixel, rows without gaps). NULL, or what is wrong with it: also
- * what libjpeg only warns of, since pixels are missing then. */
+/* Decodes a JPEG of exactly width x height into rgb (3 bytes a pixel, rows without gaps). Returns NULL, or what is
+ * wrong. What libjpeg only warns of is an error too, since pixels are missing then. */
 const char *t3r_mjpeg_decode(t3r_mjpeg *decoder, const uint8_t *jpeg, size_t bytes, uint32_t width, uint32_t height,
                              uint8_t *rgb);
 

@@ -1,5 +1,5 @@
-/* The adapter `opencv`: films, pictures and devices by OpenCV's VideoCapture, colour as BGR or grey; depth from a
- * second one with 16 bits a pixel, picture by picture. */
+/* The adapter `opencv`: films, pictures and devices by OpenCV's VideoCapture. Colour is BGR or grey; depth comes from a
+ * second VideoCapture with 16 bits a pixel, picture by picture. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,9 +17,9 @@ typedef struct opencv_capture {
     const t3r_opencv_shim *shim;
     t3r_capture_settings settings;
     char *url, *depth_url;            /* depth_url NULL = colour alone */
-    char name[T3R_SOURCE_NAME_BYTES]; /* of url, in messages */
+    char name[T3R_SOURCE_NAME_BYTES]; /* the URL's name in messages */
     t3r_opencv_film *film, *depth;
-    double rate; /* of films, frames a second */
+    double rate; /* frames a second of films */
     uint32_t index;
 } opencv_capture;
 
@@ -79,7 +79,7 @@ static int open_films(opencv_capture *self, char *error, size_t error_bytes)
     return 0;
 }
 
-/* NULL, or why the picture is no colour image. */
+/* Returns NULL, or why the picture is no colour image. */
 static const char *fill_colour(const t3r_opencv_picture *p, t3r_frame *frame)
 {
     if (p->bytes != 1 || (p->channels != 3 && p->channels != 1)) {
@@ -104,7 +104,7 @@ static const char *fill_depth(const t3r_opencv_picture *p, uint64_t unit_q40, t3
     if (p->width < 2 || p->height < 2 || p->width > T3R_MAX_SIDE || p->height > T3R_MAX_SIDE) {
         return "depth's width or height is outside 2..4096";
     }
-    frame->depth = p->data; /* host order, which is little-endian wherever OpenCV's packages are */
+    frame->depth = p->data; /* host order, which is little-endian wherever OpenCV is packaged */
     frame->depth_width = p->width;
     frame->depth_height = p->height;
     frame->depth_stride_bytes = p->stride;
@@ -112,8 +112,8 @@ static const char *fill_depth(const t3r_opencv_picture *p, uint64_t unit_q40, t3
     return NULL;
 }
 
-/* Of devices what the back end tells, V4L2's stamp say; films run at their rate, or the one asked for: back ends
- * disagree on positions. */
+/* Returns a frame's stamp. For devices it is the back end's position (V4L2's stamp, for example). Films run at their
+ * own rate or the requested one, because back ends disagree on positions. */
 static int64_t stamp_of(const opencv_capture *self, const t3r_opencv_picture *picture)
 {
     double ms = picture->position_ms;

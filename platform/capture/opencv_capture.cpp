@@ -1,4 +1,4 @@
-// VideoCapture behind a table in C; exceptions stay in here.
+// VideoCapture as a table in C; exceptions stay in here.
 #include "opencv_shim.h"
 
 #include <cctype>
@@ -41,7 +41,7 @@ bool is_number(const char *text)
     return true;
 }
 
-// Whether the text names pictures by number, as p%d.png or p%03d.png: a % of a URL stands for a byte.
+// Whether the text numbers pictures, as p%d.png or p%03d.png. In a URL, % starts an escaped byte.
 bool is_numbered(const char *text)
 {
     if (std::strstr(text, "://") != nullptr) {
@@ -59,7 +59,7 @@ bool is_numbered(const char *text)
     return false;
 }
 
-// The back end of this name, or CAP_ANY; -1 when there is none.
+// Returns the back end of this name, or CAP_ANY; -1 when there is none.
 int backend_named(const char *name)
 {
     if (name == nullptr) {
@@ -113,7 +113,7 @@ t3r_opencv_film *open(const t3r_opencv_request *request, char *error, size_t err
 {
     t3r_opencv_film *film = nullptr;
     try {
-        // of numbered pictures FFMPEG keeps 8 bits
+        // FFMPEG reduces numbered pictures to 8 bits
         bool pictures = request->backend == nullptr && is_numbered(request->url);
         int api = pictures ? static_cast<int>(cv::CAP_IMAGES) : backend_named(request->backend);
         if (api < 0) {
@@ -157,7 +157,7 @@ void close(t3r_opencv_film *film)
 {
     try {
         delete film;
-    } catch (...) { // nothing is left to be told
+    } catch (...) { // there is nothing left to report to
     }
 }
 

@@ -1,27 +1,27 @@
-/* The adapter `replay`: a recording's frames, one after the other, as fast as they are asked for. */
+/* The adapter `replay`: a recording's frames in order, as fast as they are asked for. */
 #include <stdlib.h>
 
 #include "capture_adapter.h"
 #include "host/reason.h"
 #include "recording/recording.h"
 
-#define LONE_FRAME_NS 33333333          /* the interval after a recording of a single frame */
-#define MOST_AGO_NS (UINT64_C(1) << 61) /* a recording's stamps lie within 2^62: int64_t holds their sum */
+#define LONE_FRAME_NS 33333333          /* the interval assumed for a recording of a single frame */
+#define MOST_AGO_NS (UINT64_C(1) << 61) /* stamps of a recording are below 2^62, so int64_t holds the sum */
 
 typedef struct replay {
     t3r_capture capture; /* first: a t3r_capture * is a replay * */
     t3r_recording *recording;
-    uint32_t next;    /* in the recording */
-    uint32_t index;   /* over all its turns */
+    uint32_t next;    /* frame of the recording */
+    uint32_t index;   /* over all passes */
     bool started;     /* first_ns is known */
-    uint32_t turns;   /* left, this one included */
-    int64_t first_ns; /* of the recording's frames */
-    int64_t ago_ns;   /* how much later this turn's frames are, at most MOST_AGO_NS */
+    uint32_t turns;   /* passes left, with this one */
+    int64_t first_ns; /* first stamp of the recording */
+    int64_t ago_ns;   /* added to the stamps of this pass, at most MOST_AGO_NS */
     char clock[64];
 } replay;
 
-/* Once more from the start, later by the length of a turn: FRAME; END after the last turn; FAILED, and no turn is left,
- * where the clock does not hold it. */
+/* Starts the next pass, with stamps later by the length of a pass. Returns FRAME; END after the last pass; FAILED, with
+ * no pass left, when the clock would overflow. */
 static int turn_over(replay *self)
 {
     if (self->turns <= 1 || self->next == 0) {
@@ -43,7 +43,7 @@ static int turn_over(replay *self)
     return T3R_CAPTURE_FRAME;
 }
 
-/* A frame that cannot be read is a failure once; the call after it goes on with the next one. */
+/* Delivers the next frame. A frame that cannot be read fails once; the next call goes on with the frame after it. */
 static int next(t3r_capture *capture, t3r_capture_frame *frame)
 {
     replay *self = (replay *)capture;

@@ -1,4 +1,4 @@
-/* What a source is called in messages and in recordings: its credentials and its folders are nobody else's business. */
+/* What a source is called in messages and in recordings: credentials and folders stay private. */
 #ifndef T3R_PLATFORM_SOURCE_NAME_H
 #define T3R_PLATFORM_SOURCE_NAME_H
 
@@ -6,10 +6,10 @@
 
 #define T3R_SOURCE_NAME_BYTES 256
 
-/* The name of "adapter:what", or of what an adapter opens alone, cut off after bytes - 1: of a URL scheme, host and
- * path without user, password, query and fragment; of a path its last part; of a GStreamer pipeline, whose properties
- * may be passwords, "(pipeline)". A URL with an @ behind its host may have a malformed password: of it the scheme
- * alone. */
+/* Writes the name of "adapter:what", or of the part that an adapter opens, cut off after bytes - 1. For a URL: scheme,
+ * host and path without user, password, query and fragment. For a path: its last part. For a GStreamer pipeline, whose
+ * properties may be passwords: "(pipeline)". A URL with an @ after its host may hold a malformed password, so only its
+ * scheme is written. */
 void t3r_source_name(const char *source, char *name, size_t bytes);
 
 #endif

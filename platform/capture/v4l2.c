@@ -1,5 +1,5 @@
-/* The adapter `v4l2`: a colour node, with a depth node where one is named. Frames are handed on where the driver put
- * them; a buffer goes back to the driver with the call that asks for the next frame. */
+/* The adapter `v4l2`: a colour node, and a depth node if one is named. Frames stay where the driver put them; a buffer
+ * goes back to the driver with the call that asks for the next frame. */
 #include "v4l2.h"
 
 #include <errno.h>
@@ -16,9 +16,9 @@
 #include "v4l2_node.h"
 
 #define NS_PER_MS INT64_C(1000000)
-#define PATIENCE_NS (100 * NS_PER_MS)             /* beyond the distance of pairs */
+#define PATIENCE_NS (100 * NS_PER_MS)             /* on top of the pairing distance */
 #define MOST_STAMP_NS ((int64_t)1000000000 << 31) /* recordings keep seconds in 31 bits */
-#define MOST_IDLE_ROUNDS 64u /* "ready" without an image so often in a row: the driver is in disorder */
+#define MOST_IDLE_ROUNDS 64u /* after so many "ready" reports in a row without an image the driver is faulty */
 
 enum { COLOUR, DEPTH, NODES };
 
@@ -29,14 +29,14 @@ typedef struct v4l2_capture {
     char *path[NODES]; /* NULL = no such node */
     t3r_v4l2_node node[NODES];
     uint32_t nodes;
-    t3r_pairing pairing;                        /* of two nodes; of one the queue of colour alone */
-    uint32_t bytes_used[T3R_V4L2_MOST_BUFFERS]; /* of a colour buffer's JPEG */
+    t3r_pairing pairing;                        /* pairs two nodes; with one node, only the colour queue is used */
+    uint32_t bytes_used[T3R_V4L2_MOST_BUFFERS]; /* JPEG bytes in a colour buffer */
     t3r_mjpeg *mjpeg;
-    uint8_t *rgb; /* of MJPG */
+    uint8_t *rgb; /* decoded MJPG */
     size_t rgb_bytes;
     uint32_t index;
-    uint64_t taken;            /* images dequeued, broken ones too */
-    int64_t left_ns, alive_ns; /* when the last call ended; when the last colour image came */
+    uint64_t taken;            /* images dequeued, with broken ones */
+    int64_t left_ns, alive_ns; /* end of the last call; arrival of the last colour image */
 } v4l2_capture;
 
 static int64_t now_ns(const v4l2_capture *self)
@@ -59,7 +59,7 @@ static void remark_node(v4l2_capture *self, uint32_t which, bool rate_kept)
     }
 }
 
-/* Room for decoded pictures: only here memory is asked for. */
+/* Allocates room for decoded pictures; nothing else allocates. */
 static int prepare_mjpeg(v4l2_capture *self, char *error, size_t error_bytes)
 {
     size_t bytes = (size_t)self->node[COLOUR].width * self->node[COLOUR].height * 3;
@@ -137,8 +137,8 @@ static bool waits(const t3r_pairing_queue *queue, uint32_t buffer)
     return false;
 }
 
-/* Every buffer that neither waits for its companion nor is the driver's goes back; one that was refused stays for the
- * next time. -1: a node has none left, or is gone. */
+/* Gives back to the driver every buffer that it does not hold and that waits for no companion; a refused buffer stays
+ * for the next call. Returns -1 when a node has no buffers left or is gone. */
 static int give_back(v4l2_capture *self)
 {
     for (uint32_t n = 0; n < self->nodes; n++) {
@@ -190,7 +190,7 @@ static void tell_corrupted(v4l2_capture *self, const t3r_v4l2_image *image, cons
                                                          .detail = what});
 }
 
-/* Takes one image of a node to the queue of its kind. 1: there may be more, 0: there is none, or LOST. */
+/* Takes one image of a node into the queue of its kind. Returns 1: there may be more; 0: there is none; or LOST. */
 static int take_image(v4l2_capture *self, uint32_t which, bool error_polled)
 {
     t3r_v4l2_node *node = &self->node[which];
@@ -255,7 +255,7 @@ static void fill_depth(const v4l2_capture *self, const t3r_pairing_item *item, t
     frame->depth_unit_q40 = self->capture.depth_unit_q40;
 }
 
-/* NULL, or why the JPEG in the item's buffer is none. */
+/* Returns NULL, or why the item's buffer holds no JPEG. */
 static const char *decode(v4l2_capture *self, const t3r_pairing_item *item)
 {
 #ifdef T3R_MJPEG
@@ -271,8 +271,7 @@ static const char *decode(v4l2_capture *self, const t3r_pairing_item *item)
     return NULL;
 }
 
-/* Delivers the oldest colour image, with the oldest depth image where they belong together; NOTHING when it is damaged.
- */
+/* Delivers the oldest colour image, with the oldest depth image if they belong together; NOTHING if it is damaged. */
 static int deliver(v4l2_capture *self, bool with_depth, int64_t gap_ns, t3r_capture_frame *frame)
 {
     t3r_pairing_item colour = t3r_pairing_take(&self->pairing.colour), depth = {0};
@@ -312,7 +311,8 @@ static int deliver(v4l2_capture *self, bool with_depth, int64_t gap_ns, t3r_capt
     return t3r_capture_deliver(&self->capture, frame);
 }
 
-/* A frame from what has arrived, or NOTHING. Each round takes an image off a queue: at most 2 x most + 1 rounds. */
+/* Returns a frame made of what has arrived, or NOTHING. Each round takes an image off a queue, so there are at most 2 x
+ * most + 1 rounds. */
 static int decide(v4l2_capture *self, t3r_capture_frame *frame)
 {
     if (self->nodes == 1) {
@@ -342,7 +342,8 @@ static int decide(v4l2_capture *self, t3r_capture_frame *frame)
     }
 }
 
-/* Waits for an image of any node until `until_ns`, at most. 1: take images; 0: the time is over or a signal came. */
+/* Waits until `until_ns`, at most, for an image of any node. Returns 1: take images; 0: the time is over or a signal
+ * came. */
 static int await(v4l2_capture *self, int64_t until_ns, bool error_polled[NODES])
 {
     struct pollfd fds[NODES];
@@ -367,14 +368,14 @@ static int await(v4l2_capture *self, int64_t until_ns, bool error_polled[NODES])
     return 1;
 }
 
-/* All images that are ready, as far as there is room for them. */
+/* Takes all images that are ready, as far as there is room. */
 static int take_images(v4l2_capture *self, const bool error_polled[NODES])
 {
     for (uint32_t i = 0; i < self->nodes; i++) {
         const t3r_pairing_queue *queue = i == COLOUR ? &self->pairing.colour : &self->pairing.depth;
         uint32_t room = self->nodes == 1 ? 1 : self->pairing.most;
         int got = 1;
-        /* broken images take no room: as many as there are buffers can be ready at once */
+        /* broken images take no room, and at most all buffers are ready at once */
         for (uint32_t k = 0; k < T3R_V4L2_MOST_BUFFERS && got == 1 && queue->count < room; k++) {
             got = take_image(self, i, error_polled[i]);
         }
@@ -389,7 +390,7 @@ static int next(t3r_capture *capture, t3r_capture_frame *frame)
 {
     v4l2_capture *self = (v4l2_capture *)capture;
     if (colour_node(self)->fd < 0) {
-        return T3R_CAPTURE_LOST; /* told already */
+        return T3R_CAPTURE_LOST; /* already reported */
     }
     int64_t start = now_ns(self), until = start + self->settings.deadline_ms * NS_PER_MS;
     for (uint32_t i = 0; i < self->nodes; i++) {

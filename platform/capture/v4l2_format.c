@@ -3,7 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
-#define MOST_LISTED 256u /* of formats, sizes, intervals: a driver that lists without end is cut off */
+#define MOST_LISTED 256u /* formats, sizes, intervals: cuts off a driver that lists without end */
 
 const t3r_v4l2_format t3r_v4l2_formats[] = {
     {"YUYV", V4L2_PIX_FMT_YUYV, T3R_PIXEL_YUYV, false, false},
@@ -67,7 +67,8 @@ static uint32_t snapped(uint32_t wish, uint32_t low, uint32_t high, uint32_t ste
     return step > 1 ? low + (inside - low) / step * step : inside;
 }
 
-/* The nearest size of this format; the wish itself where the driver lists none. Returns how far it is away. */
+/* Finds the nearest size of this format; the wish itself where the driver lists none. Returns the distance from the
+ * wish. */
 static uint32_t nearest_size(const t3r_v4l2_system *system, int fd, uint32_t fourcc, const t3r_v4l2_wish *wish,
                              uint32_t *width, uint32_t *height)
 {
@@ -100,7 +101,7 @@ static uint32_t nearest_size(const t3r_v4l2_system *system, int fd, uint32_t fou
     return best;
 }
 
-/* Whether some interval is short enough for the rate, within 1 %; true where the driver lists none. */
+/* Whether some interval is short enough for the rate, within 1 %. True where the driver lists none. */
 static bool reaches_rate(const t3r_v4l2_system *system, int fd, uint32_t fourcc, uint32_t width, uint32_t height,
                          uint32_t rate_millihertz)
 {
@@ -111,7 +112,7 @@ static bool reaches_rate(const t3r_v4l2_system *system, int fd, uint32_t fourcc,
         }
         bool discrete = interval.type == V4L2_FRMIVAL_TYPE_DISCRETE;
         struct v4l2_fract shortest = discrete ? interval.discrete : interval.stepwise.min;
-        /* 1000 / rate_millihertz seconds, both sides times all denominators */
+        /* compares with 1000 / rate_millihertz seconds, multiplied by all denominators */
         if ((uint64_t)shortest.numerator * rate_millihertz * 99 <= (uint64_t)shortest.denominator * 1000 * 100) {
             return true;
         }
@@ -140,7 +141,7 @@ const char *t3r_v4l2_choose(const t3r_v4l2_system *system, int fd, const t3r_v4l
         uint64_t away = nearest_size(system, fd, format->fourcc, wish, &width, &height);
         bool slow = wish->rate_millihertz != 0 &&
                     !reaches_rate(system, fd, format->fourcc, width, height, wish->rate_millihertz);
-        uint64_t score = away * 2 + slow; /* the first of equals stays */
+        uint64_t score = away * 2 + slow; /* the first of equals wins */
         if (score < best) {
             best = score;
             *choice = (t3r_v4l2_choice){format, width, height};

@@ -7,8 +7,8 @@
 #include "recording/pixel_layout.h"
 #include "host/reason.h"
 
-#define MOST_REFUSED 8u       /* EIO so often in a row is no hiccup */
-#define FAR_AHEAD 0x80000000u /* a sequence that is "ahead" by more went backwards */
+#define MOST_REFUSED 8u       /* so many EIO in a row are a failure */
+#define FAR_AHEAD 0x80000000u /* a sequence "ahead" by more has gone backwards */
 
 static int control(const t3r_v4l2_node *node, unsigned long request, void *argument)
 {
@@ -37,7 +37,7 @@ static int check_capabilities(t3r_v4l2_node *node, char *error, size_t error_byt
     return 0;
 }
 
-/* NULL, or what is wrong with the format that the driver set. */
+/* Returns NULL, or what is wrong with the format that the driver set. */
 static const char *check_format(const t3r_v4l2_node *node, const struct v4l2_pix_format *set)
 {
     if (set->pixelformat != node->format->fourcc) {
@@ -93,7 +93,7 @@ static int set_format(t3r_v4l2_node *node, const t3r_v4l2_choice *choice, char *
     return 0;
 }
 
-/* The rate is a wish: false when the driver keeps its own. */
+/* Requests a rate; false when the driver keeps its own. */
 static bool set_rate(t3r_v4l2_node *node, uint32_t rate_millihertz)
 {
     struct v4l2_streamparm rate = {.type = V4L2_BUF_TYPE_VIDEO_CAPTURE};
@@ -162,7 +162,7 @@ static int start(t3r_v4l2_node *node, char *error, size_t error_bytes)
         return t3r_reason(error, error_bytes, "%s: does not start: %s", node->path, strerror(errno));
     }
     node->streaming = true;
-    /* drivers without the event say EINVAL; theirs is then no format that can change */
+    /* drivers without the event return EINVAL; their format cannot change */
     struct v4l2_event_subscription event = {.type = V4L2_EVENT_SOURCE_CHANGE};
     (void)control(node, VIDIOC_SUBSCRIBE_EVENT, &event);
     return 0;
@@ -255,7 +255,7 @@ uint32_t t3r_v4l2_node_queued(const t3r_v4l2_node *node)
 void t3r_v4l2_node_was_away(t3r_v4l2_node *node, int64_t away_ns)
 {
     if (node->interval_ns > 0 && away_ns > node->interval_ns * t3r_v4l2_node_queued(node)) {
-        node->slow = node->buffer_count; /* the gap comes behind the frames that were finished before it */
+        node->slow = node->buffer_count; /* the gap follows frames that were finished before it */
     }
 }
 
@@ -266,12 +266,12 @@ static t3r_v4l2_fetched dequeue_failed(t3r_v4l2_node *node, int error, bool erro
     }
     t3r_reason(what, what_bytes, "%s: %s", node->path, error == EAGAIN ? "its queue is in error" : strerror(error));
     if (error == EIO && !error_polled && ++node->refused < MOST_REFUSED) {
-        return T3R_V4L2_FAULT; /* as a lost signal may cause it */
+        return T3R_V4L2_FAULT; /* a lost signal may cause it */
     }
     return T3R_V4L2_GONE;
 }
 
-/* Counts what the sequence leaves out, and takes the interval from stamps of neighbours. */
+/* Counts the frames that the sequence skips, and measures the interval between neighbouring stamps. */
 static void follow_sequence(t3r_v4l2_node *node, t3r_v4l2_image *image)
 {
     uint32_t ahead = image->sequence - node->next_sequence; /* modulo 2^32, as the driver counts */
@@ -329,7 +329,7 @@ t3r_v4l2_fetched t3r_v4l2_node_fetch(t3r_v4l2_node *node, bool error_polled, t3r
         return T3R_V4L2_IMAGE;
     }
     t3r_reason(what, what_bytes, "%s", fault);
-    (void)t3r_v4l2_node_requeue(node, buffer.index); /* if refused, it is tried again with the others */
+    (void)t3r_v4l2_node_requeue(node, buffer.index); /* if refused, retried with the others */
     return T3R_V4L2_BROKEN;
 }
 

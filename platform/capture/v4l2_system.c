@@ -21,7 +21,7 @@ static int kernel_ioctl(void *user, int fd, unsigned long request, void *argumen
 static void *kernel_map(void *user, int fd, size_t bytes, int64_t offset)
 {
     (void)user;
-    /* drivers ask for PROT_WRITE of capture buffers too: some refuse a mapping without it */
+    /* some drivers refuse a mapping of capture buffers without PROT_WRITE */
     void *memory = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd, (off_t)offset);
     return memory == MAP_FAILED ? NULL : memory;
 }

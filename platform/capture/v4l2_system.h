@@ -1,5 +1,5 @@
-/* The system calls that V4L2 capture makes, behind a table, so that a test can be the kernel. All report failure as the
- * calls do: -1 (map: NULL) and errno. */
+/* The system calls of V4L2 capture as a table, so that a test can play the kernel. They report failure as the system
+ * does: -1 (map: NULL) and errno. */
 #ifndef T3R_PLATFORM_V4L2_SYSTEM_H
 #define T3R_PLATFORM_V4L2_SYSTEM_H
 
@@ -11,7 +11,7 @@ typedef struct t3r_v4l2_system {
     void *user;
     int (*open)(void *user, const char *path); /* O_RDWR | O_NONBLOCK | O_CLOEXEC */
     int (*ioctl)(void *user, int fd, unsigned long request, void *argument);
-    void *(*map)(void *user, int fd, size_t bytes, int64_t offset); /* shared, to be read; NULL = failed */
+    void *(*map)(void *user, int fd, size_t bytes, int64_t offset); /* shared mapping; NULL = failed */
     int (*unmap)(void *user, void *memory, size_t bytes);
     int (*poll)(void *user, struct pollfd *fds, uint32_t count, int timeout_ms);
     int (*close)(void *user, int fd);

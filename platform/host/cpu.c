@@ -26,7 +26,7 @@ uint32_t t3r_cpu_features(void)
 {
     uint32_t found = 0;
 #if defined(__x86_64__) && defined(__GNUC__)
-    /* these ask cpuid, and xgetbv for the registers that the system saves */
+    /* these query cpuid, and xgetbv for the registers that the system saves */
     if (__builtin_cpu_supports("sse4.1")) {
         found |= T3R_CPU_SSE41;
     }
@@ -44,7 +44,7 @@ uint32_t t3r_cpu_features(void)
     found |= (getauxval(AT_HWCAP) & HWCAP_ASIMDDP) != 0 ? T3R_CPU_DOTPROD : 0;
 #endif
 #elif defined(__wasm_simd128__)
-    found |= T3R_CPU_SIMD128; /* a module with it would not have been loaded without it */
+    found |= T3R_CPU_SIMD128; /* an engine without it does not load this module */
 #endif
     return found;
 }
@@ -75,7 +75,7 @@ static bool parse_number(const char *text, uint32_t *mask)
     return true;
 }
 
-/* The bit of a name of `length` characters; 0 when there is none. */
+/* Returns the bit of a name of `length` characters; 0 for an unknown name. */
 static uint32_t bit_of(const char *name, size_t length)
 {
     for (int i = 0; i < FEATURES; i++) {

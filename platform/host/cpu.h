@@ -1,4 +1,4 @@
-/* What the processor at hand has, for t3r_set_cpu(): features that its operating system supports as well. */
+/* Features of the current processor that its operating system supports as well, for t3r_set_cpu(). */
 #ifndef T3R_PLATFORM_CPU_H
 #define T3R_PLATFORM_CPU_H
 
@@ -6,14 +6,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* T3R_CPU_... bits; 0 on a processor of which nothing is known. */
+/* Returns T3R_CPU_... bits; 0 on an unknown processor. */
 uint32_t t3r_cpu_features(void);
 
-/* The features of a mask by name, as "avx2 avx512", cut to fit; "none" for 0. */
+/* Writes the names of the features in a mask, such as "avx2 avx512", cut to fit; "none" for 0. */
 void t3r_cpu_describe(uint32_t features, char *text, size_t text_bytes);
 
-/* A mask as text: "all", "none", names with commas between ("avx2,vnni"), or a number, decimal or 0x... in hexadecimal.
- * False: it is none of these, and *mask stays as it is. */
+/* Parses a mask: "all", "none", names separated by commas ("avx2,vnni"), or a number, decimal or 0x... hexadecimal.
+ * Returns false for anything else, with *mask unchanged. */
 bool t3r_cpu_parse_mask(const char *text, uint32_t *mask);
 
 #endif

@@ -14,7 +14,7 @@
 
 static const char too_large[] = "the file is too large";
 
-/* O_NONBLOCK: the opening of a pipe does not wait for a writer, it reads as empty then. */
+/* Opens with O_NONBLOCK, so that opening a pipe does not wait for a writer; a pipe without a writer reads as empty. */
 static FILE *open_kind(const char *path, bool pipes, struct stat *about, char *error, size_t error_bytes)
 {
     if (stat(path, about) != 0) {
@@ -46,7 +46,7 @@ FILE *t3r_file_open(const char *path, char *error, size_t error_bytes)
     return open_kind(path, false, &about, error, error_bytes);
 }
 
-/* NULL with a reason, which may be errno's, when it fails. */
+/* Reads a whole stream. Returns NULL with a reason, which may be errno's, on failure. */
 static uint8_t *read_stream(FILE *file, uint64_t guess, size_t most, t3r_file_check check, size_t *count,
                             const char **why)
 {
@@ -60,7 +60,8 @@ static uint8_t *read_stream(FILE *file, uint64_t guess, size_t most, t3r_file_ch
     if (*why != NULL) {
         return NULL;
     }
-    size_t room = (guess < sizeof first ? sizeof first : (size_t)guess) + 2; /* to notice the end, and for the 0 */
+    size_t room =
+        (guess < sizeof first ? sizeof first : (size_t)guess) + 2; /* 2 more to notice the end and for the final 0 */
     uint8_t *bytes = malloc(room);
     if (bytes != NULL) {
         memcpy(bytes, first, *count);
@@ -95,7 +96,7 @@ uint8_t *t3r_file_bytes_checked(const char *path, size_t most, t3r_file_check ch
         return NULL;
     }
     bool pipe = !S_ISREG(about.st_mode);
-    /* a file's size is only the first guess: what is read counts */
+    /* a file's size is only a first guess; what is read counts */
     uint64_t guess = pipe || about.st_size < 0 ? 1 << 16 : (uint64_t)about.st_size;
     const char *why;
     uint8_t *bytes =

@@ -38,7 +38,7 @@ int t3r_q40_from_text(t3r_text text, uint64_t *value_q40)
     return 0;
 }
 
-/* value as decimal digits; returns how many */
+/* Writes a value as decimal digits; returns their number. */
 static uint32_t digits(uint64_t value, char *out)
 {
     char reversed[20];
@@ -56,9 +56,9 @@ static uint32_t digits(uint64_t value, char *out)
 void t3r_q40_to_text(uint64_t value_q40, char text[T3R_Q40_TEXT_BYTES])
 {
     const uint64_t mask = ((uint64_t)1 << 40) - 1;
-    uint64_t rest = value_q40 & mask; /* what the digits so far leave, in Q40 of the last digit */
+    uint64_t rest = value_q40 & mask; /* remainder after the digits so far, in Q40 of the last digit */
     uint64_t shown = 0, unit = 1;     /* the fraction so far is shown / unit */
-    /* Cut after 13 places the value is off by less than 2^-43, and so reads back. */
+    /* Cut after 13 places, the value is off by less than 2^-43, so it reads back. */
     for (uint32_t places = 0; places <= 13; places++) {
         for (uint64_t up = 0; up <= 1; up++) {
             uint64_t whole = (value_q40 >> 40) + (shown + up) / unit;

@@ -5,8 +5,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-/* The array with room for at least count + 1 items of `size` bytes; NULL when memory is out, the old array then
- * stays valid. */
+/* Returns the array with room for at least count + 1 items of `size` bytes. Returns NULL when memory is out; the old
+ * array then stays valid. */
 static inline void *t3r_grow(void *items, size_t count, size_t *capacity, size_t size)
 {
     if (count < *capacity) {

@@ -17,7 +17,8 @@ bool t3r_text_same(t3r_text a, t3r_text b)
     return a.count == b.count && memcmp(a.chars, b.chars, a.count) == 0;
 }
 
-/* Bytes of the UTF-8 sequence at the front of s, 0 when there is none (overlong forms and surrogates included). */
+/* Returns the bytes of the UTF-8 sequence at the front of s; 0 for an invalid one (overlong forms and surrogates
+ * included). */
 static size_t sequence_bytes(const unsigned char *s, size_t count)
 {
     if (s[0] < 0x80) {
@@ -37,7 +38,8 @@ static size_t sequence_bytes(const unsigned char *s, size_t count)
     return wrong ? 0 : length;
 }
 
-/* U+0000..1F, U+007F..9F; the separators and directions U+2028..202E and U+2066..2069, which reorder a line. */
+/* Whether a character is U+0000..1F, U+007F..9F, or one of the separators and direction marks U+2028..202E and
+ * U+2066..2069, which reorder a line. */
 static bool is_control(const unsigned char *s, size_t length)
 {
     if (length == 1) {

@@ -1,7 +1,7 @@
-/* parallel_for on POSIX threads. They draw indices from one shared counter.
+/* parallel_for on POSIX threads, which draw indices from one shared counter.
  *
- * A build has hundreds of jobs of a few hundred microseconds, and to wake a thread takes about a tenth of that, far
- * more in a virtual machine. So whoever waits looks again for a while before it sleeps. */
+ * A build has hundreds of jobs of a few hundred microseconds. Waking a thread takes about a tenth of that, far more in
+ * a virtual machine. So a waiting thread spins for a while before it sleeps. */
 #include "threads.h"
 
 #include <pthread.h>
@@ -11,8 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#define LOOK_NS 200000 /* how long a thread looks before it sleeps */
-#define LOOKS 64       /* between two looks at the clock */
+#define LOOK_NS 200000 /* how long a thread spins before it sleeps */
+#define LOOKS 64       /* tests between two looks at the clock */
 
 /* A started thread; worker 0 is the caller. */
 typedef struct helper {
@@ -26,7 +26,7 @@ struct t3r_threads {
     pthread_cond_t job_posted, job_done;
     helper helpers[T3R_MAX_THREADS - 1];
     uint32_t helper_count;
-    bool looks;            /* there are processors for all threads */
+    bool looks;            /* spins: there are processors for all threads */
     _Atomic uint32_t busy; /* helpers that have not finished the current job */
     _Atomic uint64_t job;  /* number of the current job; it changes under the mutex */
     _Atomic bool stop;     /* likewise */
@@ -64,7 +64,7 @@ static bool is_done(const t3r_threads *threads, uint64_t unused)
     return atomic_load_explicit(&threads->busy, memory_order_acquire) == 0;
 }
 
-/* Looks for a while whether it is so; false says nothing. */
+/* Spins for a while until is_so() holds; false says nothing. */
 static bool look(const t3r_threads *threads, bool (*is_so)(const t3r_threads *, uint64_t), uint64_t argument)
 {
     for (int64_t begun = now_ns(); threads->looks && now_ns() - begun < LOOK_NS;) {
@@ -106,7 +106,7 @@ static void *work(void *argument)
         }
         last_job = atomic_load_explicit(&threads->job, memory_order_acquire);
         draw_indices(threads, self->worker);
-        /* What this thread wrote is there for whoever sees it done. */
+        /* Releases this thread's writes to the thread that sees busy = 0. */
         if (atomic_fetch_sub_explicit(&threads->busy, 1, memory_order_acq_rel) == 1) {
             pthread_mutex_lock(&threads->mutex);
             pthread_cond_signal(&threads->job_done);

@@ -7,7 +7,7 @@ static const char *const cut_short = "its compressed data are cut short";
 static const char *const too_long = "its data are longer than its uncompressed_size";
 static const char *const no_memory = "out of memory";
 
-#define WINDOW_LOG_MOST 26 /* 64 MiB beside the output, which frames that say their size do without */
+#define WINDOW_LOG_MOST 26 /* 64 MiB besides the output; frames that declare their size need no window */
 
 bool t3r_chunk_codec_known(t3r_text compression)
 {

@@ -9,10 +9,10 @@
 #include "host/text.h"
 
 bool t3r_chunk_codec_known(t3r_text compression);
-/* The most that in_bytes can decompress to: asked before anything is allocated. */
+/* Returns the most that in_bytes can decompress to, for checks before memory is allocated. */
 uint64_t t3r_chunk_codec_most(t3r_text compression, size_t in_bytes);
 
-/* Into out[0..room); *produced counts what came out, also on failure. NULL, or what went wrong. */
+/* Decompresses into out[0..room); *produced counts the output, also on failure. Returns NULL, or what went wrong. */
 const char *t3r_chunk_decompress(t3r_text compression, const uint8_t *in, size_t in_bytes, uint8_t *out, size_t room,
                                  size_t *produced);
 

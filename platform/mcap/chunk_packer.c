@@ -6,7 +6,7 @@
 #include <zstd.h>
 
 #define ZSTD_LEVEL 3
-#define PIECE_BYTES ((size_t)1 << 20) /* LZ4 wants room for all that a piece may become */
+#define PIECE_BYTES ((size_t)1 << 20) /* bounds the output room that LZ4 needs for a piece */
 
 const char *const t3r_compression_names[T3R_COMPRESSION_COUNT] = {"none", "zstd", "lz4"};
 
@@ -14,11 +14,11 @@ typedef struct chunk_packer {
     t3r_chunk_packer packer;
     ZSTD_CCtx *zstd;
     LZ4F_cctx *lz4;
-    uint8_t *bytes; /* packed so far */
+    uint8_t *bytes; /* compressed so far */
     size_t count, room;
 } chunk_packer;
 
-/* Room for `more` bytes. */
+/* Makes room for `more` bytes. */
 static int reserve(chunk_packer *self, size_t more)
 {
     if (self->room - self->count >= more) {
@@ -77,7 +77,7 @@ static int zstd_end(void *user, const uint8_t **bytes, size_t *count)
 
 /* ---- LZ4 ---- */
 
-/* What a call added, or its error. */
+/* Counts the bytes that a call added, or reports its error. */
 static int lz4_add(chunk_packer *self, size_t added)
 {
     self->count += LZ4F_isError(added) ? 0 : added;
@@ -120,7 +120,7 @@ static int lz4_end(void *user, const uint8_t **bytes, size_t *count)
     return status;
 }
 
-/* ---- either ---- */
+/* ---- both ---- */
 
 const t3r_chunk_packer *t3r_chunk_packer_open(t3r_compression compression)
 {

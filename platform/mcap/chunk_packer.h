@@ -1,4 +1,4 @@
-/* Compression of chunks, for recorders on machines with a heap (recording.h). Writer of what chunk_codec.h reads. */
+/* Compression of chunks, for recorders on machines with a heap (recording.h). chunk_codec.h reads the result. */
 #ifndef T3R_PLATFORM_CHUNK_PACKER_H
 #define T3R_PLATFORM_CHUNK_PACKER_H
 
@@ -14,7 +14,7 @@ typedef enum t3r_compression {
 /* "none", "zstd", "lz4" */
 extern const char *const t3r_compression_names[T3R_COMPRESSION_COUNT];
 
-/* NULL for NONE, and when memory is out. The same bytes give the same bytes with the same library. */
+/* Returns a packer; NULL for NONE, and when memory is out. The same library gives the same bytes for the same input. */
 const t3r_chunk_packer *t3r_chunk_packer_open(t3r_compression compression);
 /* NULL is allowed. */
 void t3r_chunk_packer_close(const t3r_chunk_packer *packer);

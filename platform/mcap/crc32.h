@@ -1,12 +1,11 @@
-/* CRC-32 (IEEE 802.3, reflected, as zlib and MCAP use it), for the recorder, which calls no library. Readers have
- * zlib's. */
+/* CRC-32 (IEEE 802.3, reflected, as in zlib and MCAP) for the recorder, which calls no library. Readers use zlib's. */
 #ifndef T3R_PLATFORM_CRC32_H
 #define T3R_PLATFORM_CRC32_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-/* The CRC of more bytes: start with crc = 0, then hand the last result on. */
+/* Extends a CRC by more bytes; start with crc = 0, then pass the previous result. */
 uint32_t t3r_crc32(uint32_t crc, const void *bytes, size_t count);
 
 #endif

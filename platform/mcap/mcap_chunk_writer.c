@@ -4,7 +4,7 @@
 
 #include "mcap_records.h"
 
-#define MESSAGE_INDEX_BYTES (T3R_MCAP_RECORD_HEAD_BYTES + 2 + 4 + 16) /* of one message */
+#define MESSAGE_INDEX_BYTES (T3R_MCAP_RECORD_HEAD_BYTES + 2 + 4 + 16) /* for one message */
 
 void t3r_mcap_chunk_note(t3r_mcap_chunk *chunk, uint16_t channel, uint64_t time_ns, uint64_t offset)
 {
@@ -42,7 +42,7 @@ void t3r_mcap_message_indexes(t3r_mcap_writer *writer, const t3r_mcap_chunk *chu
 
 /* A chunk and its message indexes as the file holds them. */
 typedef struct written_chunk {
-    uint64_t start, length; /* of the record */
+    uint64_t start, length; /* of the chunk record */
     uint8_t head[T3R_MCAP_RECORD_HEAD_BYTES + T3R_MCAP_CHUNK_FIELDS];
     t3r_mcap_chunk_record fields; /* points into head */
     uint32_t channels;
@@ -56,7 +56,7 @@ static int read_back(const t3r_mcap_writer *writer, uint64_t offset, uint64_t en
     return writer->sink.read(writer->sink.user, offset, bytes, *count);
 }
 
-/* 0, or -1 where the file does not hold what was written. */
+/* Reads back a chunk. Returns 0, or -1 if the file does not hold what was written. */
 static int read_chunk(const t3r_mcap_writer *writer, uint64_t start, uint64_t end, written_chunk *out)
 {
     uint8_t indexes[T3R_MCAP_CHUNK_CHANNELS * MESSAGE_INDEX_BYTES];

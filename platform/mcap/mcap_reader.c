@@ -11,16 +11,16 @@
 #include "host/reason.h"
 #include "reader_limits.h"
 
-#define REST_BYTES (UINT64_C(32) << 20) /* of a file in the spill that are read before their pages may go */
+#define REST_BYTES (UINT64_C(32) << 20) /* read from a file in the spill before its pages may be dropped */
 
 typedef struct walk {
     const t3r_mcap_visitor *visitor;
     t3r_mcap_chunks *chunks;
     const uint8_t *bytes;
-    uint64_t limit;    /* records end here: at the end magic, or where a cut file ends */
+    uint64_t limit;    /* end of the records: at the end magic, or where the file was cut */
     bool cut;          /* the file has no end magic */
     uint64_t data_end; /* where the summary starts; 0 while in the data section */
-    bool damaged;      /* a chunk of a cut file is not what was written: reading ends in front of it */
+    bool damaged;      /* a chunk of a cut file is corrupt: reading ends before it */
     char *error;
     size_t error_bytes;
 } walk;
@@ -56,7 +56,7 @@ static int malformed(walk *w, uint8_t opcode, t3r_mcap_place place, const char *
 
 static const char *const short_fields = "a field reaches past the record's end";
 
-/* ---- records that visitors see ---- */
+/* ---- records that visitors get ---- */
 
 static int read_schema(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
@@ -124,8 +124,8 @@ static int count_message(walk *w)
     return w->chunks->bytes <= t3r_limit_unpacked_whole(w->limit) ? 0 : -1;
 }
 
-/* The records of a chunk; one that reaches past the end is an error, or, in a chunk that was cut, the end. 0,
- * T3R_MCAP_KEPT once the visitor keeps any of them, or -1. */
+/* Walks the records of a chunk. A record that reaches past the end is an error; in a cut chunk it ends the chunk.
+ * Returns 0, T3R_MCAP_KEPT if the visitor keeps any record, or -1. */
 static int walk_chunk(walk *w, const uint8_t *bytes, size_t count, uint64_t chunk_offset, bool cut, bool packed)
 {
     t3r_mcap_place place = {0, true, chunk_offset};
@@ -157,7 +157,7 @@ static int walk_chunk(walk *w, const uint8_t *bytes, size_t count, uint64_t chun
     return kept;
 }
 
-/* Room in w->chunks for one more; -1 when memory is out. */
+/* Makes room in w->chunks for one more; -1 when memory is out. */
 static int reserve_chunk(walk *w)
 {
     t3r_mcap_chunks *chunks = w->chunks;
@@ -166,7 +166,7 @@ static int reserve_chunk(walk *w)
     return grown != NULL ? 0 : -1;
 }
 
-/* What a chunk of that many bytes may not become, or 0: asked before memory is. */
+/* Refuses chunks of that many bytes, before memory is allocated; 0 if they are allowed. */
 static int check_unpacked(walk *w, t3r_mcap_place place, uint64_t bytes)
 {
     const uint64_t most = w->chunks->spill != NULL ? t3r_limit_unpacked(w->limit) : t3r_limit_unpacked_whole(w->limit);
@@ -206,7 +206,7 @@ static unpacked take_room(walk *w, size_t room)
     return out;
 }
 
-/* Keeps what messages point into, or frees it. */
+/* Keeps a chunk's records if messages point into them, else frees them. */
 static void leave_room(walk *w, const unpacked *u, bool is_kept)
 {
     t3r_mcap_chunks *chunks = w->chunks;
@@ -222,8 +222,9 @@ static void leave_room(walk *w, const unpacked *u, bool is_kept)
     }
 }
 
-/* Its records, in memory of their own, for leave_room() also when it fails, and *count of its bytes. NULL, or what is
- * wrong with the data, which a cut chunk may have; or -1 in *status, the reason given. */
+/* Decompresses a chunk's records into memory of their own, which leave_room() releases also on failure; *count is their
+ * size. Returns NULL, or what is wrong with the data, as happens in a cut chunk; other errors set *status to -1 with
+ * the reason given. */
 static const char *unpack_chunk(walk *w, const chunk *c, t3r_mcap_place place, unpacked *out, size_t *count,
                                 int *status)
 {
@@ -298,7 +299,7 @@ static int read_chunk(walk *w, t3r_mcap_fields *in, t3r_mcap_place place, uint64
 
 /* ---- the file ---- */
 
-/* The same of a file that lies in the spill, without all of it in memory at once. */
+/* Returns a CRC-32; a file in the spill is not brought into memory as a whole. */
 static uint32_t crc_of(const walk *w, const uint8_t *bytes, uint64_t count)
 {
     uint32_t crc = 0;
@@ -360,7 +361,7 @@ static int read_record(walk *w, uint8_t opcode, t3r_mcap_fields *in, t3r_mcap_pl
         return in->failed ? malformed(w, opcode, place, short_fields) : 0;
     case T3R_MCAP_FOOTER:
         return read_footer(w, in, place);
-    case T3R_MCAP_SCHEMA: /* those of the summary repeat the data section's */
+    case T3R_MCAP_SCHEMA: /* the summary repeats the data section's */
         return in_summary ? 0 : read_schema(w, in, place);
     case T3R_MCAP_CHANNEL:
         return in_summary ? 0 : read_channel(w, in, place);
@@ -379,12 +380,12 @@ static int read_record(walk *w, uint8_t opcode, t3r_mcap_fields *in, t3r_mcap_pl
                                                : read_data_end(w, in, place);
     case 0:
         return malformed(w, opcode, place, "0 is no opcode");
-    default: /* indexes, which a reader from front to back does not need, and extensions */
+    default: /* extensions, and indexes, which sequential reading does not need */
         return 0;
     }
 }
 
-/* The footer was read; what follows must be the end magic, or the part of it that a cut file has left. */
+/* Checks what follows the footer: the end magic, or the part of it that a cut file has left. */
 static int check_end(walk *w, uint64_t at, size_t count, t3r_mcap_end *end)
 {
     uint64_t rest = count - at;
@@ -432,7 +433,7 @@ int t3r_mcap_read(const uint8_t *bytes, size_t count, const t3r_mcap_visitor *vi
         const uint64_t head_bytes = rest < T3R_MCAP_RECORD_HEAD_BYTES ? rest : T3R_MCAP_RECORD_HEAD_BYTES;
         const uint64_t there = fits ? head.bytes : rest - head_bytes;
         t3r_mcap_fields in = {bytes + at + head_bytes, (size_t)there, 0, false};
-        /* A file system may leave zeros behind where a file was cut. */
+        /* A file system may leave zeros where a file was cut. */
         if (w.cut && (!fits || head.opcode == 0)) {
             *end = (t3r_mcap_end){true, at};
             return head.opcode == T3R_MCAP_CHUNK && there > 0 && w.data_end == 0

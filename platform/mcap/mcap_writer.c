@@ -118,7 +118,7 @@ void t3r_mcap_message(t3r_mcap_writer *writer, uint16_t channel, uint32_t sequen
 
 void t3r_mcap_data_end(t3r_mcap_writer *writer)
 {
-    uint32_t crc = writer->crc; /* of everything in front of this record */
+    uint32_t crc = writer->crc; /* of everything before this record */
     t3r_mcap_record(writer, T3R_MCAP_DATA_END, 4);
     t3r_mcap_put_u32(writer, crc);
     writer->crc = 0;
@@ -129,7 +129,7 @@ void t3r_mcap_finish(t3r_mcap_writer *writer, uint64_t summary_start, uint64_t s
     t3r_mcap_record(writer, T3R_MCAP_FOOTER, 8 + 8 + 4);
     t3r_mcap_put_u64(writer, summary_start);
     t3r_mcap_put_u64(writer, summary_offset_start);
-    t3r_mcap_put_u32(writer, writer->crc); /* of the summary and this record up to here */
+    t3r_mcap_put_u32(writer, writer->crc); /* of the summary and this record so far */
     t3r_mcap_put_raw(writer, T3R_MCAP_MAGIC, T3R_MCAP_MAGIC_BYTES);
 }
 

@@ -10,9 +10,9 @@
 #include "host/grow.h"
 
 enum { ALIGNMENT = 16 };
-#define PART_BYTES ((size_t)64 << 20) /* far fewer mappings than the system allows a process */
+#define PART_BYTES ((size_t)64 << 20) /* large, so that mappings stay far below the system's limit */
 
-/* A file in the folder that has no name, or none any longer; -1: none. */
+/* Opens a nameless or already unlinked file in the folder; -1 on failure. */
 static int open_in(const char *folder)
 {
     int file = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC | O_EXCL, 0600);
@@ -35,7 +35,8 @@ static int open_file(t3r_spill *spill)
     return spill->file - 1;
 }
 
-/* Room is taken on the disk before the pages are touched: without it a write to them would end the process. */
+/* Adds a part. Its disk space is reserved first: otherwise, on a full disk, a write to its pages would end the
+ * process. */
 static int add_part(t3r_spill *spill, size_t count)
 {
     const size_t bytes = count > PART_BYTES ? (count + 65535) / 65536 * 65536 : PART_BYTES; /* whole pages */
@@ -81,8 +82,7 @@ void t3r_spill_return(t3r_spill *spill, size_t count)
 void t3r_spill_rest(const t3r_spill *spill)
 {
     for (size_t i = 0; i < spill->part_count; i++) {
-        (void)madvise(spill->parts[i].bytes, spill->parts[i].count,
-                      MADV_DONTNEED); /* of a shared file: they stay in it */
+        (void)madvise(spill->parts[i].bytes, spill->parts[i].count, MADV_DONTNEED); /* the file keeps the pages */
     }
 }
 

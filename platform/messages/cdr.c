@@ -4,7 +4,7 @@
 
 #define ENCAPSULATION_BYTES 4u
 
-/* `size` bytes at the next multiple of `size`, or NULL; size is a power of two */
+/* Returns the `size` bytes at the next multiple of `size`, or NULL; size is a power of two. */
 static const uint8_t *take_aligned(t3r_cdr_reader *reader, size_t size)
 {
     size_t padding = (size - (reader->at - ENCAPSULATION_BYTES) % size) % size;
@@ -63,7 +63,7 @@ uint64_t t3r_cdr_get_u64(t3r_cdr_reader *reader)
 
 t3r_text t3r_cdr_get_string(t3r_cdr_reader *reader)
 {
-    uint32_t count = t3r_cdr_get_u32(reader); /* with the terminating zero */
+    uint32_t count = t3r_cdr_get_u32(reader); /* includes the terminating zero */
     const uint8_t *bytes = take_raw(reader, count);
     if (bytes == NULL || count == 0) {
         return (t3r_text){"", 0};

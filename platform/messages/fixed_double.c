@@ -4,7 +4,7 @@
 
 _Static_assert(sizeof(double) == 8, "double must be IEEE 754 binary64");
 
-/* mantissa x 2^exponent, round-half-even; mantissa < 2^53 */
+/* Converts mantissa x 2^exponent, round-half-even; mantissa < 2^53. */
 static int scale(int negative, uint64_t mantissa, int32_t exponent, int64_t *fixed)
 {
     uint64_t magnitude;

@@ -7,7 +7,7 @@
 
 /* ---- images ---- */
 
-/* Rows of row_bytes at image->step must lie inside the data. */
+/* Checks that rows of row_bytes, image->step apart, lie inside the data. */
 static const char *rows_error(const t3r_ros_image *image, uint32_t row_bytes, uint32_t rows)
 {
     if (image->step < row_bytes) {
@@ -84,8 +84,8 @@ const char *t3r_message_depth(const t3r_ros_image *image, t3r_frame *frame)
     return NULL;
 }
 
-/* Metres as a float's bits to steps of the unit: to Q40, then divided, both round-half-even. 0 = no measurement: NaN,
- * infinity, nothing, behind the camera, or more than 65535 steps. */
+/* Converts metres, a float's bits, to steps of the unit: to Q40, then divided, both round-half-even. 0 = no
+ * measurement: NaN, infinity, zero, behind the camera, or more than 65535 steps. */
 static uint16_t steps_of_metres(uint32_t bits, uint64_t unit_q40)
 {
     int64_t depth_q40;
@@ -114,7 +114,8 @@ void t3r_message_to_z16(const t3r_ros_image *image, uint64_t unit_q40, uint8_t *
     const bool metres = t3r_message_is_metres(image);
     for (uint32_t y = 0; y < image->height; y++) {
         const uint8_t *row = image->data + (size_t)y * image->step;
-        for (uint32_t x = 0; x < image->width; x++, out += 2) { /* what is written was read before */
+        for (uint32_t x = 0; x < image->width;
+             x++, out += 2) { /* in place: a sample is read before it is overwritten */
             const uint8_t *sample = row + (size_t)x * (metres ? 4 : 2);
             t3r_store_le16(out, metres ? steps_of_metres(load32(image, sample), unit_q40) : load16(image, sample));
         }
@@ -157,7 +158,7 @@ static const char *read_distortion(const t3r_ros_camera_info *info, t3r_camera *
     return NULL;
 }
 
-/* Binning and regions of interest would need K adapted; recordings of whole images have neither. */
+/* Refuses binning and regions of interest, which would need an adapted K; recordings of whole images have neither. */
 static const char *window_error(const t3r_ros_camera_info *info)
 {
     if (info->binning_x > 1 || info->binning_y > 1) {

@@ -11,7 +11,7 @@ bool t3r_ros_is_named(t3r_ros_type type, t3r_text name)
     while (full.chars[package] != '/') {
         package++;
     }
-    size_t rest = full.count - package - 4; /* behind "/msg" */
+    size_t rest = full.count - package - 4; /* after "/msg" */
     return t3r_text_same(name, full) || (name.count == package + rest && memcmp(name.chars, full.chars, package) == 0 &&
                                          memcmp(name.chars + package, full.chars + package + 4, rest) == 0);
 }
@@ -31,7 +31,7 @@ static const char *get_header(t3r_cdr_reader *in, t3r_ros_header *header)
     return nanoseconds < NS_PER_S ? NULL : "header.stamp.nanosec is over 999999999";
 }
 
-/* A message that begins with its header. */
+/* Opens a message that begins with a header. */
 static const char *open_message(t3r_cdr_reader *in, const uint8_t *bytes, size_t count, t3r_ros_header *header)
 {
     t3r_cdr_open(in, bytes, count);
@@ -125,7 +125,7 @@ const char *t3r_ros_read_compressed(const uint8_t *bytes, size_t count, t3r_ros_
 
 /* ---- poses ---- */
 
-/* The fields in their order: h header, c child_frame_id, p position and rotation; what stands behind is not read. */
+/* The fields in order: h header, c child_frame_id, p position and rotation; the rest is not read. */
 static const char *const pose_fields[T3R_ROS_TYPE_COUNT] = {
     [T3R_ROS_POSE] = "hp",
     [T3R_ROS_TRANSFORM] = "hcp",

@@ -1,5 +1,5 @@
-/* The ROS 2 messages of a recording, read from and written to CDR. Doubles stay the 64 bits that the file holds
- * (names end in _f64): what they mean in fixed point is decided in recording_frame.c. */
+/* The ROS 2 messages of a recording, read from and written to CDR. Doubles stay the 64 bits of the file (names end in
+ * _f64); recording_frame.c converts them to fixed point. */
 #ifndef T3R_PLATFORM_ROS_MESSAGES_H
 #define T3R_PLATFORM_ROS_MESSAGES_H
 
@@ -9,9 +9,9 @@
 #include "cdr.h"
 #include "host/text.h"
 
-#define T3R_ROS_MAX_D 16u /* most distortion coefficients of any model in use are 14 */
+#define T3R_ROS_MAX_D 16u /* no model in use has more than 14 distortion coefficients */
 
-/* Messages that trim3r reads; IMAGE, CAMERA_INFO, POSE and TF are those that it writes. */
+/* Messages that trim3r reads; it writes IMAGE, CAMERA_INFO, POSE and TF. */
 typedef enum t3r_ros_type {
     T3R_ROS_IMAGE,
     T3R_ROS_CAMERA_INFO,
@@ -26,12 +26,12 @@ typedef enum t3r_ros_type {
 
 /* "sensor_msgs/msg/Image" ... */
 extern const char *const t3r_ros_names[T3R_ROS_TYPE_COUNT];
-/* Whether a schema is that message's: "package/msg/Type", from older writers "package/Type". */
+/* Whether a schema name is that message's: "package/msg/Type", or "package/Type" from older writers. */
 bool t3r_ros_is_named(t3r_ros_type type, t3r_text name);
-/* The message and all that it refers to, as MCAP's schema encoding "ros2msg" wants it; of those that trim3r writes. */
+/* Definitions of the messages that trim3r writes, with all that they refer to, in MCAP's schema encoding "ros2msg". */
 extern const char *const t3r_ros_schemas[T3R_ROS_TYPE_COUNT];
 
-/* What only the recorder writes: lines of text. */
+/* Only the recorder writes these: lines of text. */
 extern const char *const t3r_ros_log_name;
 extern const char *const t3r_ros_log_schema;
 
@@ -45,13 +45,12 @@ typedef struct t3r_ros_image {
     uint32_t height, width;
     t3r_text encoding;
     bool is_bigendian;
-    uint32_t step; /* bytes from row to row */
+    uint32_t step; /* bytes between the starts of rows */
     const uint8_t *data;
     uint32_t data_bytes;
 } t3r_ros_image;
 
-/* sensor_msgs/msg/CompressedImage: a file, JPEG or PNG, behind a header of its own where format says compressedDepth.
- */
+/* sensor_msgs/msg/CompressedImage: a JPEG or PNG file; if format says compressedDepth, after a header of its own. */
 typedef struct t3r_ros_compressed {
     t3r_ros_header header;
     t3r_text format;
@@ -71,25 +70,25 @@ typedef struct t3r_ros_camera_info {
     bool roi_rectify;
 } t3r_ros_camera_info;
 
-/* What all messages of a pose have in common: from the child's frame to header.frame_id. */
+/* The common fields of all pose messages: from the child's frame to header.frame_id. */
 typedef struct t3r_ros_pose {
     t3r_ros_header header;
-    t3r_text child_frame_id; /* of TransformStamped and Odometry, else empty */
+    t3r_text child_frame_id; /* for TransformStamped and Odometry, else empty */
     uint64_t position_f64[3];
     uint64_t rotation_f64[4]; /* x y z w */
 } t3r_ros_pose;
 
-/* NULL, or which field is malformed or cut short. Texts and data point into the message. */
+/* Return NULL, or which field is malformed or cut short. Texts and data point into the message. */
 const char *t3r_ros_read_image(const uint8_t *bytes, size_t count, t3r_ros_image *image);
-/* The same of the message's first bytes: all but its data, which is NULL and begins at *data_at. */
+/* Reads the first bytes of an image message: all but its data, which is NULL and begins at *data_at. */
 const char *t3r_ros_read_image_head(const uint8_t *bytes, size_t count, t3r_ros_image *image, size_t *data_at);
 const char *t3r_ros_read_camera_info(const uint8_t *bytes, size_t count, t3r_ros_camera_info *info);
 const char *t3r_ros_read_compressed(const uint8_t *bytes, size_t count, t3r_ros_compressed *image);
-/* Of PoseStamped, TransformStamped, Odometry and PoseWithCovarianceStamped, for which t3r_ros_is_pose() holds. */
+/* Reads PoseStamped, TransformStamped, Odometry and PoseWithCovarianceStamped, for which t3r_ros_is_pose() holds. */
 const char *t3r_ros_read_pose(t3r_ros_type type, const uint8_t *bytes, size_t count, t3r_ros_pose *pose);
 bool t3r_ros_is_pose(t3r_ros_type type);
 
-/* The transforms of a TFMessage, one after the other: open, then next while `left`. */
+/* The transforms of a TFMessage in order: open, then next while `left`. */
 typedef struct t3r_ros_tf {
     t3r_cdr_reader in;
     uint32_t left;
@@ -104,12 +103,12 @@ typedef struct t3r_ros_log {
     t3r_text name, message;
 } t3r_ros_log;
 
-/* The stamp must lie in 0 .. 2^31 seconds. An image is written up to the count of its data; the caller's
- * t3r_cdr_put_raw() adds the data_bytes bytes themselves. */
+/* Write messages, whose stamp must lie in 0 .. 2^31 seconds. An image is written up to the count of its data; the
+ * caller adds the data_bytes bytes by t3r_cdr_put_raw(). */
 void t3r_ros_write_image_head(t3r_cdr_writer *out, const t3r_ros_image *image);
 void t3r_ros_write_camera_info(t3r_cdr_writer *out, const t3r_ros_camera_info *info);
 void t3r_ros_write_pose(t3r_cdr_writer *out, const t3r_ros_pose *pose);
-/* tf2_msgs/msg/TFMessage of this one transform, child to frame. */
+/* Writes a tf2_msgs/msg/TFMessage of this one transform, child to frame. */
 void t3r_ros_write_tf(t3r_cdr_writer *out, const t3r_ros_pose *pose);
 void t3r_ros_write_log(t3r_cdr_writer *out, const t3r_ros_log *log);
 

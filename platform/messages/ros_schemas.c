@@ -1,5 +1,5 @@
-/* Names and definitions of the ROS 2 messages in use: field for field those of ros2/common_interfaces (foxy and
- * later), without their comments. */
+/* Names and definitions of the ROS 2 messages in use: the fields of ros2/common_interfaces (foxy and later), without
+ * comments. */
 #include "ros_messages.h"
 
 #define RULER "================================================================================\n"

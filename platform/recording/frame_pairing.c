@@ -55,7 +55,7 @@ t3r_pairing_verdict t3r_pairing_decide(const t3r_pairing *pairing, int64_t now_n
     if (gap > pairing->near_ns) {
         return T3R_PAIRING_COLOUR; /* later ones are farther still */
     }
-    /* a depth image of before may yet be beaten by the next one, unless that will be farther away */
+    /* an earlier depth image may be followed by a nearer one, unless the interval rules that out */
     bool nearest = gap >= 0 || more || (pairing->depth_interval_ns != 0 && -gap <= pairing->depth_interval_ns / 2);
     return nearest || over ? T3R_PAIRING_BOTH : T3R_PAIRING_WAIT;
 }

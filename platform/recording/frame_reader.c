@@ -9,9 +9,9 @@
 #include "messages/message_frame.h"
 #include "pixel_layout.h"
 
-#define DEFAULT_UNIT_Q40 1099511628 /* 0.001, of recordings without the metadata "trim3r" */
+#define DEFAULT_UNIT_Q40 1099511628 /* 0.001, for recordings without the metadata "trim3r" */
 
-/* A record, between its head and its end. */
+/* A record's opcode and where its body begins and ends. */
 typedef struct record {
     uint8_t opcode;
     uint64_t at, bytes;
@@ -41,7 +41,7 @@ static int read_at(t3r_frame_reader *reader, uint64_t offset, void *bytes, size_
 
 /* ---- records ---- */
 
-/* The record at reader->at: 1, or 0 where the file ends, or is cut off. */
+/* Reads the head of the record at reader->at. Returns 1, or 0 at the end of the file or where it is cut off. */
 static int read_record(t3r_frame_reader *reader, record *out)
 {
     if (reader->chunk_end != 0 && reader->at == reader->chunk_end) {
@@ -75,7 +75,7 @@ static int open_fields(t3r_frame_reader *reader, const record *r, size_t most, t
     return read_at(reader, r->at, reader->small, count);
 }
 
-/* ---- what the file says of its messages ---- */
+/* ---- schemas and channels ---- */
 
 static uint8_t type_named(t3r_text name)
 {
@@ -96,7 +96,7 @@ static uint8_t type_of(const t3r_frame_reader_name *names, uint32_t count, uint1
     return T3R_ROS_TYPE_COUNT;
 }
 
-/* Keeps the first name of an id, of messages that are read; there is room for those of trim3r's recordings. */
+/* Keeps the first name of an id whose messages are read. There is room for all names of trim3r's own recordings. */
 static void keep(t3r_frame_reader_name *names, uint32_t *count, uint16_t id, uint8_t type)
 {
     if (type < T3R_ROS_TYPE_COUNT && *count < T3R_FRAME_READER_NAMES &&
@@ -150,7 +150,7 @@ static int read_metadata(t3r_frame_reader *reader, const record *r)
     return 0;
 }
 
-/* Goes on with the records within the chunk. */
+/* Continues with the records inside the chunk. */
 static int enter_chunk(t3r_frame_reader *reader, const record *r)
 {
     t3r_mcap_fields in;
@@ -174,7 +174,7 @@ static int enter_chunk(t3r_frame_reader *reader, const record *r)
 
 /* ---- messages ---- */
 
-/* Whether an image message begins as one of depth does. */
+/* Whether an image message is of depth, by its first bytes. */
 static int is_depth_image(t3r_frame_reader *reader, const record *data, bool *depth)
 {
     const size_t count = data->bytes < sizeof reader->small ? (size_t)data->bytes : sizeof reader->small;
@@ -193,7 +193,7 @@ static int is_depth_image(t3r_frame_reader *reader, const record *data, bool *de
     return in.failed ? fail(reader, "an image message is cut short") : 0;
 }
 
-/* Reads the message but its rows. */
+/* Reads a message except its rows. */
 static int read_image(t3r_frame_reader *reader, const record *data, t3r_frame_reader_image *image)
 {
     const size_t count = data->bytes < sizeof reader->small ? (size_t)data->bytes : sizeof reader->small;
@@ -232,7 +232,8 @@ static int read_depth(t3r_frame_reader *reader, const record *data, instant *now
     if (wrong != NULL) {
         return fail(reader, wrong);
     }
-    message->encoding = t3r_text_of(t3r_message_is_metres(message) ? "32FC1" : "16UC1"); /* its own is written over */
+    message->encoding =
+        t3r_text_of(t3r_message_is_metres(message) ? "32FC1" : "16UC1"); /* replaced, because its own is overwritten */
     now->frame.depth_unit_q40 = reader->depth_unit_q40;
     return 0;
 }
@@ -246,7 +247,7 @@ static int read_any_image(t3r_frame_reader *reader, uint16_t channel, const reco
         }
         int32_t *chosen = depth ? &reader->depth_channel : &reader->colour_channel;
         if (*chosen >= 0) {
-            return 0; /* the first one of its kind counts */
+            return 0; /* the first one of a kind counts */
         }
         *chosen = channel;
     }
@@ -291,7 +292,7 @@ static int read_small(t3r_frame_reader *reader, t3r_ros_type type, const record 
                                        : read_pose(reader, type, reader->small, count, now);
 }
 
-/* header.stamp, with which every message that is read begins, or the log time where that is 0. */
+/* Reads header.stamp, with which every message of these types begins; 0 stands for the log time. */
 static int read_stamp(t3r_frame_reader *reader, const record *data, uint64_t log_ns, int64_t *stamp_ns)
 {
     uint8_t bytes[12]; /* the encapsulation, seconds, nanoseconds */
@@ -309,7 +310,7 @@ static int read_stamp(t3r_frame_reader *reader, const record *data, uint64_t log
     return in.failed ? fail(reader, "a message is no plain CDR") : 0;
 }
 
-/* 1: the message belongs to the next instant, and stays where it is. */
+/* Reads a message. Returns 1, and leaves it in place, if it belongs to the next instant. */
 static int read_message(t3r_frame_reader *reader, const record *r, instant *now)
 {
     t3r_mcap_fields in;
@@ -342,7 +343,7 @@ static int read_message(t3r_frame_reader *reader, const record *r, instant *now)
                                  : read_small(reader, (t3r_ros_type)type, &data, now);
 }
 
-/* 1: the instant is whole. */
+/* Reads a record. Returns 1 if the instant is complete. */
 static int take_record(t3r_frame_reader *reader, const record *r, instant *now)
 {
     switch (r->opcode) {
@@ -414,7 +415,7 @@ int t3r_frame_reader_find(t3r_frame_reader *reader, t3r_capture_frame *frame)
     record r;
     while (status == 0 && reader->error == NULL && read_record(reader, &r) == 1) {
         if (r.opcode == T3R_MCAP_DATA_END) {
-            break; /* what follows is an index */
+            break; /* an index follows */
         }
         if (r.opcode == T3R_MCAP_CHUNK) {
             status = enter_chunk(reader, &r);
@@ -439,7 +440,7 @@ static int check_rows(t3r_frame_reader *reader, const t3r_frame_reader_image *fr
     return row <= height && rows <= height - row ? 0 : fail(reader, "these rows are not in the image");
 }
 
-/* Rows of the source, from one on; NV12 has those of its chroma behind the others. */
+/* Reads rows of the source from `row` on; the chroma rows of NV12 follow its others. */
 static int read_rows(t3r_frame_reader *reader, const t3r_frame_reader_image *from, uint32_t row, uint32_t rows,
                      uint8_t *out)
 {
@@ -467,7 +468,7 @@ static int read_colour_rows(t3r_frame_reader *reader, t3r_frame *frame, uint32_t
                : -1;
 }
 
-/* Samples become steps where they stand. */
+/* Converts samples to steps in place. */
 static int read_depth_rows(t3r_frame_reader *reader, t3r_frame *frame, uint32_t row, uint32_t rows)
 {
     const t3r_frame_reader_image *from = &reader->depth_image;

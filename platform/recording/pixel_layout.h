@@ -1,4 +1,4 @@
-/* How the pixel formats lie in memory and what ROS calls them: one table for writer and reader of recordings. */
+/* The memory layout of the pixel formats and their names in ROS: one table for writer and reader of recordings. */
 #ifndef T3R_PLATFORM_PIXEL_LAYOUT_H
 #define T3R_PLATFORM_PIXEL_LAYOUT_H
 
@@ -8,16 +8,17 @@
 #include "host/text.h"
 #include "trim3r.h"
 
-/* sensor_msgs' name of the format, as trim3r writes it ("nv12" is our own: ROS has no name for it). */
+/* Returns the name of the format in sensor_msgs, as trim3r writes it ("nv12" is our own: ROS has no name for it). */
 const char *t3r_pixel_encoding(t3r_pixel_format format);
-/* The format of an encoding, also by V4L2's names; false when it is none of trim3r's colour formats. */
+/* Finds the format of an encoding, also by V4L2's names. False for an encoding that is none of trim3r's colour
+ * formats. */
 bool t3r_pixel_format_of(t3r_text encoding, t3r_pixel_format *format);
 
-/* Bytes of a row of plane 0 without padding. */
+/* Returns the bytes of a row of plane 0 without padding. */
 uint32_t t3r_pixel_row_bytes(t3r_pixel_format format, uint32_t width);
-/* Rows of plane 0 and of plane 1 (NV12, else 0). */
+/* Returns the rows of plane 0 or plane 1 (0 except for NV12). */
 uint32_t t3r_pixel_rows(t3r_pixel_format format, uint32_t plane, uint32_t height);
-/* NULL, or why an image of this format cannot have this size. */
+/* Returns NULL, or why an image of this format cannot have this size. */
 const char *t3r_pixel_size_error(t3r_pixel_format format, uint32_t width, uint32_t height);
 
 #endif

@@ -1,7 +1,7 @@
 #include "mcap/reader_limits.h"
 #include "recorder.h"
 
-/* Writes the messages of a chunk; each call begins with the same counts and writes the same. */
+/* Writes the messages of a chunk; every call starts from the same counts and writes the same bytes. */
 typedef void (*put_messages)(t3r_recorder *recorder, const void *item);
 
 void t3r_recorder_begin_message(t3r_recorder *recorder, uint32_t channel, int64_t stamp_ns, uint64_t data_bytes)
@@ -28,7 +28,7 @@ void t3r_recorder_end_message(t3r_recorder *recorder)
     }
 }
 
-/* put() into another sink (write NULL: nowhere); what went there. */
+/* Runs put() into another sink (write NULL: nowhere). Returns the writer's state afterwards. */
 static t3r_mcap_writer divert(t3r_recorder *recorder, t3r_sink sink, put_messages put, const void *item)
 {
     const t3r_mcap_writer out = recorder->out;
@@ -39,8 +39,8 @@ static t3r_mcap_writer divert(t3r_recorder *recorder, t3r_sink sink, put_message
     return diverted;
 }
 
-/* The records packed, in the packer's memory. False where they are to be stored as they are: without a packer, where
- * packing gains nothing, and where it gains more than a reader takes from a small file. */
+/* Compresses the records into the packer's memory. Returns false if they are to be stored uncompressed: without a
+ * packer, if compression gains nothing, or if the ratio is higher than a reader accepts from a small file. */
 static bool pack(t3r_recorder *recorder, put_messages put, const void *item, uint64_t bytes, const uint8_t **packed,
                  size_t *packed_bytes)
 {

@@ -1,4 +1,4 @@
-/* A frame and an event as ROS 2 messages. */
+/* Writes a frame and an event as ROS 2 messages. */
 #include <stdbool.h>
 
 #include "core/little_endian.h"
@@ -35,7 +35,7 @@ static void put_camera_info(t3r_recorder *recorder, int64_t stamp_ns, const t3r_
     t3r_recorder_end_message(recorder);
 }
 
-/* The frame that images, intrinsics and poses belong to. */
+/* The coordinate frame that images, intrinsics and poses belong to. */
 static t3r_ros_pose pose_of(const t3r_recorder *recorder, int64_t stamp_ns, const t3r_recorded_camera *camera)
 {
     t3r_ros_pose pose = {.header = {stamp_ns, t3r_text_of(T3R_RECORDER_WORLD)},
@@ -49,7 +49,7 @@ static t3r_ros_pose pose_of(const t3r_recorder *recorder, int64_t stamp_ns, cons
     return pose;
 }
 
-/* As PoseStamped, or as TFMessage. */
+/* Writes a pose as PoseStamped or as TFMessage. */
 static void put_pose(t3r_recorder *recorder, uint32_t channel, const t3r_ros_pose *pose)
 {
     void (*const write)(t3r_cdr_writer * out, const t3r_ros_pose *pose) =
@@ -63,7 +63,7 @@ static void put_pose(t3r_recorder *recorder, uint32_t channel, const t3r_ros_pos
     t3r_recorder_end_message(recorder);
 }
 
-/* Opens the message of an image; its data follow through the returned writer. */
+/* Opens an image message; its data follow through the returned writer. */
 static t3r_cdr_writer begin_image(t3r_recorder *recorder, uint32_t channel, const t3r_ros_image *image)
 {
     t3r_cdr_writer counter, cdr;

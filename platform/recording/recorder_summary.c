@@ -1,4 +1,4 @@
-/* What stands before the messages of a recording, and behind them. */
+/* What precedes and follows the messages of a recording. */
 #include <string.h>
 
 #include "recorder.h"
@@ -6,7 +6,7 @@
 
 #define TOPIC_ROOM (T3R_RECORDER_CAMERA_ROOM + 16u)
 
-/* In the order of their ids, from 1 on; the last one is that of the events. */
+/* In the order of their ids, from 1 on; the events' schema is last. */
 static const struct {
     const char *const *name, *const *definition;
 } schemas[] = {
@@ -18,7 +18,7 @@ static const struct {
 };
 enum { SCHEMA_IMAGE = 1, SCHEMA_CAMERA_INFO, SCHEMA_POSE, SCHEMA_TF, SCHEMA_LOG };
 
-/* Below the camera's topic, but for those that begin with a slash. */
+/* Below the camera's topic, except names that begin with a slash. */
 static const struct {
     const char *name;
     uint16_t schema;
@@ -75,7 +75,7 @@ static t3r_text decimal(uint32_t x, char room[10])
     return (t3r_text){room + at, 10 - at};
 }
 
-/* "0,2,1;3,5,4": context a, context b, target. Returns the bytes; out may be NULL to count only. */
+/* Writes "0,2,1;3,5,4": context a, context b, target. Returns the bytes; out may be NULL to count only. */
 static size_t put_triplets(t3r_mcap_writer *out, const t3r_triplet *triplets, uint32_t count)
 {
     size_t bytes = 0;

@@ -1,4 +1,4 @@
-/* Which streams make up the frames, and why the others do not. */
+/* Chooses which streams make up the frames, and says why the others do not. */
 #include <stdio.h>
 #include <string.h>
 
@@ -6,16 +6,16 @@
 #include "recording_index.h"
 
 #define NO_STREAM T3R_NO_STREAM
-#define MOST_LEVELS 8u /* of a topic that are looked at, so that names of slashes cost no more */
+#define MOST_LEVELS 8u /* levels of a topic that are compared: bounds the cost of names full of slashes */
 
 const char *const t3r_stream_use_names[T3R_USE_COUNT] = {
     "", "colour", "depth", "camera_info", "camera_info of depth", "pose", "transforms"};
 
-/* The topic's bytes up to and with the slash before its name. An image_transport topic, /a/image_raw/compressed, counts
- * as the one that it was made of. */
+/* Returns the length of the topic up to and including the slash before its name. An image_transport topic such as
+ * /a/image_raw/compressed counts as the topic that it was made from. */
 static size_t prefix_bytes(const t3r_stream *stream)
 {
-    size_t slashes[2] = {0, 0}; /* the bytes up to the last one and to the one before it */
+    size_t slashes[2] = {0, 0}; /* lengths up to the last slash and up to the one before */
     for (size_t i = 0; stream->topic[i] != '\0'; i++) {
         if (stream->topic[i] == '/') {
             slashes[1] = slashes[0];
@@ -36,7 +36,7 @@ static bool has_role(const t3r_recording *recording, size_t i, t3r_stream_role r
     return recording->streams[i].role == role;
 }
 
-/* The first that is neither compressed nor mono, else the first that is not mono, else the first. */
+/* Chooses the first stream that is neither compressed nor mono, else the first not mono, else the first. */
 static size_t choose_colour(const t3r_recording *recording)
 {
     size_t best = NO_STREAM;
@@ -52,7 +52,7 @@ static size_t choose_colour(const t3r_recording *recording)
     return best;
 }
 
-/* The first of this role below the prefix of another stream, else the only one in the file. */
+/* Chooses the first stream of this role below another stream's prefix, else the only one in the file. */
 static size_t choose_companion(const t3r_recording *recording, t3r_stream_role role, size_t of)
 {
     const t3r_stream *camera = &recording->streams[of];
@@ -69,7 +69,7 @@ static size_t choose_companion(const t3r_recording *recording, t3r_stream_role r
     return count == 1 ? only : NO_STREAM;
 }
 
-/* How much a depth stream is to be preferred among those below a prefix. */
+/* Ranks a depth stream among those below a prefix. */
 static uint32_t depth_rank(const t3r_recording *recording, size_t i)
 {
     const t3r_stream *stream = &recording->streams[i], *colour = &recording->streams[recording->colour];
@@ -84,7 +84,8 @@ static size_t prefix_above(const t3r_stream *stream, size_t prefix)
     return prefix;
 }
 
-/* Below the longest prefix of the colour topic that has any; the only one where that is the root. */
+/* Chooses depth below the longest prefix of the colour topic that has any; if that is the root, only a single
+ * stream. */
 static size_t choose_depth(const t3r_recording *recording)
 {
     const t3r_stream *colour = &recording->streams[recording->colour];
@@ -107,7 +108,7 @@ static size_t choose_depth(const t3r_recording *recording)
     return choose_companion(recording, T3R_STREAM_DEPTH, recording->colour);
 }
 
-/* The depth camera's own: the one below its prefix, where that is not the colour camera's. */
+/* Chooses the depth camera's own camera_info: the one below depth's prefix, if that is not colour's. */
 static size_t choose_depth_info(const t3r_recording *recording)
 {
     if (recording->depth == NO_STREAM) {
@@ -123,7 +124,7 @@ static size_t choose_depth_info(const t3r_recording *recording)
     return NO_STREAM;
 }
 
-/* The topic of that name and role into *found, which stays without a name. */
+/* Finds the topic of that name and role. *found is unchanged without a name. */
 static int find_named(const t3r_recording *recording, const char *topic, t3r_stream_role role, const char *what,
                       size_t *found, char *error, size_t error_bytes)
 {
@@ -143,7 +144,7 @@ static int find_named(const t3r_recording *recording, const char *topic, t3r_str
                       what);
 }
 
-/* ---- uses, and why not ---- */
+/* ---- uses, and reasons against them ---- */
 
 static void mark(t3r_recording *recording, size_t i, t3r_stream_use use)
 {
@@ -152,7 +153,7 @@ static void mark(t3r_recording *recording, size_t i, t3r_stream_use use)
     }
 }
 
-/* Whether frames need transforms: poses come from nowhere else, or belong to other frames than colour's. */
+/* Whether frames need transforms: there are no other poses, or the poses belong to another frame than colour's. */
 static bool needs_transforms(const t3r_recording *recording)
 {
     t3r_text camera = recording->streams[recording->colour].frame_id;
@@ -222,7 +223,7 @@ static void remark_reason(t3r_recording *recording, const char **reason, const c
     t3r_recording_remark(recording, "%s: trim3r import %s", why, what);
 }
 
-/* What a frame that is read as it stands lacks. */
+/* Remarks what frames lack if they are read without import. */
 static void remark_import(t3r_recording *recording)
 {
     const t3r_stream *colour = &recording->streams[recording->colour];

@@ -16,7 +16,7 @@ int t3r_recording_file_open(t3r_recording_file *file, const char *path, bool syn
     return file->fd >= 0 ? 0 : t3r_reason(error, error_bytes, "%s: %s", path, strerror(errno));
 }
 
-/* A signal interrupts a write at most between bytes; what is left goes on. */
+/* Writes all bytes; goes on after a signal interrupted a write. */
 static int write_all(int fd, const uint8_t *bytes, size_t count)
 {
     while (count > 0) {

@@ -1,4 +1,4 @@
-/* One frame of a recording, of its messages. */
+/* Reads one frame of a recording from its messages. */
 #include "recording_index.h"
 
 #include <inttypes.h>
@@ -9,7 +9,7 @@
 #include "pixel_layout.h"
 #include "host/reason.h"
 
-/* Which frame is being read, and where its reasons go. */
+/* The frame being read, and where reasons go. */
 typedef struct reading {
     const t3r_recording *recording;
     uint32_t index;
@@ -26,7 +26,7 @@ static int fail(const reading *r, const t3r_stream *stream, const t3r_indexed_me
 
 /* ---- images ---- */
 
-/* A compressed image by the recording's decoder, whose sides are checked as those of others are. */
+/* Decodes a compressed image with the recording's decoder and checks its size. */
 static int decode(const reading *r, const t3r_stream *stream, const t3r_indexed_message *message, bool depth,
                   t3r_decoded_image *out)
 {
@@ -143,7 +143,7 @@ int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capt
                    recording->pairing.frames);
         return T3R_CAPTURE_FAILED;
     }
-    t3r_spill_rest(&recording->spill); /* of frames that were read before; their addresses stay */
+    t3r_spill_rest(&recording->spill); /* of frames that were read before; their addresses stay valid */
     const reading r = {recording, index, error, error_bytes};
     const t3r_frame_links *links = &recording->links[index];
     const t3r_set_pose *set =

@@ -30,15 +30,15 @@ typedef enum t3r_stream_role {
     T3R_STREAM_TF
 } t3r_stream_role;
 
-/* A channel. Messages are kept for the types that trim3r reads; others are counted. */
+/* A channel. Messages are kept for types that trim3r reads, and counted for others. */
 typedef struct t3r_stream {
     t3r_text name;        /* the topic as the file holds it; points into its bytes */
     char *topic, *schema; /* printable copies */
     uint16_t schema_id;
-    t3r_ros_type type; /* T3R_ROS_TYPE_COUNT = none that trim3r reads */
+    t3r_ros_type type; /* T3R_ROS_TYPE_COUNT = not read by trim3r */
     t3r_stream_role role;
     bool compressed, mono;             /* of images */
-    t3r_text frame_id, child_frame_id; /* of its first message that is kept; point into the file's bytes */
+    t3r_text frame_id, child_frame_id; /* of the first message that is kept; point into the file's bytes */
     t3r_stream_use use;
     char unused[T3R_UNUSED_BYTES]; /* why it is not read */
     uint64_t count;
@@ -47,12 +47,12 @@ typedef struct t3r_stream {
     size_t kept, capacity;
 } t3r_stream;
 
-/* Indices into the messages of the streams chosen; T3R_NO_MESSAGE = none. */
+/* Indices into the messages of the chosen streams; T3R_NO_MESSAGE = none. */
 typedef struct t3r_frame_links {
     size_t depth, pose, camera_info, depth_camera_info;
 } t3r_frame_links;
 
-/* What t3r_recording_set_pose() gave a frame. */
+/* A pose set by t3r_recording_set_pose(). */
 typedef struct t3r_set_pose {
     bool set;
     int64_t position_q32[3];
@@ -61,22 +61,22 @@ typedef struct t3r_set_pose {
 
 struct t3r_recording {
     uint8_t *file;   /* owned, or NULL */
-    t3r_spill spill; /* a large file, and chunks for which there is no room in memory */
+    t3r_spill spill; /* holds a large file, and chunks that do not fit in memory */
     t3r_mcap_chunks chunks;
     uint64_t file_bytes;
     t3r_mcap_end cut;
 
     t3r_stream *streams;
     size_t stream_count, stream_capacity;
-    size_t colour, depth, pose, camera_info, depth_camera_info; /* the streams chosen, or T3R_NO_STREAM */
-    size_t transforms;                                          /* the first of them */
+    size_t colour, depth, pose, camera_info, depth_camera_info; /* the chosen streams, or T3R_NO_STREAM */
+    size_t transforms;                                          /* the first stream of transforms */
     int64_t pair_ns;
     t3r_image_decoder decoder; /* decode NULL: none */
 
-    t3r_frame_links *links;  /* one a message of the colour stream */
-    uint8_t **depth_z16;     /* one a message of the depth stream: its samples as Z16 once asked for, when the file
-                                holds them otherwise */
-    t3r_set_pose *set_poses; /* one a message of the colour stream; NULL until one is set */
+    t3r_frame_links *links; /* one per message of the colour stream */
+    uint8_t **depth_z16; /* one per message of the depth stream: its samples as Z16 after the first request, if the file
+                            holds another format */
+    t3r_set_pose *set_poses; /* one per message of the colour stream; NULL until one is set */
     t3r_pairing_info pairing;
 
     uint32_t bits_epoch;
@@ -91,15 +91,15 @@ struct t3r_recording {
 /* Adds a remark to the note. */
 void t3r_recording_remark(t3r_recording *recording, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* recording_inspect.c: reads a message of a known type; its stamp, and on the stream what the first ones say of it:
- * role, frames. NULL, or what is wrong. *usable: it may belong to a frame. */
+/* recording_inspect.c: reads a message of a known type: its stamp, and what the first messages say of their stream
+ * (role, frames). Returns NULL, or what is wrong. *usable: it may belong to a frame. */
 const char *t3r_recording_inspect(t3r_recording *recording, t3r_stream *stream, const uint8_t *bytes, size_t count,
                                   int64_t *stamp_ns, bool *usable);
 
-/* recording_choice.c: chooses the streams. 0, or -1 with a reason where a topic that was named is not there. */
+/* recording_choice.c: chooses the streams. Returns 0, or -1 with a reason if a named topic is missing. */
 int t3r_recording_choose(t3r_recording *recording, const t3r_recording_choice *choice, char *error, size_t error_bytes);
 
-/* recording_pairing.c: links each colour image to its companions. 0, or -1 when memory is out. */
+/* recording_pairing.c: links each colour image to its companions. Returns 0, or -1 when memory is out. */
 int t3r_recording_pair(t3r_recording *recording);
 
 #endif

@@ -1,4 +1,4 @@
-/* What a recording says of itself. */
+/* What a recording reports about itself. */
 #include <string.h>
 
 #include "recording_index.h"
@@ -92,7 +92,7 @@ t3r_recorded_pose t3r_recording_pose(const t3r_recording *recording, uint32_t st
     const t3r_indexed_message *message = &s->messages[index];
     t3r_recorded_pose out = {.stamp_ns = message->stamp_ns};
     t3r_ros_pose pose = {0};
-    t3r_ros_read_pose(s->type, message->data, message->bytes, &pose); /* read once already when it was indexed */
+    t3r_ros_read_pose(s->type, message->data, message->bytes, &pose); /* valid: read when it was indexed */
     for (uint32_t i = 0; i < 3; i++) {
         out.position[i] = double_of_bits(pose.position_f64[i]);
     }

@@ -1,4 +1,4 @@
-/* What a message says of itself and of its stream. */
+/* What a message says about itself and its stream. */
 #include <string.h>
 
 #include "pixel_layout.h"
@@ -37,7 +37,7 @@ static bool text_holds(t3r_text text, const char *word)
     return false;
 }
 
-/* A PNG of 16-bit grey: sides, bits and kind stand at fixed places of its first record. */
+/* Whether a PNG is 16-bit grey: sides, bits and kind are at fixed places in its first record. */
 static bool is_png_of_depth(const uint8_t *bytes, size_t count)
 {
     return count > 26 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0 && bytes[24] == 16 && bytes[25] == 0;

@@ -1,4 +1,4 @@
-/* Remarks on a recording, one behind the other. */
+/* Remarks on a recording, one after the other. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* Which messages belong to one instant. */
+/* Decides which messages belong to one instant. */
 #include "recording_index.h"
 
 #include <stdlib.h>
@@ -13,7 +13,7 @@ static int by_stamp(const void *left, const void *right)
     return a->order < b->order ? -1 : a->order > b->order;
 }
 
-/* The first message not before `stamp` in a stream sorted by stamp; its count when there is none. */
+/* Returns the first message not before `stamp` in a stream sorted by stamp; the stream's count if there is none. */
 static size_t first_from(const t3r_stream *stream, int64_t stamp)
 {
     size_t low = 0, high = stream->kept;
@@ -28,7 +28,7 @@ static size_t first_from(const t3r_stream *stream, int64_t stamp)
     return low;
 }
 
-/* The message of the same stamp, else the nearest; of two equally near the earlier. */
+/* Returns the message of the same stamp, else the nearest; of two equally near the earlier. */
 static size_t nearest(const t3r_stream *stream, int64_t stamp)
 {
     size_t after = first_from(stream, stamp);
@@ -49,7 +49,7 @@ static int by_value(const void *left, const void *right)
     return (*a > *b) - (*a < *b);
 }
 
-/* The stamps of all colour images, ascending; NULL when memory is out. */
+/* Returns the stamps of all colour images, ascending; NULL when memory is out. */
 static int64_t *sorted_stamps(const t3r_stream *colour)
 {
     int64_t *stamps = malloc((colour->kept + 1) * sizeof *stamps);
@@ -62,8 +62,8 @@ static int64_t *sorted_stamps(const t3r_stream *colour)
     return stamps;
 }
 
-/* The nearest within near_ns that no other colour image has a better claim to, being of its very stamp; widens
- * *worst_ns to its distance. */
+/* Returns the nearest message within near_ns, unless its stamp is exactly another colour image's; widens *worst_ns to
+ * its distance. */
 static size_t pair_near(const t3r_stream *stream, int64_t stamp, const int64_t *taken, size_t taken_count,
                         int64_t near_ns, int64_t *worst_ns)
 {
@@ -81,7 +81,8 @@ static size_t pair_near(const t3r_stream *stream, int64_t stamp, const int64_t *
     return found;
 }
 
-/* Intrinsics hold until the next ones: the message of the same stamp, else the last one before, else the first. */
+/* Returns the intrinsics in force at `stamp`: the message of the same stamp, else the last one before, else the
+ * first. */
 static size_t pair_standing(const t3r_stream *stream, int64_t stamp)
 {
     size_t after = first_from(stream, stamp);

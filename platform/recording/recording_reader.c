@@ -1,4 +1,4 @@
-/* Recordings: from MCAP records to streams of indexed messages and what the metadata say. */
+/* Reads MCAP records into streams of indexed messages and metadata. */
 #include "recording.h"
 
 #include <inttypes.h>
@@ -19,9 +19,9 @@
 #define DEFAULT_DEPTH_UNIT_Q40 UINT64_C(1099511628) /* a millimetre in metres (REP 118) */
 #define MAX_DEPTH_UNIT_Q40 ((uint64_t)T3R_LIMIT_DEPTH_UNIT << 40)
 #define MAX_LOG_NS ((uint64_t)1 << 62)
-#define FIRST_BYTES 8                  /* of a file: what tells that it is a recording */
-#define PIECE_BYTES ((size_t)16 << 20) /* of a large file that are read at once */
-#define DEFAULT_PAIR_NS 20000000 /* messages of one instant that do not share a stamp are at most this far apart */
+#define FIRST_BYTES 8                  /* bytes that identify a recording */
+#define PIECE_BYTES ((size_t)16 << 20) /* bytes of a large file read at once */
+#define DEFAULT_PAIR_NS 20000000       /* largest distance between messages of one instant with different stamps */
 
 /* State of one pass over the records. */
 typedef struct indexing {
@@ -155,7 +155,7 @@ static int on_message(void *user, const t3r_mcap_message_record *message, t3r_mc
 
 /* ---- metadata ---- */
 
-/* A decimal number at text[*at]; false when there is none or it exceeds 32 bits. */
+/* Reads a decimal number at text[*at]; false if there is none or it exceeds 32 bits. */
 static bool number(t3r_text text, size_t *at, uint32_t *value)
 {
     uint64_t x = 0;
@@ -170,7 +170,7 @@ static bool number(t3r_text text, size_t *at, uint32_t *value)
     return *at > start;
 }
 
-/* "0,2,1;3,5,4": context a, context b, target. NULL, or what is wrong. */
+/* Parses "0,2,1;3,5,4": context a, context b, target. Returns NULL, or what is wrong. */
 static const char *parse_triplets(t3r_text text, t3r_recording *recording)
 {
     size_t room = 1;
@@ -228,7 +228,7 @@ static int on_metadata(void *user, t3r_text name, t3r_text key, t3r_text value, 
     return wrong == NULL ? 0 : fail(x, "metadata", place, wrong);
 }
 
-/* Drops the triplets that name frames which the recording does not hold. */
+/* Drops the triplets that name frames outside the recording. */
 static void check_triplets(t3r_recording *recording)
 {
     uint32_t kept = 0, frames = recording->pairing.frames;
@@ -285,7 +285,7 @@ static int index_bytes(t3r_recording *recording, const uint8_t *bytes, size_t co
     return status;
 }
 
-/* spill: becomes the recording's, and is empty then; NULL: all is to stay in memory. */
+/* Parses a recording. The recording takes over `spill`, which is empty afterwards; NULL: everything stays in memory. */
 static t3r_recording *parse(const uint8_t *bytes, size_t count, t3r_spill *spill, const t3r_recording_choice *choice,
                             char *error, size_t error_bytes)
 {
@@ -315,7 +315,7 @@ t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *err
     return parse(bytes, count, NULL, &(t3r_recording_choice){0}, error, error_bytes);
 }
 
-/* The bytes of a large file, in the spill, once the first of them are those of a recording; NULL with the reason. */
+/* Reads a large file into the spill, if its first bytes are a recording's. Returns NULL with the reason on failure. */
 static uint8_t *spill_file(FILE *file, size_t count, t3r_spill *spill, size_t *got, const char **why)
 {
     uint8_t first[FIRST_BYTES];
@@ -336,7 +336,8 @@ static uint8_t *spill_file(FILE *file, size_t count, t3r_spill *spill, size_t *g
     return *why == NULL ? bytes : NULL;
 }
 
-/* A file that is too large for memory goes to the spill, any other one to *heap. NULL with the reason in error[]. */
+/* Reads a file: into the spill if it is too large for memory, else into *heap. Returns NULL with the reason in error[]
+ * on failure. */
 static const uint8_t *read_file(const char *path, uint8_t **heap, t3r_spill *spill, size_t *count, char *error,
                                 size_t error_bytes)
 {

@@ -1,4 +1,4 @@
-/* The recorder: one camera's frames as MCAP, in one pass, its state bounded and the caller's. */
+/* The recorder: writes one camera's frames as MCAP, in one pass, with a bounded state in the caller's memory. */
 #include "recording.h"
 
 #include <stdbool.h>
@@ -13,7 +13,7 @@
 
 #define MAX_EVENT_BYTES 1024u
 #define MAX_STAMP_NS ((int64_t)1000000000 << 31) /* ROS keeps seconds in int32_t */
-#define END_BYTES 8192u                          /* of the summary, but for the chunks' indexes: below it */
+#define END_BYTES 8192u                          /* bounds the summary without the chunk indexes */
 
 _Static_assert(sizeof(t3r_recorder) <= T3R_RECORDER_BYTES, "T3R_RECORDER_BYTES must hold the state");
 

@@ -1,5 +1,5 @@
-/* The shipped heads: weight files (runtime/head/weights.h) as constants, each in a source file of its own, so that a
- * firmware holds only the ones that it names. */
+/* The shipped heads: weight files (runtime/head/weights.h) as constants, each in its own source file, so that a
+ * firmware contains only the heads that it names. */
 #ifndef TRIM3R_HEADS_H
 #define TRIM3R_HEADS_H
 
@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* Aligned to 16; to be bound in place, from flash. */
+/* Aligned to 16; can be bound in place, in flash. */
 extern const uint8_t t3r_head_tiny[];  /* at most 400 multiply-accumulates a pixel, 4 KB */
 extern const uint8_t t3r_head_small[]; /* 5 k, 48 KB */
 extern const uint32_t t3r_head_tiny_bytes;

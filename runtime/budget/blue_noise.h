@@ -1,16 +1,16 @@
-/* A threshold map whose low ranks are spread evenly: keep the pixels below a density, and they are (SPEC, "Budget"). */
+/* A blue-noise threshold map: the pixels whose rank is below any density are spread evenly (SPEC, "Budget"). */
 #ifndef T3R_BLUE_NOISE_H
 #define T3R_BLUE_NOISE_H
 
 #include <stdint.h>
 
 #define T3R_BLUE_NOISE_SIDE 64u
-/* 12 bits a rank: two in three bytes, which saves flash. */
+/* 12 bits a rank, two ranks in three bytes, to save flash. */
 #define T3R_BLUE_NOISE_BYTES (T3R_BLUE_NOISE_SIDE * T3R_BLUE_NOISE_SIDE / 2 * 3)
 
 extern const uint8_t t3r_blue_noise_packed[T3R_BLUE_NOISE_BYTES];
 
-/* The rank, 0..4095, at a row and a column below T3R_BLUE_NOISE_SIDE; the map is periodic. */
+/* Returns the rank, 0..4095, at a row and a column below T3R_BLUE_NOISE_SIDE; the map is periodic. */
 static inline uint32_t t3r_blue_noise(uint32_t row, uint32_t column)
 {
     const uint32_t place = row * T3R_BLUE_NOISE_SIDE + column;

@@ -7,24 +7,24 @@
 #include "importance.h"
 #include "quotas.h"
 
-/* A step that counts the points of a view's rows by groups. */
+/* A step that counts the points of a view's rows by group. */
 typedef struct count_job {
     const t3r_kernels *kernels;
     const t3r_view *view;
     const t3r_budget_settings *settings;
     t3r_cluster *clusters;
-    t3r_group_count *counts; /* of each group, for each worker */
-    uint32_t shift;          /* of the digit of keys that is counted */
+    t3r_group_count *counts; /* one a group for each worker */
+    uint32_t shift;          /* of the key digit that is counted */
 } count_job;
 
 #define NO_GROUP UINT32_MAX
 
-/* The groups of pixels by settings: a pixel falls under the quota of its SuperCluster, or of cluster 0 standing for all
- * points; a deferred one under that of the group behind the last SuperCluster, and one without depth under none. */
+/* How pixels map to groups: to their SuperCluster, or to cluster 0 for all points; deferred pixels to the group after
+ * the last SuperCluster; pixels without depth to none. */
 typedef struct grouping {
-    uint32_t deferred; /* the group behind the last SuperCluster */
-    uint32_t labels;   /* ones where labels count, else 0 */
-    uint8_t deferring; /* marks */
+    uint32_t deferred; /* the group after the last SuperCluster */
+    uint32_t labels;   /* all bits set where labels count, else 0 */
+    uint8_t deferring; /* marks that defer */
 } grouping;
 
 static bool by_cluster(const t3r_budget_settings *settings)
@@ -46,7 +46,7 @@ static inline uint32_t group_of(const t3r_view *view, size_t pixel, const groupi
     return (validity & groups->deferring) != 0 ? groups->deferred : t3r_label_of(view, pixel) & groups->labels;
 }
 
-/* Runs a step that counts by group over all views, from 0. */
+/* Clears the counts and runs a counting step over all views. */
 static void count_groups(const t3r_view *views, uint32_t count, count_job *job, const t3r_workers *workers,
                          t3r_rows_task *rows)
 {
@@ -62,7 +62,8 @@ static t3r_group_count *counts_of(const count_job *job, uint32_t worker)
     return job->counts + (size_t)worker * (job->settings->clusters + 1);
 }
 
-/* Points by the digit of their key at `shift`, where the digits above are those of their group's threshold. */
+/* Counts points by the digit of their key at `shift`, where the higher digits equal those of their group's
+ * threshold. */
 static void count_digits(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     const count_job *job = context;
@@ -79,7 +80,8 @@ static void count_digits(void *context, uint32_t begin, uint32_t end, uint32_t w
     }
 }
 
-/* The largest digit below which fewer points lie than the group still wants, and what it wants from that digit on. */
+/* Chooses the largest digit below which fewer points lie than the group still wants, and what it wants from that digit
+ * on. */
 static void choose_digit(const count_job *job, uint32_t g, uint32_t workers)
 {
     t3r_cluster *group = &job->clusters[g];
@@ -96,11 +98,11 @@ static void choose_digit(const count_job *job, uint32_t g, uint32_t workers)
         below = next;
     }
     group->threshold += digit << job->shift;
-    group->ties -= below; /* fewer than these, or none */
+    group->ties -= below; /* `below` is less than that, or 0 */
 }
 
-/* Finds each group's threshold, the largest key below which fewer than `quota` points lie, digit by digit of all groups
- * at once; and how many points at the threshold itself are wanted. */
+/* Finds each group's threshold, the largest key below which fewer than `quota` points lie, digit by digit for all
+ * groups at once. `ties` becomes the number of points to retain at the threshold itself. */
 static void find_thresholds(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
                             t3r_cluster *clusters, const t3r_budget_work *work)
 {
@@ -119,8 +121,8 @@ static void find_thresholds(const t3r_view *views, uint32_t count, const t3r_bud
     }
 }
 
-/* log2 of the share of points retained about a pixel, Q10, if its group's density were `density_q10`: at most all, and
- * at least the sure ones. */
+/* Returns log2 of the share of points retained around a pixel, Q10, at a group density of `density_q10`: at most all,
+ * at least the sure points. */
 static int32_t local_density_q10(int32_t density_q10, int32_t wanted_q10)
 {
     return t3r_clamp32(density_q10 + wanted_q10, T3R_LEAST_DENSITY_Q10, 0);
@@ -146,8 +148,8 @@ static void expect_points(void *context, uint32_t begin, uint32_t end, uint32_t 
     }
 }
 
-/* The density of each group for which its pixels' shares sum to its quota. The threshold alone, the key of one point,
- * is a noisy measure of it in small groups; two rounds of proportional correction from there settle it. */
+/* Estimates the density of each group at which its pixels' shares sum to its quota. The threshold, the key of one
+ * point, is a noisy measure of it in small groups, so two rounds of proportional correction follow. */
 static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
                                t3r_cluster *clusters, const t3r_budget_work *work)
 {
@@ -171,7 +173,7 @@ static void estimate_densities(const t3r_view *views, uint32_t count, const t3r_
     }
 }
 
-/* Ties go to the first points in the order of views and rows: one after the other. */
+/* Sets the masks. Ties go to the first points in the order of views and rows, so this is sequential. */
 static void set_masks(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters)
 {
     const grouping groups = grouping_of(settings);
@@ -207,7 +209,7 @@ bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians)
     return 3 * (uint64_t)gaussians <= 2 * plain;
 }
 
-/* The points that this budget defers: of each cluster, and all as a group of their own behind the last. */
+/* Counts the points that this budget defers: by cluster, and all of them in the group after the last one. */
 static void count_deferred(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
                            t3r_cluster *clusters)
 {
@@ -252,7 +254,7 @@ int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget
     const grouping groups = grouping_of(settings);
     uint32_t g = group_of(view, pixel, &groups);
     if (g >= settings->clusters) {
-        return 0; /* retained where all others are, so that nothing about it is left for it to cover */
+        return 0; /* it is retained only where all others are, so it has nothing else to cover */
     }
     if (t3r_allocates(settings, T3R_ALLOCATE_GIVEN)) {
         return t3r_log_share_q10(view, pixel, clusters);

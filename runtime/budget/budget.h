@@ -1,8 +1,8 @@
 /* The budget: which Z of the valid points are retained (GaussianTrim3R 3.1.2; SPEC.md, "Budget").
  *
- * One mechanism serves every mode. Each point has a key, log2 of its blue-noise threshold over its wanted density;
- * a group of points (a SuperCluster, or all) with a quota retains those with the smallest keys. So Z is met exactly,
- * a group's retained set grows with its quota, and another Z costs no new analysis. */
+ * All modes share one mechanism. Each point has a key, log2 of its blue-noise threshold over its wanted density.
+ * A group of points (a SuperCluster, or all) retains the smallest keys up to its quota. So Z is met exactly,
+ * a group's retained set grows with its quota, and another Z needs no new analysis. */
 #ifndef T3R_BUDGET_H
 #define T3R_BUDGET_H
 
@@ -23,14 +23,14 @@ typedef struct t3r_budget_settings {
     uint32_t gamma_q8;
     uint32_t clusters;
     uint32_t seed;
-    uint32_t first_view;    /* its number, by which the blue noise is shifted */
-    bool pass_over_covered; /* the budget is so small that points of surfaces seen twice are wanted once */
+    uint32_t first_view;    /* index by which the blue noise is shifted */
+    bool pass_over_covered; /* the budget is small, so points of surfaces that another view covers are deferred */
 } t3r_budget_settings;
 
 #define T3R_KEY_DIGIT_BITS 4
 #define T3R_KEY_DIGITS (1u << T3R_KEY_DIGIT_BITS)
 
-/* What is counted of a group of points. */
+/* Counts of a group of points. */
 typedef struct t3r_group_count {
     union {
         uint32_t digit[T3R_KEY_DIGITS]; /* points by a digit of their keys */
@@ -40,26 +40,26 @@ typedef struct t3r_group_count {
 
 typedef struct t3r_budget_work {
     t3r_workers workers;
-    t3r_group_count *counts; /* of each group, for each worker */
+    t3r_group_count *counts; /* one a group for each worker */
     const t3r_kernels *kernels;
 } t3r_budget_work;
 
-/* Whether the settings are those of an allocation. The compiler knows that they are not of one that is left out. */
+/* Whether the settings use this allocation. It is a constant false for an allocation that is left out of the build. */
 static inline bool t3r_allocates(const t3r_budget_settings *settings, t3r_allocation allocation)
 {
     const bool is_by_density = allocation == T3R_ALLOCATE_DENSITY || allocation == T3R_ALLOCATE_PIXEL;
     return (T3R_FEATURE_EXTRAS || is_by_density) && settings->allocate == allocation;
 }
 
-/* The marks of points that are retained only once all others are. */
+/* Returns the marks of points that are retained only after all others. */
 static inline uint8_t t3r_deferring_marks(const t3r_budget_settings *settings)
 {
     const uint8_t covered = settings->pass_over_covered ? T3R_MARK_COVERED : 0;
     return t3r_allocates(settings, T3R_ALLOCATE_GIVEN) ? 0 : (uint8_t)(T3R_MARK_DOUBTFUL | covered);
 }
 
-/* Whether a point is retained only once all others are: the doubtful ones, and with pass_over_covered those that
- * another view covers. Heads let the splats of other points not grow over them. None when importance is given. */
+/* Whether a point is retained only after all others: doubtful ones, and with pass_over_covered those that another view
+ * covers. Heads don't widen the splats of other points over them. Never with given importance. */
 static inline bool t3r_is_deferred(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
 {
     return (view->validity[pixel] & t3r_deferring_marks(settings)) != 0;
@@ -68,13 +68,13 @@ static inline bool t3r_is_deferred(const t3r_view *view, size_t pixel, const t3r
 /* Whether Z is at most two thirds of the points that are neither doubtful nor covered by another view. */
 bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians);
 
-/* Quotas, thresholds and masks: exactly min(Z, valid points) bits set, and at most Z whatever the clusters say. For
- * `given` the key planes hold the keys already (importance.h). */
+/* Computes quotas, thresholds and masks: exactly min(Z, valid points) bits are set, at most Z even if the cluster
+ * counts are wrong. For `given` the key planes hold the keys already (importance.h). */
 void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters,
                   const t3r_budget_work *work);
 
-/* Log2 of the density of retained points about a pixel under the allocation made last, Q10, at most 0: they are
- * 2^(-density / 2) pixels apart. */
+/* Returns log2 of the density of retained points around a pixel after the last allocation, Q10, at most 0: the points
+ * are 2^(-density / 2) pixels apart. */
 int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings,
                             const t3r_cluster *clusters);
 

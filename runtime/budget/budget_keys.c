@@ -5,11 +5,11 @@
 #include "core/logarithm.h"
 #include "core/memory.h"
 
-/* The rows of a view that get their keys. */
+/* Rows of a view that get their keys. */
 typedef struct key_job {
     const t3r_kernels *kernels;
     const t3r_view *view;
-    uint32_t number; /* of the view */
+    uint32_t number; /* index of the view */
     const t3r_budget_settings *settings;
 } key_job;
 
@@ -38,7 +38,7 @@ void t3r_find_wanted(const t3r_budget_settings *settings, const t3r_kernels *ker
     }
 }
 
-/* The ranks of the blue noise in a row of the view. Each view sees the map shifted, so that two views of a surface
+/* Finds the blue-noise ranks of a row of the view. Each view has the map shifted, so that two views of a surface
  * complement each other. */
 static void find_ranks(uint32_t view, uint32_t y, uint16_t rank[T3R_BLUE_NOISE_SIDE])
 {
@@ -48,7 +48,7 @@ static void find_ranks(uint32_t view, uint32_t y, uint16_t rank[T3R_BLUE_NOISE_S
     }
 }
 
-/* Of the points that are retained last, among these the doubtful ones at the very end. */
+/* Changes the keys of deferred points. Doubtful ones get the upper half, so that they come last of all. */
 static void defer_row(const key_job *job, size_t at, uint32_t count)
 {
     const uint8_t deferring = t3r_deferring_marks(job->settings);
@@ -60,7 +60,8 @@ static void defer_row(const key_job *job, size_t at, uint32_t count)
     }
 }
 
-/* Thresholds are blue noise, whose 4,096 ranks are split by white noise, or white noise alone. */
+/* Computes the keys of rows. Thresholds are blue noise, whose 4,096 ranks are split by white noise, or white noise
+ * alone. */
 static void key_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     (void)worker;

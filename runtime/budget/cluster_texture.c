@@ -2,13 +2,13 @@
 
 #include "core/fixed.h"
 
-/* The rows of a view that is blurred. */
+/* Rows of a view being blurred. */
 typedef struct blur_job {
     const t3r_kernels *kernels;
     const t3r_view *view;
 } blur_job;
 
-/* The 5-box twice: weights 1 2 3 4 5 4 3 2 1 of 25; variance 4 px^2. Beyond the border the edge repeats. */
+/* The 5-box applied twice: weights 1 2 3 4 5 4 3 2 1 of 25; variance 4 px^2. The edge repeats beyond the border. */
 static void blur_across(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     (void)worker;
@@ -76,7 +76,7 @@ void t3r_shuffle_texture(t3r_cluster *clusters, uint32_t cluster_count, uint32_t
             filled[count++] = (uint16_t)k;
         }
     }
-    /* Fisher and Yates: what is drawn lies at or before the place it comes to */
+    /* Fisher-Yates: the entry drawn is at or before its new place */
     for (uint32_t i = count; i > 1; i--) {
         t3r_cluster *last = &clusters[filled[i - 1]];
         t3r_cluster *drawn = &clusters[filled[t3r_mix32(i ^ t3r_mix32(seed)) % i]];
@@ -105,7 +105,7 @@ void t3r_rank_clusters(t3r_cluster *clusters, uint32_t cluster_count)
 bool t3r_are_ranked(const t3r_cluster *clusters, uint32_t cluster_count)
 {
     for (uint32_t i = 0; i < cluster_count; i++) {
-        /* ascending without ties: then each is there once */
+        /* ascending without ties: each is there exactly once */
         if (clusters[i].order >= cluster_count ||
             (i > 0 && !precedes(clusters, clusters[i - 1].order, clusters[i].order))) {
             return false;

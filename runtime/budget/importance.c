@@ -3,9 +3,9 @@
 #include "core/bits.h"
 #include "core/fixed.h"
 
-#define HALF 4 /* of the window in which retained points are counted: 9 x 9 pixels */
-/* A window is believed while it holds up to half an octave more than its SuperCluster, and not at all from twice that
- * on: points in a clump have to cover what is about the clump. */
+#define HALF 4 /* half the size of the window in which retained points are counted: 9 x 9 pixels */
+/* Excess of a window's density over its SuperCluster's, in log2: up to half an octave the window counts, from a whole
+ * octave on the SuperCluster. Points in a clump have to cover the area around it. */
 #define TRUSTED_Q10 1024
 
 void t3r_importance_keys(const t3r_view *views, uint32_t count, const t3r_importance *importance)
@@ -22,7 +22,7 @@ void t3r_importance_keys(const t3r_view *views, uint32_t count, const t3r_import
     }
 }
 
-/* Bits first..first + count - 1 of the mask, fewer than 32: they lie in one word or two. */
+/* Returns bits first..first + count - 1 of the mask, fewer than 32: they lie in one word or two. */
 static uint32_t mask_bits(const uint32_t *mask, size_t first, uint32_t count)
 {
     uint32_t shift = (uint32_t)(first % 32), bits = mask[first / 32] >> shift;
@@ -32,10 +32,10 @@ static uint32_t mask_bits(const uint32_t *mask, size_t first, uint32_t count)
     return bits & ((1u << count) - 1);
 }
 
-/* log2(retained / valid), Q10; both below 2^28 */
+/* Returns log2(retained / valid), Q10; both below 2^28. */
 static int32_t log_share_q10(uint32_t retained, uint32_t valid)
 {
-    if (retained >= valid) { /* foreign planes may say more than all, or all of nothing */
+    if (retained >= valid) { /* a restored arena's planes may retain more points than there are, or some of none */
         return 0;
     }
     if (retained == 0) {
@@ -51,7 +51,7 @@ void t3r_count_shares(const t3r_view *views, uint32_t count, t3r_cluster *cluste
     for (uint32_t v = 0; v < count; v++) {
         size_t pixels = (size_t)views[v].width * views[v].height;
         for (size_t i = 0; i < pixels; i++) {
-            if (t3r_retained(&views[v], i)) { /* only points are, and these have labels */
+            if (t3r_retained(&views[v], i)) { /* only points are retained, and points have labels */
                 retained[t3r_label_of(&views[v], i)]++;
             }
         }
@@ -61,7 +61,7 @@ void t3r_count_shares(const t3r_view *views, uint32_t count, t3r_cluster *cluste
     }
 }
 
-/* The share in the window about a pixel, as far as it lies in the picture: at most 9 rows of 9 bytes and two words. */
+/* Returns the share in the window around a pixel, clipped to the picture: at most 9 rows of 9 bytes and two words. */
 static int32_t window_share_q10(const t3r_view *view, uint32_t x, uint32_t y)
 {
     uint32_t x0 = x > HALF ? x - HALF : 0, x1 = T3R_MIN(x + HALF, view->width - 1);
@@ -80,6 +80,6 @@ static int32_t window_share_q10(const t3r_view *view, uint32_t x, uint32_t y)
 int32_t t3r_log_share_q10(const t3r_view *view, size_t pixel, const t3r_cluster *clusters)
 {
     int32_t here = window_share_q10(view, (uint32_t)(pixel % view->width), (uint32_t)(pixel / view->width));
-    int32_t more = here - clusters[t3r_label_of(view, pixel)].density_q10; /* than in its SuperCluster */
+    int32_t more = here - clusters[t3r_label_of(view, pixel)].density_q10; /* excess over its SuperCluster */
     return here - t3r_clamp32(2 * more - TRUSTED_Q10, 0, T3R_MAX(more, 0));
 }

@@ -4,13 +4,13 @@
 #include "core/fixed.h"
 #include "core/logarithm.h"
 
-/* Those of a cluster's points that are there to be retained. */
+/* Returns the number of a cluster's points that are not deferred. */
 static inline uint32_t open_points(const t3r_cluster *cluster)
 {
     return cluster->points - T3R_MIN(cluster->deferred, cluster->points);
 }
 
-/* Weights sum to less than this, points times a factor: sums that count more are held there. */
+/* Bound of sums of weights, which are points times a factor. Larger sums are clamped. */
 #define WEIGHTS_MOST (((uint64_t)1 << 39) - 1)
 
 static uint64_t add_weight(uint64_t sum, uint64_t weight)
@@ -18,8 +18,8 @@ static uint64_t add_weight(uint64_t sum, uint64_t weight)
     return T3R_MIN(sum + T3R_MIN(weight, WEIGHTS_MOST), WEIGHTS_MOST);
 }
 
-/* Shares `budget`, at most 2^24, among the clusters in proportion to weight[k]; cumulative rounding makes the sum exact
- * and each quota one of the two integers next to its share. Whatever the weights, the sum is at most the budget. */
+/* Shares `budget`, at most 2^24, among the clusters in proportion to weight[k]. Cumulative rounding makes the sum exact
+ * and each quota one of the two integers next to its share. The sum is at most the budget for any weights. */
 static void share_out(t3r_cluster *clusters, uint32_t count, const uint64_t *weight, uint64_t budget)
 {
     uint64_t total = 0, running = 0, given = 0;
@@ -36,8 +36,8 @@ static void share_out(t3r_cluster *clusters, uint32_t count, const uint64_t *wei
     }
 }
 
-/* `density`: in proportion to |SC| x Texture(SC)^gamma, no cluster more than its points. A cluster whose share would
- * exceed its points gets them all and leaves the rest to the others: at most K rounds, a few in practice. */
+/* Sets the quotas of `density`: in proportion to |SC| x Texture(SC)^gamma, at most a cluster's points. A cluster whose
+ * share would exceed its points gets them all, and the rest is shared again: at most K rounds, a few in practice. */
 static void quotas_by_density(t3r_cluster *clusters, uint32_t count, const t3r_budget_settings *settings,
                               uint64_t budget)
 {
@@ -49,7 +49,7 @@ static void quotas_by_density(t3r_cluster *clusters, uint32_t count, const t3r_b
     }
     for (uint32_t k = 0; k < count; k++) {
         int32_t below = t3r_log_wanted_q10((uint16_t)clusters[k].texture_q4, settings) - most;
-        factor_q10[k] = below <= -(10 << 10) ? 1 : t3r_exp2_q16(below * 64) >> 6; /* at least 1 there, too */
+        factor_q10[k] = below <= -(10 << 10) ? 1 : t3r_exp2_q16(below * 64) >> 6; /* at least 1 here, too */
         weight[k] = (uint64_t)open_points(&clusters[k]) * factor_q10[k];
     }
     for (uint32_t round = 0; round < count; round++) {
@@ -73,8 +73,8 @@ static void quotas_by_density(t3r_cluster *clusters, uint32_t count, const t3r_b
     share_out(clusters, count, weight, budget);
 }
 
-/* `paper`: from the lowest texture up each cluster keeps N % of its points until Z is met; the last is cut so that Z is
- * exact; if Z is below N % of all, N becomes Z / valid for all. */
+/* Sets the quotas of `paper`: from the lowest texture up each cluster keeps N % of its points until Z is met. The last
+ * one is cut so that Z is exact. If Z is below N % of all, N becomes Z / valid for all. */
 static void quotas_by_paper(t3r_cluster *clusters, uint32_t count, const t3r_budget_settings *settings, uint64_t budget,
                             uint64_t valid)
 {
@@ -98,7 +98,7 @@ static void quotas_by_paper(t3r_cluster *clusters, uint32_t count, const t3r_bud
     }
 }
 
-/* A group never retains more than its quota, nor all groups more than Z: the scene has room for no more. */
+/* Limits the sum of all groups' quotas to Z, because the scene has no room for more. */
 static void hold_quotas(t3r_cluster *clusters, uint32_t groups, uint32_t most)
 {
     for (uint32_t g = 0; g < groups; g++) {

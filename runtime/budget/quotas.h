@@ -4,8 +4,8 @@
 
 #include "budget.h"
 
-/* Shares the budget among the clusters, whose points and deferred ones are counted. Behind the last cluster stands the
- * group of all deferred points, which gets what the others leave. The sum is at most Z, whatever the clusters say. */
+/* Shares the budget among the clusters, whose points and deferred points are counted. The group of all deferred points
+ * follows the last cluster and gets what the others don't use. The sum is at most Z even if the counts are wrong. */
 void t3r_set_quotas(t3r_cluster *clusters, const t3r_budget_settings *settings);
 
 #endif

@@ -1,6 +1,6 @@
-/* The polynomial of a pixel's alpha: exp(s - 0.75) on [0, 0.75] in Q16, C0 + s (C1 + s (C2 + s (C3 + s C4))), minimax
- * with what rounding down takes: squared three times it is exp(-q) with s = 0.75 - q / 8, below 1 and off by at most
- * 18 / 65,536. */
+/* The polynomial of a pixel's alpha: exp(s - 0.75) on [0, 0.75] in Q16, C0 + s (C1 + s (C2 + s (C3 + s C4))). It is
+ * minimax with rounding down included. Squared three times it is exp(-q) with s = 0.75 - q / 8, below 1 and off by at
+ * most 18 / 65,536. */
 #ifndef T3R_KERNEL_ALPHA_H
 #define T3R_KERNEL_ALPHA_H
 

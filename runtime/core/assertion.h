@@ -1,13 +1,13 @@
-/* What a debug build may stop at: compile the runtime with these defined. */
+/* Checks at which a debug build may stop: compile the runtime with these macros defined. */
 #ifndef T3R_ASSERTION_H
 #define T3R_ASSERTION_H
 
-/* How the library is called */
+/* Checks how the library is called. */
 #ifndef T3R_ASSERT
 #define T3R_ASSERT(condition) ((void)0)
 #endif
 
-/* The bounds that its own arithmetic counts on: the option T3R_CHECK_FIXED stops at them. */
+/* Checks the bounds that the library's arithmetic relies on. The option T3R_CHECK_FIXED stops at them. */
 #ifndef T3R_BOUND
 #define T3R_BOUND(condition) ((void)0)
 #endif

@@ -1,10 +1,10 @@
-/* Sets kept as bits of a word. */
+/* Sets stored as bits of a word. */
 #ifndef T3R_BITS_H
 #define T3R_BITS_H
 
 #include <stdint.h>
 
-/* The number of bits that are set, 0..32, without a branch. */
+/* Returns the number of set bits, 0..32, without a branch. */
 static inline uint32_t t3r_ones(uint32_t bits)
 {
     bits -= bits >> 1 & 0x55555555u;

@@ -24,7 +24,7 @@ static uint64_t square(int32_t x)
     return (uint64_t)((int64_t)x * x);
 }
 
-/* Q60. With every |component| <= 1.5 the sum is at most 9 x 2^60 and fits. */
+/* Returns the squared norm, Q60. With every |component| <= 1.5 it is at most 9 x 2^60 and fits. */
 static uint64_t norm2_q60(const int32_t q[4])
 {
     return square(q[0]) + square(q[1]) + square(q[2]) + square(q[3]);
@@ -67,7 +67,7 @@ t3r_status t3r_camera_check(const t3r_camera *camera)
     return T3R_OK;
 }
 
-/* numerator / norm2 in Q30, round-half-up, by long division; |numerator| <= norm2 < 2^62 */
+/* Returns numerator / norm2 in Q30, round-half-up, by long division; |numerator| <= norm2 < 2^62. */
 static int32_t quotient_q30(int64_t numerator, uint64_t norm2)
 {
     uint64_t rest = (uint64_t)t3r_abs64(numerator);
@@ -115,7 +115,7 @@ static int32_t resized_focal(int32_t f_q16, uint32_t from, uint32_t to)
     return saturate32(t3r_round_div64((int64_t)f_q16 * to, from));
 }
 
-/* The centre of the first pixel is 0, the image's edge -1/2: (c + 1/2) to / from - 1/2. */
+/* Returns (c + 1/2) to / from - 1/2: the centre of the first pixel is 0, the image's edge -1/2. */
 static int32_t resized_centre(int32_t c_q16, uint32_t from, uint32_t to)
 {
     return saturate32(t3r_round_div64(((int64_t)c_q16 + 0x8000) * to, from) - 0x8000);

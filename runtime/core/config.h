@@ -1,4 +1,4 @@
-/* Whether settings are in range, and those that are chosen. */
+/* Range checks of settings, and defaults for those left open. */
 #ifndef T3R_CONFIG_H
 #define T3R_CONFIG_H
 
@@ -7,19 +7,19 @@
 #include "core/fixed.h"
 #include "trim3r.h"
 
-/* T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: t3r_config_error() has the reason. */
+/* Checks a configuration. After T3R_ERR_CONFIG or T3R_ERR_UNSUPPORTED t3r_config_error() returns the reason. */
 t3r_status t3r_config_check(const t3r_config *config);
 
-/* The same configuration with the numbers of what it leaves to be chosen. */
+/* Returns the configuration with values for the settings that it leaves open. */
 t3r_config t3r_settled(const t3r_config *config);
 
-/* The most splats that a tile is drawn from. */
+/* Returns the maximum number of splats drawn a tile. */
 static inline uint32_t t3r_tile_splats_of(const t3r_config *config)
 {
     return config->tile_splats != 0 ? config->tile_splats : UINT32_MAX;
 }
 
-/* The passes of refinement in a build that follows another (t3r_config.warm). */
+/* Returns the passes of refinement in a build that follows another (t3r_config.warm). */
 static inline uint32_t t3r_following_passes_of(const t3r_config *config)
 {
     return (config->refine + 1) / 2;
@@ -33,7 +33,8 @@ static inline uint32_t t3r_keyframe_passes_of(const t3r_config *config, bool fol
     return follows ? (passes + 1) / 2 : passes;
 }
 
-/* At least the bytes of any arena for fields in range, counted generously and in 64 bits: sums in size_t may wrap. */
+/* Returns an upper bound of the arena's bytes for fields in range. It is generous and in 64 bits, because sums in
+ * size_t may wrap. */
 uint64_t t3r_most_arena_bytes(const t3r_config *config);
 
 #endif

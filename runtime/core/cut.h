@@ -1,5 +1,5 @@
-/* Memory cut into parts, one behind the other. Each part takes T3R_UP_(bytes): the formula of a whole is the sum of
- * these over its parts, so that a cut ends exactly where the plan says. */
+/* Cuts memory into consecutive parts. Each part takes T3R_UP_(bytes). The formula of a whole is the sum of these over
+ * its parts, so a cut ends exactly where the plan says. */
 #ifndef T3R_CUT_H
 #define T3R_CUT_H
 
@@ -24,7 +24,7 @@ static inline size_t t3r_cut_left(const t3r_cut *cut)
     return (size_t)(cut->end - cut->at);
 }
 
-/* The next part. It has the alignment of the memory, up to T3R_ARENA_ALIGN. */
+/* Returns the next part. It has the alignment of the memory, up to T3R_ARENA_ALIGN. */
 static inline void *t3r_take(t3r_cut *cut, size_t bytes)
 {
     uint8_t *part = cut->at;

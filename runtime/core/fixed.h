@@ -1,7 +1,7 @@
 /* Fixed-point arithmetic: the one place where rounding is defined (SPEC.md, "Rounding").
  *
  * Every rounding in the runtime is round-half-up: add half, shift arithmetically. Right shifts of negative
- * numbers are arithmetic on every compiler trim3r is built with; the assertion below refuses others. */
+ * numbers are arithmetic with all compilers that build trim3r; the assertion below refuses others. */
 #ifndef T3R_FIXED_H
 #define T3R_FIXED_H
 
@@ -11,7 +11,7 @@
 
 _Static_assert((-3 >> 1) == -2, "right shift of negative numbers must be arithmetic");
 
-/* What is too long to stand wherever it is called, in builds for size. */
+/* For functions too long to be inlined everywhere in builds for size. */
 #ifdef __OPTIMIZE_SIZE__
 #define T3R_SHARED static __attribute__((noinline, unused))
 #else
@@ -21,21 +21,22 @@ _Static_assert((-3 >> 1) == -2, "right shift of negative numbers must be arithme
 #define T3R_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define T3R_MAX(a, b) ((a) > (b) ? (a) : (b))
 
-/* x / 2^shift, round-half-up; shift 0..62, x + 2^(shift - 1) < 2^63 */
+/* Returns x / 2^shift, round-half-up; shift 0..62, x + 2^(shift - 1) < 2^63. */
 static inline int64_t t3r_round_shift64(int64_t x, uint32_t shift)
 {
     T3R_BOUND(shift <= 62 && (shift == 0 || x <= INT64_MAX - ((int64_t)1 << (shift - 1))));
     return shift == 0 ? x : (x + ((int64_t)1 << (shift - 1))) >> shift;
 }
 
-/* x / 2^shift, round-half-up; shift 0..30, x + 2^(shift - 1) < 2^31 */
+/* Returns x / 2^shift, round-half-up; shift 0..30, x + 2^(shift - 1) < 2^31. */
 static inline int32_t t3r_round_shift32(int32_t x, uint32_t shift)
 {
     T3R_BOUND(shift <= 30 && (shift == 0 || x <= INT32_MAX - ((int32_t)1 << (shift - 1))));
     return shift == 0 ? x : (x + ((int32_t)1 << (shift - 1))) >> shift;
 }
 
-/* x * 2^shift for a shift of either sign, below 2^63; a right shift of 63 and more gives 0 */
+/* Returns x 2^shift for a shift of either sign, round-half-up; the result is below 2^63. A right shift of 63 or more
+ * gives 0. */
 static inline int64_t t3r_scale64(int64_t x, int32_t shift)
 {
     if (shift >= 0) {
@@ -45,7 +46,7 @@ static inline int64_t t3r_scale64(int64_t x, int32_t shift)
     return shift <= -63 ? 0 : t3r_round_shift64(x, (uint32_t)-shift);
 }
 
-/* The same in 32 bits, modulo 2^32: the last bit shifted out is added behind the shift, so that nothing overflows. */
+/* As t3r_scale64() in 32 bits, modulo 2^32. The last bit shifted out is added after the shift, so nothing overflows. */
 static inline int32_t t3r_scale32(int32_t x, int32_t shift)
 {
     if (shift >= 0) {
@@ -55,9 +56,9 @@ static inline int32_t t3r_scale32(int32_t x, int32_t shift)
     return (twice >> 1) + (twice & 1);
 }
 
-/* (a b) / 2^15, round-half-up: (a b + 2^14) >> 15, in 16-bit steps that a compiler turns into 16-bit lanes (SSSE3
- * pmulhrsw and NEON/MVE sqrdmulh are the same). With a b = 65536 high + low that is 2 high plus the rounded low / 2^15,
- * (low / 2^14 + 1) / 2 rounded down. -32768 x -32768 wraps to -32768, which sqrdmulh alone does not. */
+/* Returns (a b) / 2^15, round-half-up: (a b + 2^14) >> 15, in 16-bit steps that compilers turn into 16-bit lanes (as
+ * SSSE3 pmulhrsw and NEON/MVE sqrdmulh do). With a b = 65536 high + low this is 2 high plus the rounded low / 2^15,
+ * which is (low / 2^14 + 1) / 2 rounded down. -32768 x -32768 wraps to -32768; only sqrdmulh differs there. */
 static inline int16_t t3r_mulr_q15(int16_t a, int16_t b)
 {
     int16_t high = (int16_t)(((int32_t)a * b) >> 16);
@@ -66,7 +67,7 @@ static inline int16_t t3r_mulr_q15(int16_t a, int16_t b)
     return (int16_t)(uint16_t)((uint16_t)high + (uint16_t)high + carry);
 }
 
-/* n / d, round-half-up: floor(n / d + 1/2); d > 0 and below 2^62, 2 |n| + d below 2^63 */
+/* Returns n / d, round-half-up: floor(n / d + 1/2); d > 0 and below 2^62, 2 |n| + d below 2^63. */
 T3R_SHARED int64_t t3r_round_div64(int64_t n, int64_t d)
 {
     T3R_BOUND(d > 0 && d < INT64_C(1) << 62 && n >= -(INT64_MAX - d) / 2 && n <= (INT64_MAX - d) / 2);
@@ -75,7 +76,7 @@ T3R_SHARED int64_t t3r_round_div64(int64_t n, int64_t d)
     return quotient - (doubled % (2 * d) < 0);
 }
 
-/* The same in 32 bits; d > 0, |n| and d below 2^29 */
+/* As t3r_round_div64() in 32 bits; d > 0, |n| and d below 2^29. */
 static inline int32_t t3r_round_div32(int32_t n, int32_t d)
 {
     T3R_BOUND(d > 0 && d < 1 << 29 && n > -(1 << 29) && n < 1 << 29);
@@ -84,8 +85,8 @@ static inline int32_t t3r_round_div32(int32_t n, int32_t d)
     return quotient - (doubled % (2 * d) < 0);
 }
 
-/* (a b) / 2^16, round-half-up, of numbers that are not negative: (a b + 2^15) >> 16, likewise in 16-bit steps (SSE2
- * pmulhuw and pmullw, MVE vrmulh, NEON vmull and vrshrn). At most 65534. */
+/* Returns (a b) / 2^16, round-half-up, of non-negative numbers: (a b + 2^15) >> 16, also in 16-bit steps (SSE2 pmulhuw
+ * and pmullw, MVE vrmulh, NEON vmull and vrshrn). At most 65534. */
 static inline uint16_t t3r_mulr_q16(uint16_t a, uint16_t b)
 {
     uint16_t high = (uint16_t)(((uint32_t)a * b) >> 16);
@@ -93,8 +94,8 @@ static inline uint16_t t3r_mulr_q16(uint16_t a, uint16_t b)
     return (uint16_t)(high + (low >> 15));
 }
 
-/* (a b) / 2^16, rounded down, of numbers that are not negative: one instruction on 16-bit lanes (SSE2 pmulhuw, MVE
- * vmulh). Less than either of them. */
+/* Returns (a b) / 2^16, rounded down, of non-negative numbers: one instruction on 16-bit lanes (SSE2 pmulhuw, MVE
+ * vmulh). The result is less than either factor. */
 static inline uint16_t t3r_mul_q16(uint16_t a, uint16_t b)
 {
     return (uint16_t)(((uint32_t)a * b) >> 16);
@@ -124,7 +125,7 @@ static inline int64_t t3r_abs64(int64_t x)
     return x < 0 ? -x : x;
 }
 
-/* Position of the highest set bit, floor(log2 x); x > 0 */
+/* Return the position of the highest set bit, floor(log2 x); x > 0. */
 static inline uint32_t t3r_msb32(uint32_t x)
 {
     T3R_BOUND(x > 0);
@@ -137,20 +138,20 @@ static inline uint32_t t3r_msb64(uint64_t x)
     return high != 0 ? 32u + t3r_msb32(high) : t3r_msb32((uint32_t)x);
 }
 
-/* floor(sqrt x) */
+/* Returns floor(sqrt x). */
 uint32_t t3r_isqrt64(uint64_t x);
-/* log2(x) in Q16, error below 2^-14; x > 0 */
+/* Returns log2(x) in Q16, error below 2^-14; x > 0. */
 int32_t t3r_log2_q16(uint32_t x);
-/* The same for 64 bits */
+/* As t3r_log2_q16() for 64 bits. */
 static inline int32_t t3r_log2_wide_q16(uint64_t x)
 {
     uint32_t msb = t3r_msb64(x), excess = msb > 31 ? msb - 31 : 0;
     return t3r_log2_q16((uint32_t)(x >> excess)) + (int32_t)(excess << 16);
 }
-/* 2^(x / 65536) in Q16, relative error below 2^-14 and half a step; x in -16 x 65536..15 x 65536 */
+/* Returns 2^(x / 65536) in Q16, relative error below 2^-14 and half a step; x in -16 x 65536..15 x 65536. */
 uint32_t t3r_exp2_q16(int32_t x_q16);
 
-/* A small deterministic mixing of 32 bits (Wellons' "lowbias32" constants): white noise per index. */
+/* Returns 32 mixed bits (Wellons' "lowbias32" constants): deterministic white noise by index. */
 static inline uint32_t t3r_mix32(uint32_t x)
 {
     x ^= x >> 16;

@@ -1,4 +1,4 @@
-/* The tables of logarithm and power of two, for those who look up several numbers at once. */
+/* The tables of logarithm and power of two, for code that looks up several numbers at once. */
 #ifndef T3R_FIXED_TABLES_H
 #define T3R_FIXED_TABLES_H
 

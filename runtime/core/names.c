@@ -1,8 +1,8 @@
-/* Names and sentences, as the command line and the tables spell them. */
+/* Names and sentences, as the command line and tables print them. */
 #include "features.h"
 #include "trim3r.h"
 
-/* A table is exactly as long as its enumeration. */
+/* Checks that a table is exactly as long as its enumeration. */
 #define EVERY_NAME(names, count)                                                                                       \
     _Static_assert(sizeof(names) / sizeof *(names) == (count), "as many names as enumerators")
 

@@ -1,11 +1,11 @@
-/* Where a camera stands and looks, apart from its lens. */
+/* A camera's position and orientation, without its lens. */
 #ifndef T3R_PLACEMENT_H
 #define T3R_PLACEMENT_H
 
 #include "memory.h"
 #include "trim3r.h"
 
-/* The pose of a t3r_camera, with its numbers. */
+/* The pose of a t3r_camera, in the same formats. */
 typedef struct t3r_placement {
     int64_t position_q32[3];
     int32_t rotation_q30[4];

@@ -1,5 +1,5 @@
 /* The scene's fixed-point frame: the first context camera's centre is the origin, and a power of two brings the median
- * depth into [1, 2) scene units. So a scene 0.07 units wide and one at map coordinates keep the same relative
+ * depth into [1, 2) scene units. So a scene 0.07 units wide and one at map coordinates have the same relative
  * precision. */
 #ifndef T3R_SCENE_FRAME_H
 #define T3R_SCENE_FRAME_H
@@ -13,13 +13,14 @@
 #define T3R_EXPONENT_LEAST (-24)
 #define T3R_EXPONENT_MOST 24
 
-/* A rigid pose in fixed point, expanded once from t3r_camera. */
+/* A rigid pose in fixed point, computed once from a t3r_camera. */
 typedef struct t3r_pose {
     int32_t rotation_q30[9]; /* row-major, camera to scene */
     int32_t position_q20[3]; /* scene units */
 } t3r_pose;
 
-/* The camera's pose in the frame; T3R_ERR_CAMERA when it stands more than 1024 scene units from the origin. */
+/* Computes the camera's pose in the frame. Returns T3R_ERR_CAMERA when the camera is more than 1024 scene units from
+ * the origin along an axis. */
 t3r_status t3r_pose_in_scene(const t3r_camera *camera, const t3r_scene_frame *frame, t3r_pose *pose);
 
 /* A depth step of a view in scene units: depth_q20 = (raw x mantissa) / 2^shift, rounded. */
@@ -29,10 +30,10 @@ typedef struct t3r_depth_scale {
 } t3r_depth_scale;
 t3r_depth_scale t3r_depth_scale_of(uint64_t depth_unit_q40, int32_t exponent);
 
-/* The depth of a raw step, Q20, held at T3R_POSITION_MOST_Q20 - 1. */
+/* Returns the depth of a raw step, Q20, at most T3R_POSITION_MOST_Q20 - 1. */
 static inline int32_t t3r_depth_q20(t3r_depth_scale scale, uint16_t raw)
 {
-    int64_t z = t3r_round_shift64((int64_t)raw * scale.mantissa, scale.shift); /* a product below 2^48 */
+    int64_t z = t3r_round_shift64((int64_t)raw * scale.mantissa, scale.shift); /* the product is below 2^48 */
     return (int32_t)T3R_MIN(z, (int64_t)T3R_POSITION_MOST_Q20 - 1);
 }
 

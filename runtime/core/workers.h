@@ -1,7 +1,7 @@
-/* Work that may run on several threads at once: numbered tasks, handed to the caller's hook.
+/* Work that may run on several threads at once: numbered tasks, passed to the caller's hook.
  *
- * A task writes to places that no other task of the same call reads or writes, or to those of its worker. So neither
- * the order of tasks nor the number of workers shows in the result. */
+ * A task writes only to memory that no other task of the same call reads or writes, or to its worker's own memory.
+ * So neither the order of tasks nor the number of workers changes the result. */
 #ifndef T3R_WORKERS_H
 #define T3R_WORKERS_H
 
@@ -13,11 +13,11 @@
 typedef void t3r_task(void *context, uint32_t index, uint32_t worker);
 
 typedef struct t3r_workers {
-    const t3r_hooks *hooks; /* NULL, or without parallel_for: one task after the other, by worker 0 */
+    const t3r_hooks *hooks; /* NULL, or without parallel_for: worker 0 runs one task after the other */
     uint32_t count;         /* 1..T3R_MAX_WORKERS */
 } t3r_workers;
 
-/* The compiler knows that they are not where several workers are left out. */
+/* Whether tasks may run in parallel; a constant false in builds for one worker. */
 static inline bool t3r_is_parallel(const t3r_workers *workers)
 {
     return T3R_FEATURE_EXTRAS && workers->count > 1 && workers->hooks != NULL && workers->hooks->parallel_for != NULL;
@@ -26,8 +26,8 @@ static inline bool t3r_is_parallel(const t3r_workers *workers)
 /* Runs task(context, 0..count-1, worker) and returns when all are done. */
 void t3r_run_tasks(const t3r_workers *workers, uint32_t count, t3r_task *task, void *context);
 
-/* The part of `total` items, in order and without gaps, that task `index` of `tasks` takes: begin..end - 1. Parts
- * differ by at most one item. total < 2^26, tasks <= 2 T3R_MAX_WORKERS. */
+/* A task's part of `total` items: begin..end - 1. Task `index` of `tasks` gets the next part, in order and without
+ * gaps. Parts differ by at most one item. total < 2^26, tasks <= 2 T3R_MAX_WORKERS. */
 typedef struct t3r_share {
     uint32_t begin, end;
 } t3r_share;
@@ -37,7 +37,7 @@ static inline t3r_share t3r_share_of(uint32_t total, uint32_t index, uint32_t ta
     return (t3r_share){(uint32_t)((uint64_t)total * index / tasks), (uint32_t)((uint64_t)total * (index + 1) / tasks)};
 }
 
-/* Tasks over the rows 0..rows - 1: task(context, begin, end, worker) takes begin..end - 1. */
+/* Runs tasks over the rows 0..rows - 1: task(context, begin, end, worker) takes begin..end - 1. */
 typedef void t3r_rows_task(void *context, uint32_t begin, uint32_t end, uint32_t worker);
 void t3r_run_rows(const t3r_workers *workers, uint32_t rows, t3r_rows_task *task, void *context);
 

@@ -1,4 +1,4 @@
-/* Validity of depth, and small holes filled between measured pixels. */
+/* Validity of depth, and filling of small holes between measured pixels. */
 #include "depth.h"
 
 #include <stdbool.h>
@@ -20,7 +20,8 @@ typedef struct bracket {
     uint32_t gap;           /* before + after */
 } bracket;
 
-/* at: index of the pixel, step: to its next neighbour on the axis, back/ahead: pixels there are on either side. */
+/* Finds the bracket of a pixel. at: its index; step: to its next neighbour on the axis; back, ahead: number of pixels
+ * on either side. */
 static bracket find_bracket(const uint8_t *validity, size_t at, size_t step, uint32_t back, uint32_t ahead,
                             uint32_t radius)
 {
@@ -49,7 +50,7 @@ static bracket find_bracket(const uint8_t *validity, size_t at, size_t step, uin
     return found;
 }
 
-/* |dr| + |dg| + |db| */
+/* Returns |dr| + |dg| + |db|. */
 static int32_t colour_distance(const t3r_view *view, size_t a, size_t b)
 {
     int32_t sum = 0;

@@ -1,4 +1,4 @@
-/* Stage depth: validity of measured depth, and small holes filled. */
+/* Stage depth: validity of measured depth, and filling of small holes. */
 #ifndef T3R_DEPTH_H
 #define T3R_DEPTH_H
 
@@ -14,12 +14,12 @@ static inline bool t3r_same_surface(uint16_t a, uint16_t b)
     return 16 * difference <= (a < b ? a : b);
 }
 
-/* Validity from depth: T3R_MEASURED where there is one, else T3R_NO_DEPTH. */
+/* Sets validity from depth: T3R_MEASURED where there is one, else T3R_NO_DEPTH. */
 void t3r_depth_validity(t3r_view *view);
 
-/* Fills pixels without depth that have measured ones within `radius` (0..8; 0 fills nothing) on both sides, in
- * their row or their column; they become T3R_FILLED and never seed others. Returns how many. Two sides
- * that agree are interpolated; across an edge the side of the likelier colour is taken whole. Reads view->colour,
+/* Fills pixels without depth that have measured ones within `radius` (0..8; 0 fills nothing) on both sides, in their
+ * row or their column. Filled pixels become T3R_FILLED and are never a source for others. Returns their number. Two
+ * sides that agree are interpolated; across an edge the side of the more similar colour is taken. Reads view->colour,
  * depth and validity. At most 4 x radius steps a pixel. */
 uint32_t t3r_depth_fill(t3r_view *view, uint32_t radius);
 

@@ -8,13 +8,13 @@
 #include "state/state.h"
 #include "undistort.h"
 
-/* A frame on its way into a view's planes. */
+/* State of converting a frame into a view's planes. */
 typedef struct develop_job {
     const t3r_runtime *rt;
     const t3r_frame *frame;
     t3r_view *view;
-    int32_t *grid;      /* NULL: nothing to undistort */
-    uint8_t *colour[3]; /* resized: the view's own planes, or those that are undistorted into them */
+    int32_t *grid;      /* NULL: no undistortion */
+    uint8_t *colour[3]; /* resized planes: the view's own, or the input of undistortion */
     uint16_t *depth;
     uint8_t *work; /* T3R_IMAGE_ROW_BYTES_ a worker */
 } develop_job;
@@ -113,7 +113,7 @@ t3r_status t3r_develop_strip(t3r_runtime *rt, uint32_t index, const t3r_frame *f
 {
     t3r_view view = t3r_view_of(rt, index);
     develop_job job = job_of(rt, frame, &view, camera);
-    const t3r_status status = strip->begins ? make_grid(&job, camera) : T3R_OK; /* it is kept for the last strip */
+    const t3r_status status = strip->begins ? make_grid(&job, camera) : T3R_OK; /* kept until the last strip */
     if (status != T3R_OK) {
         return status;
     }

@@ -1,4 +1,4 @@
-/* Stage image: a camera's frame to the planes of a context view. */
+/* Stage image: converts a camera's frame to the planes of a context view. */
 #ifndef T3R_DEVELOP_H
 #define T3R_DEVELOP_H
 
@@ -16,11 +16,11 @@ t3r_status t3r_frame_check(const t3r_runtime *rt, const t3r_frame *frame, const 
  * *camera is that of t3r_frame_check() and becomes that of the planes. On an error the planes may be part written. */
 t3r_status t3r_develop_view(t3r_runtime *rt, uint32_t index, const t3r_frame *frame, t3r_camera *camera);
 
-/* A run of rows of a frame, which its planes begin with. */
+/* A run of rows of a frame; its planes begin with the first of them. */
 typedef struct t3r_strip {
     uint32_t row, rows;             /* of the colour image */
     uint32_t depth_row, depth_rows; /* of the depth image */
-    bool begins, ends;              /* the first strip of a view, and the last */
+    bool begins, ends;              /* whether it is the first strip of a view, and the last */
 } t3r_strip;
 
 /* The same strip by strip; *camera is that of the planes after the last one. In between, the work of the image stage

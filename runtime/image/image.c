@@ -1,4 +1,4 @@
-/* Frames to planes of the working size. Widths and heights: source W x H, destination w x h. */
+/* Conversion of frames to planes of the working size. Widths and heights: source W x H, destination w x h. */
 #include "image.h"
 
 #include <stdbool.h>
@@ -28,7 +28,8 @@ static uint32_t bytes_per_pixel(t3r_pixel_format format)
     }
 }
 
-/* A row of `bytes` <= 3 T3R_MAX_SIDE in a stride below 2^19: every offset into the plane stays below 2^31. */
+/* Whether a plane is usable. A row has `bytes` <= 3 T3R_MAX_SIDE, a stride is below 2^19: every offset is below
+ * 2^31. */
 static bool plane_ok(const uint8_t *plane, uint32_t stride, uint32_t bytes)
 {
     return plane != NULL && stride >= bytes && stride <= T3R_MAX_STRIDE_BYTES;
@@ -68,7 +69,7 @@ size_t t3r_image_work_bytes(uint32_t width)
     return (size_t)width * 6 * sizeof(uint32_t);
 }
 
-/* count pixels of row y from column x (even for the YUV formats) to r, g, b */
+/* Converts `count` pixels of row y from column x on (even for the YUV formats) to r, g, b. */
 static void convert(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t y, uint32_t x, uint32_t count,
                     uint8_t *r, uint8_t *g, uint8_t *b)
 {
@@ -99,7 +100,7 @@ static void convert(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t
     }
 }
 
-/* The three channels of source row y, summed over the boxes of the destination's columns. */
+/* Sums the three channels of source row y over the boxes of the destination's columns. */
 static void sum_row(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t y, uint32_t width,
                     uint32_t *const sums[3])
 {
@@ -118,13 +119,13 @@ static void sum_row(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t
     }
 }
 
-/* Rows of the source on their way into rows of the destination. Totals are at most 255 W H, with W H at most 2^24. In
- * units of which a source row is h high and a destination row H, destination row r begins at r H: at most 2^24. */
+/* Averaging of source rows into destination rows. Totals are at most 255 W H, with W H at most 2^24. In units in which
+ * a source row is h high and a destination row H, destination row r begins at r H: at most 2^24. */
 typedef struct averaging {
     const t3r_kernels *kernels;
     uint32_t width, height, area;
     uint32_t *sums[3], *totals[3];
-    uint32_t row, left; /* the destination row that is summed, and the units that it lacks */
+    uint32_t row, left; /* destination row being summed, and the units still missing */
 } averaging;
 
 static averaging averaging_of(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t width, uint32_t height,
@@ -146,7 +147,7 @@ static void forget_totals(const averaging *a)
     }
 }
 
-/* Row y of the frame's memory, of which so many units count. Over the whole image at most H + h turns. */
+/* Adds row y of the frame's memory, of which `units` count. Over the whole image at most H + h turns. */
 static void take_row(averaging *a, const t3r_frame *frame, uint32_t y, uint32_t units, uint32_t end,
                      uint8_t *const planes[3])
 {
@@ -175,7 +176,8 @@ static void average(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t
     forget_totals(&a);
     a.row = begin;
     a.left = frame->height;
-    uint32_t units = height - begin * frame->height % height; /* of the first source row, what lies in the first row */
+    uint32_t units = height - begin * frame->height % height; /* part of the first source row that lies in the first
+                                                               * destination row */
     for (uint32_t y = begin * frame->height / height; a.row < end; y++, units = height) {
         take_row(&a, frame, y, units, end, planes);
     }
@@ -215,8 +217,8 @@ void t3r_image_colour(const t3r_kernels *kernels, const t3r_frame *frame, uint32
     }
 }
 
-/* A row of the destination from one of the depth image. (2 j + 1) W <= 2^13 x 2^12: no overflow; the quotient is at
- * most W - 1 */
+/* Picks a destination row from one row of the depth image. (2 j + 1) W <= 2^13 x 2^12: no overflow; the quotient is at
+ * most W - 1. */
 static void pick_row(const t3r_frame *frame, const uint8_t *row, uint32_t width, uint16_t *out)
 {
     for (uint32_t x = 0; x < width; x++) {

@@ -1,4 +1,4 @@
-/* Lens distortion as a grid of source positions, and sampling through it. */
+/* Lens distortion as a grid of source positions, and sampling through the grid. */
 #include "undistort.h"
 
 #include <stdbool.h>
@@ -11,11 +11,11 @@ _Static_assert(T3R_GRID_STEP == 1 << STEP_SHIFT, "grid step");
 
 /* Normalised image coordinates stay below 64: 89.1 degrees off the axis. */
 #define NORMALISED_MOST_Q24 (64 * ONE_Q24)
-/* Source positions in pixels, so that Q16 fits 32 bits. */
+/* Bound of source positions in pixels, so that Q16 fits 32 bits. */
 #define POSITION_MOST_Q16 (INT64_C(32767) << 16)
 
-/* Steps of 1/256 in radius (radial-tangential: below 8) or angle (fisheye: below pi / 2) that are searched for
- * the fold of the polynomial. */
+/* Steps of 1/256 in radius (radial-tangential: below 8) or angle (fisheye: below pi / 2) in the search for the fold of
+ * the polynomial. */
 #define RADIUS_STEPS 2047
 #define ANGLE_STEPS 402
 
@@ -32,10 +32,10 @@ static const int64_t atan_q40[CORDIC_STEPS] = {
 typedef struct lens {
     int64_t k_q24[4];
     uint32_t terms;
-    int64_t limit_q24; /* largest s that maps one to one, as far as was searched */
+    int64_t limit_q24; /* largest s below the fold, within the search */
 } lens;
 
-/* a b in Q24, round-half-up; false, and *product as it was, when it might not fit */
+/* Stores a b in Q24, round-half-up. Returns false, with *product unchanged, when it might not fit. */
 static bool multiply_q24(int64_t a, int64_t b, int64_t *product)
 {
     /* |a| < 2^(msb + 1) and likewise b, so the product stays below 2^62 */
@@ -46,8 +46,8 @@ static bool multiply_q24(int64_t a, int64_t b, int64_t *product)
     return true;
 }
 
-/* factor(s), or with slope the derivative of t factor(t^2) at t^2 = s: 1 + 3 k[0] s + 5 k[1] s^2 + ...
- * A sum stays below 2^38 + 9 x 2^31. */
+/* Computes factor(s), or with `slope` the derivative of t factor(t^2) at t^2 = s: 1 + 3 k[0] s + 5 k[1] s^2 + ... A sum
+ * stays below 2^38 + 9 x 2^31. */
 static bool radial(const lens *model, int64_t s_q24, bool slope, int64_t *value_q24)
 {
     int64_t value = 0;
@@ -80,7 +80,7 @@ static lens lens_of(const t3r_camera *camera)
     return model;
 }
 
-/* atan(r) in Q24 for 0 <= r < 2^7, error below 2^-24: the vector (1, r) turned onto the x axis. Its length grows
+/* Returns atan(r) in Q24 for 0 <= r < 2^7, error below 2^-24: turns the vector (1, r) onto the x axis. Its length grows
  * to 1.65 x 2^47. */
 static int64_t atan_q24(int64_t r_q24)
 {
@@ -99,7 +99,7 @@ static int64_t atan_q24(int64_t r_q24)
     return t3r_round_shift64(angle, 16);
 }
 
-/* Where the lens puts the ray (x, y, 1): false when it does not reach it. |x|, |y| < 2^30. */
+/* Applies the lens to the ray (x, y, 1). Returns false when the ray is beyond the fold. |x|, |y| < 2^30. */
 static bool distort_radtan(const lens *model, const int32_t *k_q24, int64_t x, int64_t y, int64_t *out_x,
                            int64_t *out_y)
 {
@@ -140,7 +140,7 @@ static bool distort_fisheye(const lens *model, int64_t x, int64_t y, int64_t *ou
     return true;
 }
 
-/* f x + c in Q16; false when it is out of range */
+/* Computes f x + c in Q16. Returns false when it is out of range. */
 static bool to_pixel(int32_t f_q16, int32_t c_q16, int64_t x_q24, int32_t *pixel_q16)
 {
     if (t3r_abs64(x_q24) >= INT64_C(1) << 31) {
@@ -154,7 +154,7 @@ static bool to_pixel(int32_t f_q16, int32_t c_q16, int64_t x_q24, int32_t *pixel
     return true;
 }
 
-/* The source position of pinhole pixel (u, v). */
+/* Computes the source position of pinhole pixel (u, v). */
 static bool source_of(const t3r_camera *camera, const lens *model, uint32_t u, uint32_t v, int32_t node[2])
 {
     if (camera->distortion == T3R_DISTORTION_NONE) {
@@ -200,7 +200,8 @@ t3r_status t3r_undistort_grid(const t3r_camera *camera, uint32_t width, uint32_t
     return 2 * outside > across * down ? T3R_ERR_CAMERA : T3R_OK;
 }
 
-/* Source positions of the pixels of row y in one cell of the grid, Q16; false when the cell shows nothing. */
+/* Computes the source positions of the pixels of row y in one cell of the grid, Q16. Returns false when the cell is
+ * outside. */
 static bool cell_positions(const int32_t *grid, uint32_t width, uint32_t cell, uint32_t y,
                            int32_t positions[T3R_GRID_STEP][2])
 {
@@ -224,7 +225,7 @@ static bool cell_positions(const int32_t *grid, uint32_t width, uint32_t cell, u
     return true;
 }
 
-/* The nearest pixel lies in the image. */
+/* Whether the nearest pixel lies in the image. */
 static bool inside(const int32_t position[2], uint32_t width, uint32_t height)
 {
     int64_t x = t3r_round_shift64(position[0], 16);
@@ -232,7 +233,7 @@ static bool inside(const int32_t position[2], uint32_t width, uint32_t height)
     return x >= 0 && y >= 0 && x < width && y < height;
 }
 
-/* The pixel and its next neighbour along one axis, held to the image, and the neighbour's weight in 256ths. */
+/* A pixel and its next neighbour along one axis, clamped to the image, and the neighbour's weight in 256ths. */
 typedef struct tap {
     uint32_t first, second;
     uint32_t weight;

@@ -1,4 +1,4 @@
-/* What stands for lenses that distort where they are left out: a camera with distortion is refused. */
+/* Stubs for builds without lens distortion: a camera with distortion is refused. */
 #include "undistort.h"
 
 #if !T3R_FEATURE_EXTRAS

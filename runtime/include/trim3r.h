@@ -468,12 +468,13 @@ typedef struct t3r_stream_report {
 
 typedef struct t3r_runtime t3r_runtime;
 
-/* A digest of this header's structs and features, as the program's compiler lays them out. t3r_interface() is the
- * library's own.
+/* Returns a digest of this header's structs and features, as the program's compiler lays them out. t3r_interface()
+ * returns the library's own.
  *
- * A program starts by one of the inline calls below. Each hands the program's digest to the call of its name with _as
- * behind it. With another digest than the library's that one touches nothing and returns T3R_ERR_INTERFACE. A language
- * that has no use of this header calls those, with what t3r_interface() returns. */
+ * A program starts with one of the inline calls below. Each passes the program's digest to the call of the same name
+ * with the suffix _as. If the digest differs from the library's, that call touches nothing and returns
+ * T3R_ERR_INTERFACE. A language that cannot use this header calls the _as calls itself, with what t3r_interface()
+ * returns. */
 static inline uint64_t t3r_header_interface(void)
 {
     uint64_t digest = T3R_FEATURES_BUILT;
@@ -484,8 +485,8 @@ static inline uint64_t t3r_header_interface(void)
 }
 uint64_t t3r_interface(void);
 
-/* Defaults for a working size, number of views and budget. With another interface than the library's, or another number
- * of bytes, all fields are 0, which every other call refuses. */
+/* Returns defaults for a working size, number of views and budget. With another interface than the library's, or
+ * another number of bytes, all fields are 0, which every other call refuses. */
 t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_bytes, uint32_t width, uint32_t height,
                                  uint32_t views, uint32_t gaussians);
 static inline t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, uint32_t gaussians)
@@ -505,26 +506,27 @@ uint32_t t3r_cluster_count(const t3r_config *config);
  * configuration. */
 uint32_t t3r_cluster_batch_count(const t3r_config *config);
 
-/* What an arena for this configuration needs. T3R_ERR_CONFIG names no field: t3r_config_error() does.
- * T3R_ERR_UNSUPPORTED: it is in range, but this library was built without what it asks for. T3R_ERR_INTERFACE. */
+/* Computes what an arena for this configuration needs. After T3R_ERR_CONFIG t3r_config_error() names the field.
+ * T3R_ERR_UNSUPPORTED: the configuration is in range, but this library was built without what it asks for.
+ * T3R_ERR_INTERFACE. */
 t3r_status t3r_plan_as(uint64_t digest, const t3r_config *config, t3r_plan_info *plan);
 static inline t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan)
 {
     return t3r_plan_as(t3r_header_interface(), config, plan);
 }
 
-/* The two sums of t3r_plan() alone: a firmware that sizes its arena when it runs links no names of buffers then. Errors
- * are those of t3r_plan(). */
+/* Computes only the two sums of t3r_plan(), so that a firmware that sizes its arena at run time links no names of
+ * buffers. Errors are those of t3r_plan(). */
 t3r_status t3r_plan_bytes_as(uint64_t digest, const t3r_config *config, size_t *min_bytes, size_t *bytes);
 static inline t3r_status t3r_plan_bytes(const t3r_config *config, size_t *min_bytes, size_t *bytes)
 {
     return t3r_plan_bytes_as(t3r_header_interface(), config, min_bytes, bytes);
 }
 
-/* The inverse: lowers config->max_gaussians to the most with which t3r_init() accepts an arena of `bytes`, and the
- * budget `gaussians` along with it. It never raises them: begin with the most that you could use, which is width x
+/* Inverts t3r_plan(): lowers config->max_gaussians to the most with which t3r_init() accepts an arena of `bytes`, and
+ * the budget `gaussians` along with it. It never raises them: begin with the most that you could use, which is width x
  * height x views. Takes 24 plans. T3R_ERR_ARENA: not even one Gaussian fits. T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: as
- * t3r_plan(). After an error the configuration is as before. */
+ * t3r_plan(). After an error the configuration is unchanged. */
 t3r_status t3r_plan_within_as(uint64_t digest, size_t bytes, t3r_config *config);
 static inline t3r_status t3r_plan_within(size_t bytes, t3r_config *config)
 {
@@ -564,10 +566,10 @@ static inline t3r_status t3r_set_preset(t3r_preset preset, t3r_config *config, c
 t3r_status t3r_count_work(const t3r_config *config, size_t bytes, const void *weights, size_t weight_bytes,
                           t3r_work_counts *counts);
 
-/* What the work of a stage takes at these prices: whole nanoseconds, or operations. UINT64_MAX where it is more;
- * 0 without counts or prices. */
+/* Returns the cost of a stage's work at these prices: whole nanoseconds, or operations. UINT64_MAX where it is more; 0
+ * without counts or prices. */
 uint64_t t3r_price_of(const t3r_work_counts *counts, const t3r_prices *prices, t3r_stage stage);
-/* The same of a build: all stages but the raster, which is a view's. */
+/* Returns the cost of a build at these prices: all stages but the raster, which belongs to a view. */
 uint64_t t3r_price_of_build(const t3r_work_counts *counts, const t3r_prices *prices);
 
 /* Adds the settings that fit the limits to a list, which begins with *count = 0 and has room for T3R_MAX_CHOICES more.
@@ -581,8 +583,8 @@ uint64_t t3r_price_of_build(const t3r_work_counts *counts, const t3r_prices *pri
 t3r_status t3r_plan_choices(const t3r_config *config, const void *weights, size_t weight_bytes,
                             const t3r_limits *limits, t3r_choice *choices, uint32_t *count);
 
-/* The first field of the configuration that is out of range, or asks for what this library was built without, as text;
- * NULL when there is none. */
+/* Returns the first field of the configuration that is out of range, or asks for what this library was built without,
+ * as text; NULL when there is none. */
 const char *t3r_config_error(const t3r_config *config);
 
 /* Lays the arena out. On any error *rt is NULL and the arena is untouched. */
@@ -592,8 +594,8 @@ static inline t3r_status t3r_init(t3r_runtime **rt, void *arena, size_t arena_by
     return t3r_init_as(t3r_header_interface(), rt, arena, arena_bytes, config);
 }
 
-/* Binds an arena that was copied or restored from bytes, of the very same size. There are no hooks and no weights then,
- * and inner loops are plain C. T3R_ERR_EPOCH: it was made by another version, or is damaged. */
+/* Binds an arena that was copied or restored from bytes, of exactly the same size. It then has no hooks and no weights,
+ * and its inner loops are plain C. T3R_ERR_EPOCH: it was made by another version, or is damaged. */
 t3r_status t3r_attach_as(uint64_t digest, t3r_runtime **rt, void *arena, size_t arena_bytes);
 static inline t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_bytes)
 {
@@ -627,8 +629,8 @@ t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features);
  * bound stays. */
 t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes);
 
-/* The reason for which t3r_bind_head() refuses a weight file, as text. NULL when the file is sound: a head that is
- * refused all the same is too large for the arena (t3r_head_column_bytes()). */
+/* Returns the reason for which t3r_bind_head() refuses a weight file, as text. NULL when the file is sound: a head that
+ * is refused all the same is too large for the arena (t3r_head_column_bytes()). */
 const char *t3r_weights_error(const void *weights, size_t bytes);
 
 /* The head_column_bytes with which this head works on views of this width, whatever their height, at least 1. 0 =
@@ -636,7 +638,8 @@ const char *t3r_weights_error(const void *weights, size_t bytes);
  * with 8-bit activations. */
 uint32_t t3r_head_column_bytes(const void *weights, size_t bytes, uint32_t width);
 
-/* The CRC-32 of the head bound last, 0 when none was: a copied arena remembers it, and so which file to bind again. */
+/* Returns the CRC-32 of the head bound last, 0 when none was. A copied arena keeps it, which shows the file to bind
+ * again. */
 uint32_t t3r_head_crc(const t3r_runtime *rt);
 
 /* Adds the next context view: converted to planes, resized to the working size, undistorted. The camera belongs to the
@@ -697,10 +700,10 @@ t3r_status t3r_reconstruct(t3r_runtime *rt, const t3r_request *request, t3r_scen
  * analysis stays. */
 t3r_status t3r_rebuild(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene);
 
-/* How context view `view` got its depth with T3R_DEPTH_STEREO, also after T3R_ERR_STEREO. T3R_PAIR_OK: *partner is the
- * view that most of it came from. Any other: the view has no depth and adds no points, and this is the reason for which
- * the pair with the best prospects was refused. *partner is `view` where there is none: by sensor, out of range, before
- * an analysis. */
+/* Returns how context view `view` got its depth with T3R_DEPTH_STEREO, also after T3R_ERR_STEREO. T3R_PAIR_OK: *partner
+ * is the view that most of it came from. Any other: the view has no depth and adds no points, and the value is the
+ * reason for which the pair with the best prospects was refused. *partner is `view` where there is none: by sensor, out
+ * of range, before an analysis. */
 t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner);
 
 /* Streams (t3r_config.stream): takes the next keyframe of a moving camera into the map, which is the scene in the
@@ -726,66 +729,67 @@ t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner
 t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                                t3r_stream_report *report);
 
-/* The overlap of a picture of width x height by this camera with the newest keyframe, 0..256, in 1/256. It is the
- * lesser of two shares. One is of the keyframe's points: those that the picture would show. The other is of the cells
- * of an 8 x 8 grid over a picture: those that the points fall on here, against those in their own. The camera's
- * distortion is ignored. It serves to choose keyframes: below some 70 % the next one is due. T3R_ERR_STATE: there is no
- * keyframe yet. T3R_ERR_CAMERA, T3R_ERR_UNSUPPORTED: as t3r_stream_keyframe(). */
+/* Computes the overlap of a picture of width x height by this camera with the newest keyframe, 0..256, in 1/256. It is
+ * the lesser of two shares. One is the share of the keyframe's points that the picture would show. The other is the
+ * number of cells of an 8 x 8 grid that these points fall on in the picture, over the number in their own picture. The
+ * camera's distortion is ignored. Use it to choose keyframes: below some 70 % the next one is due. T3R_ERR_STATE: there
+ * is no keyframe yet. T3R_ERR_CAMERA, T3R_ERR_UNSUPPORTED: as t3r_stream_keyframe(). */
 t3r_status t3r_stream_overlap(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
                               uint32_t *overlap_q8);
 
-/* The scene in the arena, for instance after t3r_attach(). T3R_ERR_STATE when there is none. */
+/* Returns the scene in the arena, for instance after t3r_attach(). T3R_ERR_STATE when there is none. */
 t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene);
 
-/* For scenes that come from files: the first starts an empty scene in the given frame (exponent -24..24, |origin| <
- * 2^62) and discards the views, the second appends a Gaussian. T3R_ERR_ARGUMENT: a field is out of range; every one is
- * checked. T3R_ERR_STATE: of a stream, and to append also where there is no scene. T3R_ERR_FULL: the arena holds no
- * more Gaussians. */
+/* Build a scene from a file: the first starts an empty scene in the given frame (exponent -24..24, |origin| < 2^62) and
+ * discards the views, the second appends a Gaussian. T3R_ERR_ARGUMENT: a field is out of range; every one is checked.
+ * T3R_ERR_STATE: the arena is a stream's, or there is no scene to append to. T3R_ERR_FULL: the arena holds no more
+ * Gaussians. */
 t3r_status t3r_scene_begin(t3r_runtime *rt, const t3r_scene_frame *frame);
 t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian);
 
-/* The colour of a Gaussian seen along a direction, from spherical harmonics (SPEC, "Harmonics"): the scene holds one
- * colour for all directions, so whoever draws a scene with harmonics appends its Gaussians again for each view.
- * `degree` is 0..T3R_HARMONICS_DEGREE_MOST. coefficients_q12 are (degree + 1)^2 times r g b, in 1/2^12. `direction` is
- * from the camera to the mean, of any length in any unit; at length 0 degree 0 alone counts. colour_q7 is as in
- * t3r_gaussian. T3R_ERR_ARGUMENT: `degree` is out of range. */
+/* Computes the colour of a Gaussian seen along a direction, from spherical harmonics (SPEC, "Harmonics"). The scene
+ * holds one colour for all directions, so a program that draws a scene with harmonics appends its Gaussians again for
+ * each view. `degree` is 0..T3R_HARMONICS_DEGREE_MOST. coefficients_q12 are (degree + 1)^2 times r g b, in 1/2^12.
+ * `direction` is from the camera to the mean, of any length in any unit; at length 0 only degree 0 counts. colour_q7 is
+ * as in t3r_gaussian. T3R_ERR_ARGUMENT: `degree` is out of range. */
 t3r_status t3r_harmonics_colour(const int16_t *coefficients_q12, uint32_t degree, const int32_t direction[3],
                                 uint16_t colour_q7[3]);
 
 /* Draws the scene in the arena as seen by the camera. Its distortion is ignored: targets are pinhole. Without
- * keep_analysis and `warm` the views are discarded, for the raster works where their planes were. T3R_ERR_STATE: there
- * is no scene. T3R_ERR_ARGUMENT: sizes or strides are out of range, or depth or alpha is not aligned for its type.
- * T3R_ERR_CAMERA: the camera is more than 1,024 scene units from the origin. T3R_ERR_CANCELLED: the target is drawn in
- * part. */
+ * keep_analysis and `warm` the views are discarded, because the raster uses the memory of their planes. T3R_ERR_STATE:
+ * there is no scene. T3R_ERR_ARGUMENT: sizes or strides are out of range, or depth or alpha is not aligned for its
+ * type. T3R_ERR_CAMERA: the camera is more than 1,024 scene units from the origin. T3R_ERR_CANCELLED: the target is
+ * partly drawn. */
 t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target);
 
-/* The number of passes over the scene that the last t3r_render() took: 1 when the arena had room for all splats. */
+/* Returns the number of passes over the scene that the last t3r_render() took: 1 when the arena had room for all
+ * splats. */
 uint32_t t3r_render_passes(const t3r_runtime *rt);
 
 /* The number of refinement passes that the last build took, 0..`refine`. 0 without a runtime, before a build, and
  * of a stream. */
 uint32_t t3r_refinement_passes(const t3r_runtime *rt);
 
-/* The camera of context view `view`, of the working size and without distortion, where the last analysis has it: with
- * `align` its pose may be a corrected one. T3R_ERR_ARGUMENT: NULL, or a view that was not added. */
+/* Returns the camera of context view `view`, at the working size and without distortion, as the last analysis placed
+ * it: with `align` its pose may be a corrected one. T3R_ERR_ARGUMENT: NULL, or a view that was not added. */
 t3r_status t3r_view_camera(const t3r_runtime *rt, uint32_t view, t3r_camera *camera);
 
-/* The image stage alone, as t3r_add_view() applies it: turns any frame into 8-bit RGB and 16-bit depth of the working
- * size, undistorted, in the caller's memory. depth_out may be NULL, and so may the frame's depth. *undistorted gets the
- * camera of the result. T3R_ERR_STATE unless the runtime is empty. */
+/* Runs the image stage alone, as t3r_add_view() applies it: converts any frame to 8-bit RGB and 16-bit depth of the
+ * working size, undistorted, in the caller's memory. depth_out may be NULL, and so may the frame's depth. *undistorted
+ * becomes the camera of the result. T3R_ERR_STATE unless the runtime is empty. */
 t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint8_t *rgb_out,
                        uint16_t *depth_out, t3r_camera *undistorted);
 
-/* The version of the library, "major.minor.patch". */
+/* Returns the version of the library, "major.minor.patch". */
 const char *t3r_version(void);
 
-/* The features that this library was built with, as T3R_HAS_... (trim3r_features.h). */
+/* Returns the features that this library was built with, as T3R_HAS_... (trim3r_features.h). */
 uint32_t t3r_features(void);
 
-/* A short English sentence for a status. Never NULL. */
+/* Returns a short English sentence for a status. Never NULL. */
 const char *t3r_error_text(t3r_status status);
-/* Stable lower-case names, as the command line and the tables spell them. NULL = out of range, or one of the values
- * ..._CONFIGURED. */
+/* Return stable lower-case names, as the command line and the tables print them. NULL = out of range, or one of the
+ * values ..._CONFIGURED. */
 const char *t3r_stage_name(t3r_stage stage);
 const char *t3r_work_name(t3r_work work);
 const char *t3r_allocation_name(t3r_allocation allocation);
@@ -794,7 +798,7 @@ const char *t3r_depth_name(t3r_depth depth);
 const char *t3r_preset_name(t3r_preset preset);
 const char *t3r_wavelet_name(t3r_wavelet wavelet);
 const char *t3r_pixel_format_name(t3r_pixel_format format);
-/* Whether two views can be matched, and why not, as text for people. Never NULL. */
+/* Returns whether two views can be matched, and if not the reason, as text for people. Never NULL. */
 const char *t3r_pair_text(t3r_pair pair);
 
 #ifdef __GNUC__

@@ -61,7 +61,7 @@
     X(REFINEMENT, refinement)                                                                                          \
     X(EXTRAS, extras)
 
-/* Those that are left in. */
+/* The features of this build. */
 #define T3R_BUILT_(FEATURE, name) | (T3R_FEATURE_##FEATURE ? T3R_HAS_##FEATURE : 0u)
 #define T3R_FEATURES_BUILT (0u T3R_FEATURE_ROWS(T3R_BUILT_))
 

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* `hash` carried on over `count` bytes, at any address. */
+/* Continues `hash` over `count` bytes at any address. */
 typedef uint64_t t3r_hash_bytes_kernel(uint64_t hash, const uint8_t *bytes, size_t count);
 
 t3r_hash_bytes_kernel t3r_hash_bytes_c;

@@ -1,4 +1,4 @@
-/* Values serialised little-endian into the hash of a stage (SPEC.md, "Hash"), a run of bytes at a time. */
+/* Serialises values little-endian into the hash of a stage (SPEC.md, "Hash"), a run of bytes at a time. */
 #ifndef T3R_HASH_WRITER_H
 #define T3R_HASH_WRITER_H
 
@@ -6,13 +6,13 @@
 #include "core/little_endian.h"
 #include "kernels/hash_bytes.h"
 
-/* A multiple of the longest value. */
+/* Bytes of a run; a multiple of the longest value. */
 #define T3R_HASH_RUN 512u
 
 typedef struct t3r_hash_writer {
     t3r_hash_bytes_kernel *hash_bytes;
-    uint64_t hash;  /* of all bytes before those that wait */
-    uint32_t count; /* of bytes that wait */
+    uint64_t hash;  /* of all bytes before the buffered ones */
+    uint32_t count; /* number of buffered bytes */
     uint8_t bytes[T3R_HASH_RUN];
 } t3r_hash_writer;
 
@@ -23,7 +23,7 @@ static inline void t3r_hash_begin(t3r_hash_writer *w, t3r_hash_bytes_kernel *has
     w->count = 0;
 }
 
-/* The hash of all that was written. */
+/* Returns the hash of all bytes written. */
 static inline uint64_t t3r_hash_end(t3r_hash_writer *w)
 {
     w->hash = w->hash_bytes(w->hash, w->bytes, w->count);
@@ -31,7 +31,7 @@ static inline uint64_t t3r_hash_end(t3r_hash_writer *w)
     return w->hash;
 }
 
-/* Room for `bytes` more, at most a run. */
+/* Returns room for `bytes` more bytes, at most a run. */
 static inline uint8_t *t3r_hash_room(t3r_hash_writer *w, uint32_t bytes)
 {
     if (bytes > T3R_HASH_RUN - w->count) {

@@ -1,10 +1,11 @@
 /* The table of the runtime's hot loops: one entry a loop. The header of each kernel states its ranges, alignment
  * and padding.
  *
- * Plain C defines every entry (kernels_c.c). A variant for an instruction set gives the same bits for all that the
- * kernel's header allows, and reads and writes no byte beyond what that header states. t3r_kernels_choose() fills a
- * table with plain C and puts over it what the processor has. To add a variant: its file in the room of the
- * architecture, and a row in that room's variants.h. tests/kernels compares it with plain C from then on. */
+ * Plain C defines every entry (kernels_c.c). A variant for an instruction set gives the same bits for all inputs that
+ * the kernel's header allows, and reads and writes no byte beyond what that header states. t3r_kernels_choose() fills a
+ * table with plain C and replaces entries by the variants that the processor supports. To add a variant, put its file
+ * in the folder of the architecture and a row in that folder's variants.h. tests/kernels then compares it with plain C.
+ */
 #ifndef T3R_KERNELS_H
 #define T3R_KERNELS_H
 
@@ -69,7 +70,7 @@ typedef struct t3r_kernels {
     /* superclusters and budget */
     t3r_sample_potential_kernel *sample_potential;
     t3r_sample_approach_kernel *sample_approach;
-    t3r_nearest_begin_kernel *nearest_begin; /* and nearest: a variant replaces both */
+    t3r_nearest_begin_kernel *nearest_begin; /* with nearest: a variant replaces both */
     t3r_nearest_kernel *nearest;
     t3r_blur_row_kernel *blur_row;
     t3r_blur_column_kernel *blur_column;
@@ -78,7 +79,7 @@ typedef struct t3r_kernels {
     /* head */
     t3r_convolve_kernel *convolve;
     t3r_depthwise_kernel *depthwise;
-    t3r_pack_layer_kernel *pack_layer; /* and convolve_packed: NULL in plain C, which takes layers as they lie */
+    t3r_pack_layer_kernel *pack_layer; /* with convolve_packed: NULL in plain C, which uses unpacked layers */
     t3r_convolve_packed_kernel *convolve_packed;
     /* raster and refine */
     t3r_project_kernel *project;
@@ -92,11 +93,11 @@ typedef struct t3r_kernels {
     /* the hash of each stage */
     t3r_hash_bytes_kernel *hash_bytes;
 
-    uint32_t
-        strip_bytes; /* of an activation that convolve_packed reads: 2 are an int16, 1 is a byte of activation + 128 */
+    /* Bytes an activation that convolve_packed reads: 2 = int16, 1 = a byte of activation + 128. */
+    uint32_t strip_bytes;
 } t3r_kernels;
 
-/* Plain C: the definition. */
+/* Plain C: the definition of all entries but packed layers. */
 extern const t3r_kernels t3r_kernels_c;
 
 /* Fills the table for a processor with these features, T3R_CPU_...; 0: plain C. */

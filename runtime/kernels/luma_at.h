@@ -1,7 +1,7 @@
 /* A picture's luma at places between its pixels (SPEC.md, "Stereo").
  *
- * Bilinear, as the undistortion has it: the place to Q8, round-half-up, held to the picture; one rounding of the four
- * pixels' weighted sum. */
+ * Bilinear as in undistortion: the place is rounded to Q8, half up, and clamped to the picture, and the weighted sum of
+ * the four pixels is rounded once. */
 #ifndef T3R_KERNEL_LUMA_AT_H
 #define T3R_KERNEL_LUMA_AT_H
 
@@ -10,12 +10,12 @@
 #include "ray_row.h"
 
 typedef struct t3r_luma_picture {
-    const uint8_t *luma;    /* 0 = nothing */
+    const uint8_t *luma;    /* 0 = no luma */
     uint32_t width, height; /* 2..8192 each */
 } t3r_luma_picture;
 
-/* out[i] = 1..255, and 0 where there is no place, where it is beyond the picture's pixels, and where the pixel nearest
- * to it has nothing. `count`: up to T3R_RAYS; those behind it, up to a multiple of 16, are read and mean nothing. */
+/* Computes out[i] = 1..255, or 0 where there is no place, where the place is outside the picture, and where its nearest
+ * pixel has no luma. `count`: up to T3R_RAYS; places after it, up to a multiple of 16, are read and ignored. */
 typedef void t3r_luma_at_kernel(const t3r_luma_picture *picture, const t3r_ray_places *places, uint32_t count,
                                 uint8_t *out);
 t3r_luma_at_kernel t3r_luma_at_c;

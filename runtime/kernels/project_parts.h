@@ -1,11 +1,11 @@
-/* What projecting one Gaussian and projecting several share (project.c): its scalar parts. */
+/* Scalar parts of projection, shared by projecting one Gaussian and several (project.c). */
 #ifndef T3R_KERNEL_PROJECT_PARTS_H
 #define T3R_KERNEL_PROJECT_PARTS_H
 
 #include "core/fixed.h"
 #include "project.h"
 
-#define T3R_EXTENT_MOST_Q12 (1 << 24) /* a footprint column is held within 4096 px */
+#define T3R_EXTENT_MOST_Q12 (1 << 24) /* bound of a footprint column: 4096 px */
 
 /* 1 / z as rn 2^(lz - 62), rn in (2^30, 2^31] */
 typedef struct t3r_reciprocal {
@@ -40,8 +40,8 @@ static inline int32_t t3r_log_level_q16(uint32_t opacity_q15)
     return t3r_log2_q16((uint32_t)(2 * T3R_MAX(level_q8, 16)));
 }
 
-/* Half-width in pixels, Q8, of the box outside of which opacity exp(-q) < 1/255: sqrt(2 L variance), by logarithms,
- * with more than their error (2^-13 of it) added. */
+/* Returns the half-width in pixels, Q8, of the box outside of which opacity exp(-q) < 1/255: sqrt(2 L variance), by
+ * logarithms, with more than their error (2^-13 of it) added. */
 static inline int64_t t3r_half_width_q8(uint64_t variance_q24, int32_t log_level_q16)
 {
     /* Q24 times Q8 is Q32, whose root is Q16; below 2^15 px */

@@ -1,5 +1,5 @@
 /* The loops of the radix sort, a byte a pass. Arrays are aligned to 4 bytes; nothing beyond `count` entries is read,
- * and nothing is written but the entries that a pass fills. */
+ * and only the entries that a pass fills are written. */
 #ifndef T3R_KERNEL_RADIX_H
 #define T3R_KERNEL_RADIX_H
 
@@ -12,8 +12,8 @@
 typedef void t3r_radix_count_kernel(const uint32_t *restrict keys, uint32_t count,
                                     uint32_t histogram[T3R_RADIX_DIGITS * T3R_RADIX]);
 
-/* Moves (key, index) pairs to where their digit's start says, in their order; start[value] ends behind the last one
- * that has the value. The starts lead to `count` different places. */
+/* Moves (key, index) pairs, in order, to the places that their digit's start gives. start[value] then points after the
+ * last one with that value. The starts lead to `count` different places. */
 typedef void t3r_radix_pass_kernel(const uint32_t *restrict keys, const uint32_t *restrict indices, uint32_t count,
                                    uint32_t digit, uint32_t start[T3R_RADIX], uint32_t *restrict to_keys,
                                    uint32_t *restrict to_indices);

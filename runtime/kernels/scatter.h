@@ -1,4 +1,4 @@
-/* The innermost loop of refinement: what the pixels of a tile add to the sums of one splat (SPEC.md, "Refinement"). */
+/* The innermost loop of refinement: adds the pixels of a tile to the sums of one splat (SPEC.md, "Refinement"). */
 #ifndef T3R_KERNEL_SCATTER_H
 #define T3R_KERNEL_SCATTER_H
 
@@ -6,11 +6,12 @@
 
 #include "blend.h"
 
-/* Monomials x^i y^j with i + j <= 2, and with i + j <= 4, in the order 1 x y xx xy yy xxx xxy xyy yyy xxxx ... */
+/* Numbers of monomials x^i y^j with i + j <= 2 and with i + j <= 4, in the order 1 x y xx xy yy xxx xxy xyy yyy xxxx
+ * ... */
 #define T3R_REFINE_MOMENTS_2 6
 #define T3R_REFINE_MOMENTS_4 15
 
-/* Where x^k y^l stands. */
+/* Index of x^k y^l. */
 enum t3r_moment {
     T3R_M_1,
     T3R_M_X,
@@ -29,42 +30,45 @@ enum t3r_moment {
     T3R_M_Y4
 };
 
-/* What one Gaussian's pixels add up to, over all views, shifted right by t3r_refine_shift(area). Integers, so the order
- * of adding does not show. (x, y) are the splat's own coordinates: a pixel's offset from the mean, in deviations. */
+/* Sums over one Gaussian's pixels in all views, shifted right by t3r_refine_shift(area). They are integers, so the
+ * order of adding doesn't matter. (x, y) are the splat's own coordinates: a pixel's offset from the mean, in
+ * deviations. */
 typedef struct t3r_refine_sums {
     int32_t colour[3];                       /* sum of w r, levels, Q11 */
     int32_t weight;                          /* sum of w, Q15 */
     int32_t gradient[T3R_REFINE_MOMENTS_2];  /* sum of (g . r) x^i y^j, levels^2, Q7 */
     int32_t curvature[T3R_REFINE_MOMENTS_4]; /* sum of |g|^2 x^i y^j, levels^2, Q7 */
-    uint32_t area;                           /* pixels of its boxes in the views added so far, below 2^28 */
-    int16_t right_q15[2], down_q15[2];       /* how x and y change a pixel to the right and down, in this view */
+    uint32_t area;                           /* pixels of the splat's boxes in the views added so far, below 2^28 */
+    int16_t right_q15[2], down_q15[2];       /* change of x and y a pixel to the right and down, in this view */
 } t3r_refine_sums;
 
-/* Sums of so many pixels are kept shifted right by ceil(log2 area) - 6, at least 0: 64 pixels' worth at most. */
+/* Returns the right shift of sums over `area` pixels, ceil(log2 area) - 6, at least 0: they are as large as 64 pixels'
+ * at most. */
 static inline uint32_t t3r_refine_shift(uint32_t area)
 {
     return area <= 64 ? 0 : 26u - (uint32_t)__builtin_clz(area - 1);
 }
 
-/* A tile on its way: first drawn; then, from the last splat to the first, what they are blended over. */
+/* A tile being refined: first drawn, then walked back from the last splat to the first. */
 typedef struct t3r_wanted {
-    t3r_tile pixels;                                      /* as drawn; on the way back its colours are those behind */
+    t3r_tile pixels;                                      /* as drawn; on the way back, colours behind the current
+                                                           * splat */
     int16_t residual_q4[3][T3R_TILE_SIDE][T3R_TILE_SIDE]; /* target - drawn, levels: +-4080 */
-    uint16_t counts[T3R_TILE_SIDE][T3R_TILE_SIDE];        /* 65,535, or 0 where a pixel has no depth */
+    uint16_t counts[T3R_TILE_SIDE][T3R_TILE_SIDE];        /* 65,535, or 0 where a pixel doesn't count */
 } t3r_wanted;
 
-/* A splat in its tile. Its coordinates count modulo 2^16: they matter only where a weight is not 0, and fit there. */
+/* A splat in its tile. Its coordinates are modulo 2^16: they matter only where a weight is not 0, and fit there. */
 typedef struct t3r_scatter_splat {
-    const t3r_tile_splat *span; /* of which colour, columns and rows are read */
+    const t3r_tile_splat *span; /* only colour, columns and rows are read */
     const t3r_blended_row *rows;
-    uint32_t scale;        /* the leading zeros that all weights of the rows share, of 16 bits: 0..15 */
+    uint32_t scale;        /* leading zeros common to all 16-bit weights of the rows: 0..15 */
     int16_t origin_q13[2]; /* x and y of the first pixel of the first group */
     int16_t right_q13[2], down_q13[2];
-    uint32_t pixels; /* of the splat's box in the tile, at most the area of the sums: bounds what it adds */
+    uint32_t pixels; /* of the splat's box in the tile, at most the area of the sums; bounds what it adds */
 } t3r_scatter_splat;
 
-/* Takes the splat off the tile: the colours behind it become those behind the splat before it, which are its own mixed
- * over them. sums: where its pixels accumulate, or NULL. Nothing is aligned to more than its type. */
+/* Removes the splat from the tile: the colours behind it become those behind the previous splat, which are its own
+ * mixed over them. sums: where its pixels are added, or NULL. Nothing needs more alignment than its type. */
 typedef void t3r_scatter_kernel(t3r_wanted *restrict tile, const t3r_scatter_splat *splat,
                                 t3r_refine_sums *restrict sums);
 t3r_scatter_kernel t3r_scatter_c;

@@ -1,40 +1,42 @@
-/* How many bits everything takes that scattering sums: shared by plain C and the variants (SPEC.md, "Refinement"). */
+/* Bit widths of all terms that scattering sums, shared by plain C and the variants (SPEC.md, "Refinement"). */
 #ifndef T3R_KERNEL_SCATTER_BITS_H
 #define T3R_KERNEL_SCATTER_BITS_H
 
 #include "core/fixed.h"
 #include "scatter.h"
 
-#define T3R_X_FRACTION 13  /* bits of x and y: |x| is below 3.4 wherever a weight is not 0, and held modulo 8 */
+#define T3R_X_FRACTION 13  /* bits of x and y: |x| is below 3.4 wherever a weight is not 0, and wraps modulo 8 */
 #define T3R_X2_FRACTION 11 /* of their products */
-/* The square times a power, rounded by 15 bits, times another one */
+/* The square times a power, rounded by 15 bits, times another power. */
 #define T3R_X3_FRACTION (T3R_X_FRACTION + T3R_X2_FRACTION - 15)
 #define T3R_X4_FRACTION (2 * T3R_X2_FRACTION - 15)
 
-/* The sum of all pixels' |g|^2 takes so many bits, and each of them so many. The same goes for g . r. |x| < 2^14.8 in
- * its fraction, so that sums of their products stay below 2^31. */
+/* Bits of each pixel's |g|^2, and of the sum over all pixels; likewise of g . r. |x| < 2^14.8 in its fraction, so sums
+ * of their products stay below 2^31. */
 #define T3R_TERM_BITS 14
 #define T3R_TERM_SUM_BITS 16
 
-/* What one pixel adds at most, Q7: |g| and |r| are at most 255 sqrt 3 levels, |g| also that times w <= exp(-|e|^2 / 2),
- * and |e|^k exp(-|e|^2 / 2), k <= 2, beside |g| |r| and |e|^k exp(-|e|^2), k <= 4, beside |g|^2 are at most 1. A tile
- * is held to as many times that as the splat's box has pixels there, so that the bound does not hang on roundings. */
+/* Bound of what one pixel adds, Q7: |g| and |r| are at most 255 sqrt 3 levels, |g| also that times w <= exp(-|e|^2 /
+ * 2), and |e|^k exp(-|e|^2 / 2), k <= 2, beside |g| |r| and |e|^k exp(-|e|^2), k <= 4, beside |g|^2 are at most 1. A
+ * tile's sums are clamped to this times the pixels of the splat's box there, so that the bound does not depend on
+ * roundings. */
 #define T3R_MOMENT_MOST_Q7 (195075 * 128)
 
-/* ceil(log2 rows), rows of eight pixels: 0..5 */
+/* Returns ceil(log2 rows), rows of eight pixels: 0..5. */
 static inline uint32_t t3r_count_bits(uint32_t rows)
 {
     return rows <= 1 ? 0 : t3r_msb32(rows - 1) + 1;
 }
 
-/* The right shift that brings what has these bits to `bits` of them. */
+/* Returns the right shift that reduces a number with these bits to `bits` bits. */
 static inline uint32_t t3r_shift_to(uint32_t all_bits, uint32_t bits)
 {
     const uint32_t has = all_bits == 0 ? 0 : t3r_msb32(all_bits) + 1;
     return has > bits ? has - bits : 0;
 }
 
-/* all_bits: of the sizes of all terms; sum: of the sizes, each less its last 8 bits; rows: of eight pixels. */
+/* Returns the right shift of terms. all_bits: bitwise or of the sizes of all terms; sum: of the sizes, each without its
+ * last 8 bits; rows: of eight pixels. */
 static inline uint32_t t3r_term_shift(uint32_t all_bits, uint32_t sum, uint32_t rows)
 {
     const uint32_t by_size = t3r_shift_to(all_bits, T3R_TERM_BITS);
@@ -53,7 +55,7 @@ static inline t3r_shift_steps t3r_shift_steps_of(uint32_t shift)
     return shift == 0 ? (t3r_shift_steps){0, 0} : (t3r_shift_steps){shift - 1, 1};
 }
 
-/* Right shifts from the sums to those of t3r_refine_sums; gradient and curvature of order 0. */
+/* Right shifts from the sums to t3r_refine_sums; gradient and curvature of order 0. */
 typedef struct t3r_sum_shifts {
     int32_t colour, weight, gradient, curvature;
 } t3r_sum_shifts;
@@ -75,7 +77,7 @@ static inline int32_t t3r_moment_most(uint32_t area, uint32_t pixels)
     return t3r_scale32(T3R_MOMENT_MOST_Q7, -(int32_t)t3r_refine_shift(area)) * (int32_t)pixels;
 }
 
-/* Adds sums of the orders 0, 1, 2 and so on, whose fractions are these. */
+/* Adds moments of the orders 0, 1, 2 and so on, with their fraction bits. */
 static inline void t3r_add_moments(const uint32_t *moments, uint32_t orders, int32_t right, int32_t most, int32_t *sums)
 {
     static const int8_t fraction[] = {0, T3R_X_FRACTION, T3R_X2_FRACTION, T3R_X3_FRACTION, T3R_X4_FRACTION};
@@ -86,7 +88,7 @@ static inline void t3r_add_moments(const uint32_t *moments, uint32_t orders, int
     }
 }
 
-/* Adds what the pixels of a splat come to: lacking colour, weight, and moments modulo 2^32. */
+/* Adds a splat's sums over its pixels: residual colour, weight, and moments modulo 2^32. */
 static inline void t3r_add_scattered(const int32_t colour[3], int32_t weight,
                                      const uint32_t gradient[T3R_REFINE_MOMENTS_2],
                                      const uint32_t curvature[T3R_REFINE_MOMENTS_4], const t3r_sum_shifts *by,

@@ -1,4 +1,4 @@
-/* From the sums of Gaussians to their corrections (SPEC.md, "Refinement"). */
+/* Corrections of Gaussians from their sums (SPEC.md, "Refinement"). */
 #ifndef T3R_KERNEL_SOLVE_H
 #define T3R_KERNEL_SOLVE_H
 
@@ -9,18 +9,18 @@
 /* Parameters of a Gaussian's appearance: log opacity; shift along its two surface axes; log scale and shear in them. */
 #define T3R_REFINE_PARAMETERS 6
 
-/* What a pass changes in a Gaussian. */
+/* A pass's change of a Gaussian. */
 typedef struct t3r_correction {
     int16_t colour_q7[3];
     int16_t step_q16[T3R_REFINE_PARAMETERS];
-    int16_t share_q14; /* of the Gauss-Newton step, 1/32..1/2; 0: none before */
+    int16_t share_q14; /* share taken of the Gauss-Newton step, 1/32..1/2; 0: no earlier pass */
 } t3r_correction;
 
-/* The corrections of `count` Gaussians, each a share of the damped Gauss-Newton step, as large as the answer to the
- * correction of the pass before allows, with momentum: a part of that correction (Polyak, "Some methods of speeding up
- * the convergence of iteration methods", 1964). corrections: those of the pass before, 0 in the first pass, and then
- * the new ones. Sums are below 2^31 as t3r_refine_sums says; records lie one behind the other, aligned to 4 and 2
- * bytes. */
+/* Computes the corrections of `count` Gaussians. Each is a share of the damped Gauss-Newton step, as large as the
+ * response to the last pass's correction allows, plus momentum: a part of that correction (Polyak, "Some methods of
+ * speeding up the convergence of iteration methods", 1964). corrections: holds the last pass's, 0 in the first pass,
+ * and is replaced by the new ones. Sums are below 2^31 as t3r_refine_sums says. Records are consecutive, aligned to 4
+ * and 2 bytes. */
 typedef void t3r_solve_kernel(const t3r_refine_sums *sums, uint32_t count, t3r_correction *corrections);
 t3r_solve_kernel t3r_solve_c;
 

@@ -1,47 +1,47 @@
-/* How Gaussians are corrected: shared by plain C and the variants (SPEC.md, "Refinement"). */
+/* Correction of Gaussians: parts shared by plain C and the variants (SPEC.md, "Refinement"). */
 #ifndef T3R_KERNEL_SOLVE_PARTS_H
 #define T3R_KERNEL_SOLVE_PARTS_H
 
 #include "core/fixed.h"
 #include "solve.h"
 
-/* Neighbours correct the same pixels, so that no Gaussian takes all that its sums ask for: */
+/* Neighbours correct the same pixels, so a Gaussian takes only a part of what its sums ask for. */
 #define COLOUR_STEP_Q5 26    /* 0.8 of the weighted mean residual */
 #define SHARE_FIRST_Q14 2816 /* 11/64 of the Gauss-Newton step in the first pass */
 #define SHARE_LEAST_Q14 512  /* 1/32 */
 #define SHARE_MOST_Q14 8192  /* 1/2 */
 #define ASKED_MOST_Q16 (2 << 16)
 #define RELATIVE_DAMPING_Q4 3
-#define DAMPING 64         /* levels^2: below it a direction is noise */
-#define MOMENTUM_Q4 3      /* of the pass before, added */
+#define DAMPING 64         /* levels^2: below this a direction is noise */
+#define MOMENTUM_Q4 3      /* part of the last pass's correction that is added */
 #define OPACITY_MOST 32767 /* largest step of log opacity, Q16: 1/2 */
-#define SHIFT_MOST 32767   /* of the position, in deviations: 1/2 */
-#define SHAPE_MOST 6554    /* of log scale and shear: 0.1 */
-#define COLOUR_MOST 32640  /* with what is carried on, likewise the next */
+#define SHIFT_MOST 32767   /* largest shift of the position, in deviations, Q16: 1/2 */
+#define SHAPE_MOST 6554    /* largest step of log scale and shear, Q16: 0.1 */
+#define COLOUR_MOST 32640  /* with momentum; likewise the next */
 #define STEP_MOST 32767
 #define SWEEPS 8
-#define UP_MOST 20 /* any solution is too large then, and 64 bits hold it */
-/* 1 / sqrt f is near C0 - f (C1 - f C2) on [1/4, 1): the least relative error, 2.4 %. Q15, for f in Q16. */
+#define UP_MOST 20 /* any larger shift gives too large a solution, and 64 bits hold this one */
+/* 1 / sqrt f is about C0 - f (C1 - f C2) on [1/4, 1), with the least relative error, 2.4 %. Q15, for f in Q16. */
 #define ROOT_C0 87518u
 #define ROOT_C1 107655u
 #define ROOT_C2 53693u
 #define SOLUTION_MOST_Q16 (8 << 16)
 
-#define CURVATURE_BITS 26 /* of which an entry of the matrix takes at most 16 times the largest */
+#define CURVATURE_BITS 26 /* an entry of the matrix is at most 16 times the largest of them */
 #define GRADIENT_BITS 27  /* likewise 8 times */
 #define DAMPING_BITS 28
 
-/* What of a Gaussian's equations its correction asks for. */
+/* Solution of a Gaussian's equations. */
 typedef struct t3r_solution {
-    int32_t diagonal[T3R_REFINE_PARAMETERS]; /* of the matrix, undamped, in a scale of its own */
-    int32_t x_q16[T3R_REFINE_PARAMETERS];    /* up to +-SOLUTION_MOST_Q16 */
+    int32_t diagonal[T3R_REFINE_PARAMETERS]; /* of the undamped matrix, in its own scale */
+    int32_t x_q16[T3R_REFINE_PARAMETERS];    /* at most +-SOLUTION_MOST_Q16 */
 } t3r_solution;
 
-/* The share of the Gauss-Newton step `wanted` that this pass takes: Aitken's relaxation, of each Gaussian by itself
- * (Irons and Tuck, "A version of the Aitken accelerator for computer iteration", 1969). Of the whole step before, of
- * which a share was taken, the part that is asked for again now says what that share and all neighbours' came to
- * together; the other way when it was too much. Steps are compared by what they change in the pictures, the diagonal of
- * the equations. */
+/* Returns the share of the Gauss-Newton step `wanted` that this pass takes: Aitken's relaxation, for each Gaussian by
+ * itself (Irons and Tuck, "A version of the Aitken accelerator for computer iteration", 1969). The last pass took a
+ * share of its whole step. The part of that step which is asked for again now shows what the share and those of all
+ * neighbours achieved together; a reversed sign shows that it was too much. Steps are compared by what they change in
+ * the pictures, the diagonal of the equations. */
 static inline int32_t t3r_share_q14(const t3r_solution *wanted, const t3r_correction *before)
 {
     const int64_t last = before->share_q14;
@@ -70,13 +70,13 @@ static inline int32_t t3r_share_q14(const t3r_solution *wanted, const t3r_correc
     return (int32_t)t3r_clamp64(share, T3R_MAX(last / 4, SHARE_LEAST_Q14), T3R_MIN(2 * last, SHARE_MOST_Q14));
 }
 
-/* This pass's own change, and the pass before goes on a little. Both are within 16 bits. */
+/* Returns this pass's change plus momentum of the last pass. Both are within 16 bits. */
 static inline int16_t t3r_carried_on(int64_t change, int32_t before, int32_t most)
 {
     return (int16_t)t3r_clamp64(change + t3r_round_shift32(before * MOMENTUM_Q4, 4), -most, most);
 }
 
-/* s->weight > 0 */
+/* Computes the correction; s->weight > 0. */
 static inline t3r_correction t3r_correction_of(const t3r_refine_sums *s, const t3r_solution *solution,
                                                const t3r_correction *before)
 {
@@ -88,7 +88,7 @@ static inline t3r_correction t3r_correction_of(const t3r_refine_sums *s, const t
     }
     t3r_solution wanted = *solution;
     int32_t *x = wanted.x_q16;
-    x[0] -= t3r_round_shift32(x[3] + x[5], 1); /* what phi's halves mean for the opacity */
+    x[0] -= t3r_round_shift32(x[3] + x[5], 1); /* how the halves in phi change the opacity */
     const int32_t most[] = {OPACITY_MOST, SHIFT_MOST, SHIFT_MOST, SHAPE_MOST, SHAPE_MOST, SHAPE_MOST};
     const int32_t share = t3r_share_q14(&wanted, before);
     for (int i = 0; i < T3R_REFINE_PARAMETERS; i++) {

@@ -7,13 +7,13 @@
 #include "refine/refine.h"
 #include "state/state.h"
 
-#define TRIAL_PART 100u     /* of the points are the first trial's; the second has twice as many */
-#define LEAST_PART 400u     /* of the points are kept whatever the prediction */
-#define PAIRS_LEAST 256u    /* below which views are not believed to disagree so much */
-#define UNSEEN_Q8 (2u << 8) /* levels^2, 45 dB: an error below it is not seen */
+#define TRIAL_PART 100u     /* the first trial takes 1 / TRIAL_PART of the points, the second twice as many */
+#define LEAST_PART 400u     /* at least 1 / LEAST_PART of the points is kept */
+#define PAIRS_LEAST 256u    /* with fewer compared pairs, the disagreement is unknown */
+#define UNSEEN_Q8 (2u << 8) /* levels^2, 45 dB: a smaller error is invisible */
 
-/* Each dB that may be lost lets the error grow by 1/17 of the disagreement; a quarter of that is always allowed.
- * Measured on the training scenes, where a scene of few Gaussians, refined, beats one of all points at first. */
+/* Each dB of allowed loss lets the error grow by 1/17 of the disagreement; a quarter of that is always allowed.
+ * Measured on the training scenes, where a refined scene of few Gaussians is at first better than one of all points. */
 #define SHARE_DIVISOR 17u
 #define LOSS_OFFSET_Q8 64u
 
@@ -32,14 +32,14 @@ uint32_t t3r_predict_budget(const t3r_budget_evidence *e, uint32_t most, uint32_
 
     uint64_t allowed = yardstick_q8 * (max_loss_q8 + LOSS_OFFSET_Q8);     /* x 256 x SHARE_DIVISOR */
     uint64_t wanted = ceil_div(slope_q8 * (SHARE_DIVISOR << 8), allowed); /* 2^48 x 2^12 */
-    if (e->error_q8[1] < UNSEEN_Q8) { /* the second trial is there already; the floor is below it */
+    if (e->error_q8[1] < UNSEEN_Q8) { /* the second trial already meets it, so its floor is below it */
         wanted = T3R_MIN(wanted, ceil_div(slope_q8, UNSEEN_Q8 - floor_q8));
     }
     uint64_t least = T3R_MAX(e->points / LEAST_PART, 1u);
     return (uint32_t)T3R_MIN(T3R_MAX(wanted, least), (uint64_t)most);
 }
 
-/* Stands the views where their cameras are: where they were aligned to, or as they were given. */
+/* Sets the views' poses from their cameras: the aligned ones, or as given. */
 static void stand(const t3r_runtime *rt, t3r_view *views, bool as_given)
 {
     for (uint32_t v = 0; v < rt->views; v++) {
@@ -47,12 +47,12 @@ static void stand(const t3r_runtime *rt, t3r_view *views, bool as_given)
         if (as_given) {
             t3r_place_camera(&camera, &rt->given[v]);
         }
-        (void)t3r_pose_in_scene(&camera, &rt->frame, &views[v].pose); /* both were in range before */
+        (void)t3r_pose_in_scene(&camera, &rt->frame, &views[v].pose); /* both have been in range before */
     }
 }
 
-/* How much the views disagree with the poses given: a view to be met has a pose from the same source, which nothing
- * aligns. 0 = nothing to compare. */
+/* Returns the disagreement of the views with the given poses; 0 = nothing to compare. New views have poses of the same
+ * source, which nothing aligns. */
 static uint32_t disagreement_as_given(t3r_runtime *rt, t3r_view *views)
 {
     const bool aligned = t3r_aligns(&rt->config);
@@ -67,7 +67,7 @@ static uint32_t disagreement_as_given(t3r_runtime *rt, t3r_view *views)
     return pairs < PAIRS_LEAST ? 0 : found_q8;
 }
 
-/* The error of a trial scene. */
+/* Builds a trial scene and measures its error. */
 static t3r_status try_build(t3r_runtime *rt, const t3r_view *views, const t3r_build *trial,
                             const t3r_importance *importance, uint32_t *error_q8)
 {

@@ -1,4 +1,4 @@
-/* A bounded loss where it is left out: no request is allowed to ask for one (api/build.c). */
+/* Stub for builds without a bounded loss: api/build.c refuses requests that ask for one. */
 #include "budget_choice.h"
 
 #if !T3R_FEATURE_LOSS

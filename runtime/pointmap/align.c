@@ -1,4 +1,4 @@
-/* Poses of context views, corrected until the views agree: Gauss and Newton's steps on what the views show of the same
+/* Corrects the poses of context views until the views agree: Gauss-Newton steps on what the views show of the same
  * surfaces, from coarse pictures to fine ones (Lucas and Kanade, "An iterative image registration technique", 1981;
  * Kerl, Sturm and Cremers, "Robust odometry estimation for RGB-D cameras", 2013). */
 #include "align.h"
@@ -11,26 +11,26 @@
 #include "pointmap_work.h"
 
 #define COARSEST_SIDE 32u
-#define PAIR_LEAST 64u /* pixels without which a pair says nothing */
-/* How far off a pose is expected to be: 1/32 radian, and 1/32 of the median depth. */
+#define PAIR_LEAST 64u /* compared pixels; a pair with fewer is ignored */
+/* Expected error of a pose: 1/32 radian, and 1/32 of the median depth. */
 #define PRIOR_SHIFT 10
 #define DEVIATION_MOST_Q30 (1 << 26) /* 1/16 radian or scene unit */
-#define STILL_Q30 (1 << 17)          /* of level 0: no further round after shorter steps */
-#define CLIPPED 32u                  /* levels: what differs by more counts as much */
+#define STILL_Q30 (1 << 17)          /* at level 0: after shorter steps a level ends */
+#define CLIPPED 32u                  /* levels: larger differences count as this much */
 
 typedef struct alignment {
     t3r_runtime *rt;
     t3r_view *views;
     uint32_t count;
-    uint32_t stride[T3R_MAX_VIEWS]; /* between the compared pixels of a view */
-    uint32_t step, steps;           /* of the progress */
+    uint32_t stride[T3R_MAX_VIEWS]; /* between compared pixels of a view, in columns and rows */
+    uint32_t step, steps;           /* for progress: done and total */
     t3r_pointmap_work work;
     t3r_aligned_view aligned[T3R_MAX_VIEWS];
     t3r_pair_levels levels[T3R_MAX_VIEWS][T3R_MAX_VIEWS];
     t3r_align_sums sums[T3R_MAX_VIEWS];
 } alignment;
 
-/* What the views differ by, all pairs together. */
+/* Difference between the views, summed over all pairs. */
 typedef struct difference {
     uint64_t levels;
     uint32_t pixels;
@@ -38,7 +38,7 @@ typedef struct difference {
 
 /* --- poses ------------------------------------------------------------------------------------------------------- */
 
-/* q turned by a small rotation vector, in the axes of the scene. Components below 1.5 change by less than a tenth. */
+/* Turns q by a small rotation vector in the axes of the scene. Components below 1.5 change by less than a tenth. */
 static void turn(const int32_t q[4], const int32_t by_q30[3], int32_t out[4])
 {
     const int64_t x = by_q30[0], y = by_q30[1], z = by_q30[2];
@@ -48,14 +48,15 @@ static void turn(const int32_t q[4], const int32_t by_q30[3], int32_t out[4])
     out[3] = q[3] + (int32_t)t3r_round_shift64(z * q[0] + x * q[2] - y * q[1], 31);
 }
 
-/* The camera and the view's pose by the pose given and its deviation; false where that is out of their range. */
+/* Sets the camera and the view's pose from the given pose and its deviation. Returns false where they are out of
+ * range. */
 static bool place(const alignment *a, uint32_t v)
 {
     t3r_runtime *rt = a->rt;
     const int32_t *deviation_q30 = rt->deviation_q30[v];
     t3r_camera *camera = &rt->camera[v];
     turn(rt->given[v].rotation_q30, deviation_q30, camera->rotation_q30);
-    for (int i = 0; i < 3; i++) { /* Q30 scene units are 2^(2 + exponent) in Q32 of the world */
+    for (int i = 0; i < 3; i++) { /* scene units in Q30 are 2^(2 + exponent) world units in Q32 */
         camera->position_q32[i] =
             rt->given[v].position_q32[i] + t3r_scale64(deviation_q30[3 + i], 2 + rt->frame.exponent);
     }
@@ -65,12 +66,12 @@ static bool place(const alignment *a, uint32_t v)
 static void place_as_given(const alignment *a, uint32_t v)
 {
     t3r_pose_as_given(a->rt, v);
-    (void)t3r_pose_in_scene(&a->rt->camera[v], &a->rt->frame, &a->views[v].pose); /* it was in range before */
+    (void)t3r_pose_in_scene(&a->rt->camera[v], &a->rt->frame, &a->views[v].pose); /* in range: it has been before */
 }
 
 /* --- pictures ---------------------------------------------------------------------------------------------------- */
 
-/* Means of the green pixels; those of a level that do not fill a block of it are left out. */
+/* Averages green pixels over blocks of 2^level x 2^level. Pixels that don't fill a block are left out. */
 static void shrink(const t3r_view *view, uint32_t level, uint8_t *out)
 {
     const uint32_t side = 1u << level, width = view->width >> level, height = view->height >> level;
@@ -88,7 +89,7 @@ static void shrink(const t3r_view *view, uint32_t level, uint8_t *out)
     }
 }
 
-/* Level 1 of 16 views fits the work exactly; coarser levels take less. */
+/* Sets the pictures of a level. Level 1 of 16 views fits the work memory exactly; coarser levels take less. */
 static void show_level(alignment *a, uint32_t level)
 {
     uint8_t *room = (uint8_t *)a->work.pixels;
@@ -106,7 +107,7 @@ static void show_level(alignment *a, uint32_t level)
     }
 }
 
-/* Between compared columns and rows. */
+/* Returns the distance of compared columns and rows, at least 2. */
 static uint32_t stride_of(const t3r_view *view, uint32_t views)
 {
     const uint32_t pixels = view->width * view->height, most = t3r_align_pixels(views);
@@ -131,7 +132,7 @@ static uint32_t coarsest_level(const t3r_view *view)
 
 /* --- rounds ------------------------------------------------------------------------------------------------------ */
 
-/* Follows all views into all others: sums for every view, and what each pair differs by. */
+/* Compares all views with all others: computes the sums of each view and the levels of each pair. */
 static t3r_status compare(alignment *a, difference *all)
 {
     uint32_t *bins = a->work.ratios[0];
@@ -165,9 +166,9 @@ static t3r_status compare(alignment *a, difference *all)
     return T3R_OK;
 }
 
-/* Half of Gauss and Newton's step of one view: a pair goes the whole way together. The pose given counts as a
- * measurement: a deviation as large as it is expected costs as much as all differences do now. Returns the largest
- * component of the whole step. */
+/* Takes half of one view's Gauss-Newton step, as both views of a pair move. The given pose counts as a measurement: a
+ * deviation of the expected size costs as much as all differences do now. Returns the largest component of the whole
+ * step. */
 static int32_t step(alignment *a, uint32_t v)
 {
     t3r_align_sums *sums = &a->sums[v];
@@ -192,7 +193,7 @@ static int32_t step(alignment *a, uint32_t v)
     return largest_q30;
 }
 
-/* A step of all views at once; returns the largest component of any. */
+/* Takes a step of all views at once. Returns the largest component of any step. */
 static int32_t step_all(alignment *a)
 {
     int32_t largest_q30 = 0;
@@ -207,7 +208,7 @@ static int32_t step_all(alignment *a)
     return largest_q30;
 }
 
-/* Differences with the poses as they are, at the finest level. */
+/* Measures the difference with the current poses at the finest level. */
 static t3r_status measure(alignment *a, difference *all)
 {
     memset(a->levels, 0, sizeof a->levels);
@@ -232,7 +233,7 @@ static t3r_status align_level(alignment *a, uint32_t level)
     return T3R_OK;
 }
 
-/* Whether the views differ by a 16th less than before, and still show as much of each other. */
+/* Whether the views differ by at least a 16th less than before, with at least 3/4 of the pixels compared. */
 static bool is_better(const difference *before, const difference *behind)
 {
     return 4 * (uint64_t)behind->pixels >= 3 * (uint64_t)before->pixels &&
@@ -249,7 +250,7 @@ t3r_status t3r_align_views(t3r_runtime *rt, t3r_view *views, uint32_t steps)
     }
     t3r_status status = measure(&a, &before);
     for (uint32_t level = coarsest + 1; level-- > 0 && status == T3R_OK && before.pixels > 0;) {
-        a.step = 1 + (coarsest - level) * T3R_ALIGN_ROUNDS; /* levels may end early */
+        a.step = 1 + (coarsest - level) * T3R_ALIGN_ROUNDS; /* a level may have ended early */
         status = align_level(&a, level);
     }
     if (status == T3R_OK) {

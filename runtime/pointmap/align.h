@@ -1,4 +1,4 @@
-/* Poses of context views, corrected until the views agree (SPEC.md, "Between views"). */
+/* Alignment: correction of the poses of context views until the views agree (SPEC.md, "Between views"). */
 #ifndef T3R_ALIGN_H
 #define T3R_ALIGN_H
 
@@ -8,8 +8,8 @@
 #include "core/fixed.h"
 #include "state/state.h"
 
-/* Whether a configuration's scenes are of aligned views: of two and more, with a sensor's depth, and not where poses
- * must be those of a build or keyframe before. */
+/* Whether the configuration aligns views: two or more, with a sensor's depth, and not where poses must stay those of an
+ * earlier build or keyframe. */
 static inline bool t3r_aligns(const t3r_config *config)
 {
     return T3R_FEATURE_COMPARISON && config->align != 0 && !t3r_is_by_stereo(config) && !t3r_is_warm(config) &&
@@ -17,21 +17,21 @@ static inline bool t3r_aligns(const t3r_config *config)
 }
 
 #define T3R_ALIGN_LEVELS 5u
-#define T3R_ALIGN_ROUNDS 6u                                        /* a level, at most; the first one only measures */
-#define T3R_ALIGN_STEPS (T3R_ALIGN_LEVELS * T3R_ALIGN_ROUNDS + 2u) /* of the progress, at most */
+#define T3R_ALIGN_ROUNDS 6u                                        /* a level, at most; the first only measures */
+#define T3R_ALIGN_STEPS (T3R_ALIGN_LEVELS * T3R_ALIGN_ROUNDS + 2u) /* of progress, at most */
 
-/* How many pixels with depth of a view are compared with each other view in a round, about. They lie on a grid of at
- * most four times as many places, with depth or without. With fewer, the poses of a still scene follow the noise of its
- * captures. views: 2..T3R_MAX_VIEWS. */
+/* Returns about how many pixels with depth of a view are compared with each other view in a round. The grid has at most
+ * four times as many places, with depth or without. With fewer pixels the poses of a still scene follow the noise of
+ * its captures. views: 2..T3R_MAX_VIEWS. */
 static inline uint32_t t3r_align_pixels(uint32_t views)
 {
     return T3R_MAX((1u << 11) / views, 1u << 8);
 }
 
-/* Moves the cameras of the views and `views[v].pose` by what lets the views show the same surfaces in the same colours.
- * They stay as they were given where that is not clearly so. The poses must be those given, in the frame of `rt`;
- * bridged depth and marks must not be there yet. steps: those of the whole stage, of which the first T3R_ALIGN_STEPS
- * are reported here. T3R_ERR_CANCELLED leaves the poses anywhere between. */
+/* Moves the cameras of the views, and `views[v].pose`, so that the views show the same surfaces in the same colours.
+ * All stay as given unless that is clearly better. The poses must be the given ones, in the frame of `rt`. Depth must
+ * not be bridged nor marked yet. steps: number of the whole stage; the first T3R_ALIGN_STEPS of them are reported here.
+ * T3R_ERR_CANCELLED leaves poses of any round. */
 t3r_status t3r_align_views(t3r_runtime *rt, t3r_view *views, uint32_t steps);
 
 #endif

@@ -3,17 +3,17 @@
 #include "core/fixed.h"
 
 #define N T3R_ALIGN_UNKNOWNS
-#define PIVOT_LEAST (INT64_C(1) << 14) /* of diagonals of 2^28 and more */
+#define PIVOT_LEAST (INT64_C(1) << 14) /* of diagonals of at least 2^28 */
 #define FACTOR_MOST (INT64_C(1) << 28) /* Q20 */
 #define VALUE_MOST (INT64_C(1) << 33)
 
-/* A shift that brings x, above 0, to 2^bits..2^(bits + 1) - 1 */
+/* Returns the shift that brings x > 0 into 2^bits..2^(bits + 1) - 1. */
 static int32_t shift_to(int64_t x, int32_t bits)
 {
     return bits - (int32_t)t3r_msb64((uint64_t)x);
 }
 
-/* A scaled so that its diagonal is in 2^28..2^30 - 1, x_i and b_i by 2^shift[i]: entries beside it are no larger. */
+/* Scales A so that its diagonal is in 2^28..2^30 - 1, x_i and b_i by 2^shift[i]. Off-diagonal entries are no larger. */
 static void scale(const int64_t a[T3R_ALIGN_PRODUCTS], int64_t m[N][N], int32_t shift[N])
 {
     for (uint32_t i = 0, at = 0; i < N; at += N - i++) {
@@ -27,7 +27,7 @@ static void scale(const int64_t a[T3R_ALIGN_PRODUCTS], int64_t m[N][N], int32_t 
     }
 }
 
-/* L D L^T of the lower triangle, in its place: D on the diagonal, L Q20 below. Products stay below 2^62. */
+/* Factors the lower triangle into L D L^T in place: D on the diagonal, L Q20 below. Products stay below 2^62. */
 static void factor(int64_t m[N][N])
 {
     for (uint32_t j = 0; j < N; j++) {

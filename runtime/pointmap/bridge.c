@@ -4,14 +4,16 @@
 
 #define AXES 4
 
-/* Planes may hold anything: what is said to be known counts with a depth alone. */
+/* Whether the pixel ends a hole. Planes of a restored arena may hold anything, so known pixels count only with a
+ * depth. */
 static bool ends_hole(const t3r_view *view, size_t pixel)
 {
     uint8_t validity = view->validity[pixel];
     return view->depth[pixel] != 0 && (t3r_is_known(validity) || t3r_is_lent(validity));
 }
 
-/* Steps to the first known pixel from (x, y) on, 1..radius, and its depth; 0 if there is none. */
+/* Returns the steps from (x, y) to the first known pixel, 1..radius, and stores its depth. Returns 0 if there is
+ * none. */
 static uint32_t look(const t3r_view *view, uint32_t x, uint32_t y, int32_t dx, int32_t dy, uint32_t radius,
                      uint16_t *depth)
 {
@@ -31,13 +33,13 @@ static uint32_t look(const t3r_view *view, uint32_t x, uint32_t y, int32_t dx, i
     return 0;
 }
 
-/* Planes are straight in 1 / depth. */
+/* Depth is interpolated as 1 / depth, which is linear on planes. */
 static int64_t inverse_q36(uint16_t depth)
 {
     return t3r_round_div64((int64_t)1 << 36, depth);
 }
 
-/* The depth of a pixel from its brackets, 0 without any. */
+/* Returns the depth of a pixel from its brackets, 0 without any. */
 static uint16_t depth_across(const t3r_view *view, uint32_t x, uint32_t y, uint32_t radius)
 {
     static const int32_t axis[AXES][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
@@ -52,7 +54,7 @@ static uint16_t depth_across(const t3r_view *view, uint32_t x, uint32_t y, uint3
             continue;
         }
         uint32_t gap = before + after;
-        uint32_t square = gap * gap * (axis[k][0] * axis[k][1] == 0 ? 1 : 2); /* of the length: 4..2^20 */
+        uint32_t square = gap * gap * (axis[k][0] * axis[k][1] == 0 ? 1 : 2); /* squared length: 4..2^20 */
         uint16_t near = T3R_MIN(a, b), deep = T3R_MAX(a, b);
         if (8 * (deep - near) <= near) {
             int64_t weight = t3r_round_div64((int64_t)1 << 24, square);
@@ -64,7 +66,7 @@ static uint16_t depth_across(const t3r_view *view, uint32_t x, uint32_t y, uint3
             farther = deep;
         }
     }
-    /* a mean of inverses lies between those of 65,535 and 1 */
+    /* a weighted mean of inverses lies between the inverses of 65,535 and of 1 */
     return weights == 0 ? farther : (uint16_t)t3r_round_div64(weights * ((int64_t)1 << 36), sum);
 }
 

@@ -1,4 +1,4 @@
-/* Bridges and other views: what these lend, and what they make of the bridges. */
+/* Bridging across views: takes depth that other views measured, and checks bridges against them. */
 #include "bridge.h"
 
 #include <stdbool.h>
@@ -6,9 +6,9 @@
 #include "core/fixed.h"
 #include "reproject.h"
 
-/* --- what other views measured ------------------------------------------------------------------------------------ */
+/* --- depth from other views --------------------------------------------------------------------------------------- */
 
-/* The least step that is at least as deep as z; 0 when none is. Depths rise with their steps. */
+/* Returns the smallest depth step whose depth is at least z, 0 when there is none. Depth rises with the step. */
 static uint16_t step_at(t3r_depth_scale scale, int32_t z_q20)
 {
     uint32_t low = 0, high = UINT16_MAX + 1u;
@@ -23,13 +23,13 @@ static uint16_t step_at(t3r_depth_scale scale, int32_t z_q20)
     return (uint16_t)high;
 }
 
-/* Whether a pixel takes what another view measured. */
+/* Whether the pixel takes depth from other views. */
 static bool takes_depth(const t3r_view *view, size_t pixel)
 {
     return !t3r_has_depth(view->validity[pixel]) || t3r_is_lent(view->validity[pixel]);
 }
 
-/* Of several points that fall on a pixel the nearest stays. */
+/* Gives the pixel a depth from another view. Of several points that fall on it, the nearest counts. */
 static void lend(const t3r_pointmap *to, size_t pixel, int32_t z_q20)
 {
     const t3r_view *view = to->view;
@@ -43,7 +43,7 @@ static void lend(const t3r_pointmap *to, size_t pixel, int32_t z_q20)
 typedef struct lend_job {
     t3r_pointmap from, to;
     const t3r_kernels *kernels;
-    uint32_t *place; /* of each pixel of `from` where it lends its depth, or T3R_NO_PIXEL */
+    uint32_t *place; /* for each pixel of `from`: the pixel that takes its depth, or T3R_NO_PIXEL */
 } lend_job;
 
 static void find_borrowers(const lend_job *job, t3r_points *points, const t3r_unprojection *from)
@@ -60,7 +60,7 @@ static void find_borrowers(const lend_job *job, t3r_points *points, const t3r_un
     points->count = 0;
 }
 
-/* Several pixels may fall on one, so nothing is lent before all are found. */
+/* Finds the receiving pixels of all rows first: several pixels may fall on one, so depth is passed on only later. */
 static void find_borrowing_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     (void)worker;
@@ -116,7 +116,7 @@ void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t 
 
 /* --- against the other views -------------------------------------------------------------------------------------- */
 
-/* What view `to` makes of a bridged or lent pixel that it sees there. */
+/* Returns the validity of a bridged pixel, or of one with another view's depth, after comparison with view `to`. */
 static uint8_t judge(uint8_t validity, const t3r_pointmap *to, const t3r_projected_pixel *projected, bool settled)
 {
     uint8_t there = to->view->validity[projected->pixel];
@@ -134,10 +134,10 @@ static uint8_t judge(uint8_t validity, const t3r_pointmap *to, const t3r_project
 typedef struct settle_job {
     t3r_pointmap maps[T3R_MAX_VIEWS];
     uint32_t count, v, settled;
-    uint32_t bridged[T3R_MAX_WORKERS]; /* by each worker */
+    uint32_t bridged[T3R_MAX_WORKERS]; /* one a worker */
 } settle_job;
 
-/* Of the own view a pixel reads and writes itself alone. */
+/* Reads and writes of the own view only the pixel itself, so rows are independent. */
 static void settle_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     settle_job *job = context;

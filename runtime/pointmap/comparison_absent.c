@@ -1,5 +1,4 @@
-/* What stands for the comparison of views where it is left out: no configuration asks for a second view, nor for a
- * stream (core/config.c). */
+/* Stubs for builds without comparison of views: core/config.c refuses a second view and streams. */
 #include "align.h"
 #include "bridge.h"
 #include "contradiction.h"
@@ -23,7 +22,7 @@ uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, in
                            const t3r_pointmap_work *work)
 {
     (void)views, (void)count, (void)v, (void)exponent, (void)settled, (void)work;
-    return 0; /* nobody asks how many pixels are bridged */
+    return 0; /* the result is unused */
 }
 
 void t3r_find_contradicted(const t3r_contradictions *job, t3r_points *points, const t3r_unprojection *from)
@@ -41,7 +40,7 @@ bool t3r_seen_through(const t3r_pointmap *to, const t3r_projected_pixel *project
 uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3],
                             const t3r_pointmap_work *work)
 {
-    (void)views, (void)exponent, (void)gain_q14, (void)work; /* the caller has set all to 1 */
+    (void)views, (void)exponent, (void)gain_q14, (void)work; /* the caller has set all gains to 1 */
     return count;
 }
 

@@ -2,13 +2,13 @@
 
 #include "core/fixed.h"
 
-/* Whether a pixel counts as evidence: measured ones do, with `filled` all with depth. */
+/* Whether the pixel counts as evidence: measured pixels, or with `filled` all with depth. */
 static bool counts(uint8_t validity, bool filled)
 {
     return filled ? t3r_has_depth(validity) : t3r_is_measured(validity);
 }
 
-/* Whether what `to` has at a pixel is deeper than z by more than 1/16. */
+/* Whether the depth of `to` at the pixel is larger than z by more than 1/16. */
 static bool is_behind(const t3r_pointmap *to, size_t pixel, int32_t z_q20)
 {
     return 16 * ((int64_t)t3r_depth_q20(to->scale, to->view->depth[pixel]) - z_q20) > z_q20;
@@ -19,7 +19,7 @@ bool t3r_seen_through(const t3r_pointmap *to, const t3r_projected_pixel *project
     const t3r_view *view = to->view;
     const int32_t z_q20 = projected->z_q20;
     if (!counts(view->validity[projected->pixel], filled) || !is_behind(to, projected->pixel, z_q20)) {
-        return false; /* as a rule */
+        return false; /* the usual case */
     }
     uint32_t u = (uint32_t)(projected->pixel % view->width), v = (uint32_t)(projected->pixel / view->width);
     if (u == 0 || v == 0 || u + 1 == view->width || v + 1 == view->height) {

@@ -6,7 +6,7 @@
 #include "core/fixed.h"
 #include "reproject.h"
 
-/* Squares of at most 3 channels x 2^24 pixels x 16 views x 2 neighbours: below 2^24 x 2^31. */
+/* Sum of at most 3 channels x 2^24 pixels x 16 views x 2 neighbours squares: below 2^24 x 2^31. */
 typedef struct difference {
     uint64_t squares_q8;
     uint32_t pairs;
@@ -59,7 +59,7 @@ uint32_t t3r_disagreement_q8(const t3r_view *views, uint32_t count, int32_t expo
     for (uint32_t v = 0; v < count && count > 1; v++) {
         uint32_t next = (v + 1) % count;
         compare(views, v, next, exponent, gain_q14, step, &d);
-        if (count > 2) { /* of two each is the other's next */
+        if (count > 2) { /* of two views, each is the other's next */
             compare(views, next, v, exponent, gain_q14, step, &d);
         }
     }

@@ -6,11 +6,11 @@
 #include "core/memory.h"
 #include "reproject.h"
 
-#define STEP 2 /* pixels */
+#define STEP 2 /* pixels between compared pixels */
 #define LEVEL_LEAST 16
 #define LEVEL_MOST 239
 #define PAIRS_LEAST 256
-#define BINS T3R_RATIO_BINS /* log2 of a ratio in Q8, -1..1 */
+#define BINS T3R_RATIO_BINS /* one for each value of log2 of a ratio in Q8, -1..1 */
 
 static bool well_exposed(const t3r_view *view, size_t pixel)
 {
@@ -34,7 +34,7 @@ static bool is_pair(const t3r_pointmap *from, size_t pixel, const t3r_pointmap *
 typedef struct pairs_job {
     t3r_pointmap from, to;
     const t3r_kernels *kernels;
-    uint32_t *partner; /* of each pixel asked, row after row: where `to` has it, or T3R_NO_PIXEL */
+    uint32_t *partner; /* for each compared pixel, row by row: its partner in `to`, or T3R_NO_PIXEL */
 } pairs_job;
 
 static uint32_t asked(uint32_t side)
@@ -79,7 +79,8 @@ static void pair_rows(void *context, uint32_t begin, uint32_t end, uint32_t work
     }
 }
 
-/* Adds the levels of `from` over those of `to`, whose own are level_q8 above the first view's; returns the pairs. */
+/* Counts the log ratios of `from` to `to`, whose level is level_q8 above the first view's. Returns the number of
+ * pairs. */
 static uint32_t compare(const pairs_job *job, const int16_t level_q8[3], uint32_t bin[3][BINS])
 {
     int32_t log_q16[LEVEL_MOST + 1] = {0};
@@ -105,7 +106,7 @@ static uint32_t compare(const pairs_job *job, const int16_t level_q8[3], uint32_
     return pairs;
 }
 
-/* The least ratio that at least half of the pairs do not exceed, log2 in Q8 */
+/* Returns the smallest ratio that at least half of the pairs don't exceed, log2 in Q8. */
 static int32_t median_q8(const uint32_t bin[BINS], uint32_t count)
 {
     uint32_t sum = 0;
@@ -146,8 +147,8 @@ uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t expon
     for (uint32_t v = 0; v < count; v++) {
         for (int c = 0; c < 3; c++) {
             int32_t mean_q8 = (int32_t)t3r_round_div64(sum_q8[c], links);
-            /* Levels are within an octave of the first view's, and a view's own is in the mean of at most 16: less than
-             * 2 octaves less a 16th either way, gains below 2^15.9. */
+            /* Levels are within an octave of the first view's, and the mean over at most 16 views includes this one. So
+             * they differ by less than 2 octaves less a 16th either way: gains are below 2^15.9. */
             int32_t over = linked[v] ? level_q8[v][c] - mean_q8 : 0;
             gain_q14[v][c] = (uint16_t)t3r_round_shift32((int32_t)t3r_exp2_q16(-over * 256), 2);
         }

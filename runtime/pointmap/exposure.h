@@ -1,4 +1,4 @@
-/* Exposure levelled between views: a gain a channel for each, from surfaces that two of them measured. */
+/* Exposure levelled between views: a gain for each view and channel, from surfaces that two views measured. */
 #ifndef T3R_EXPOSURE_H
 #define T3R_EXPOSURE_H
 
@@ -9,15 +9,15 @@
 
 #define T3R_GAIN_ONE_Q14 (1u << 14)
 
-/* The gains r, g, b, Q14, at least 1/4 and at most 4, that bring each view to the mean exposure of all. View after view
- * is compared with the earlier ones, already levelled: its gain is the median of log2(its level / the other's) over
- * pairs of pixels. A pair is every second pixel of every second row that falls on a measured pixel of at most 1/64
- * other depth, all six levels in 16..239. A view with fewer than 256 pairs keeps gain 1 and levels no other. Returns
- * the number of views that are levelled, the first one among them. */
+/* Computes gains of r, g, b, Q14, 1/4..4, that bring each view to the mean exposure of all. Each view is compared with
+ * the earlier ones, already levelled: its gain is the median of log2(its level / the other's) over pairs of pixels. A
+ * pair is a pixel, one in two of every second row, that falls on a measured pixel of at most 1/64 other depth, with all
+ * six levels in 16..239. A view with fewer than 256 pairs keeps gain 1 and levels no other. Returns the number of
+ * levelled views, the first one included. */
 uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3],
                             const t3r_pointmap_work *work);
 
-/* A colour of the view with that gain, levelled: Q7, held to 255. */
+/* Levels a colour of the view by its gain: Q7, clamped to 255. */
 static inline uint16_t t3r_level_q7(uint32_t colour_q7, uint16_t gain_q14)
 {
     uint32_t levelled = (colour_q7 * gain_q14 + (1u << 13)) >> 14; /* below 2^15 x 2^16 */

@@ -10,7 +10,7 @@ static bool lies_between(const t3r_view *view, size_t pixel, size_t before, size
 {
     uint16_t here = view->depth[pixel];
     if (t3r_same_surface(view->depth[before], here) || t3r_same_surface(here, view->depth[after])) {
-        return false; /* as a rule */
+        return false; /* the usual case */
     }
     if (!t3r_is_measured(view->validity[before]) || !t3r_is_measured(view->validity[after])) {
         return false;
@@ -28,7 +28,7 @@ static bool between_surfaces(const t3r_view *view, uint32_t x, uint32_t y)
             (y > 0 && y + 1 < view->height && lies_between(view, pixel, pixel - view->width, pixel + view->width)));
 }
 
-/* Neighbours' validity is read here, so nothing is marked before all pixels are found. */
+/* Finds the flying pixels of rows. Marks follow later, because this reads the validity of neighbours. */
 static void find_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     (void)worker;

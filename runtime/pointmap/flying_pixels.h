@@ -1,5 +1,5 @@
 /* Flying pixels: measured depth where no surface is. Between two surfaces a sensor, or a match, may return a depth in
- * between; in another view such a point stands in front of what that view measured. */
+ * between. In another view such a point is in front of what that view measured. */
 #ifndef T3R_FLYING_PIXELS_H
 #define T3R_FLYING_PIXELS_H
 
@@ -9,13 +9,13 @@
 #include "pointmap_work.h"
 #include "state/views.h"
 
-/* Marks the doubtful pixels of view v (t3r_is_doubtful) and returns how many they are:
- * - measured ones whose two measured neighbours in a row or a column lie one nearer and one deeper, neither on the same
- *   surface;
- * - any whose point another view sees through: all that it measured within a pixel of where the point falls there is
- *   deeper by more than 1/16. A pixel of misregistration at an edge is forgiven so. Where filled depths are guesses
- *   (`guessed`), those of the other view bear witness too, against filled ones.
- * Depths stay. What is marked does not depend on the order of the views. */
+/* Marks the doubtful pixels of view v (t3r_is_doubtful) and returns their number:
+ * - measured pixels between two measured neighbours in a row or a column, one nearer and one deeper, neither on the
+ * same surface;
+ * - pixels whose point another view sees through: all that it measured within a pixel of where the point falls is
+ * deeper by more than 1/16. So a pixel of misregistration at an edge is tolerated. Where filled depths are guesses
+ *   (`guessed`), those of the other view count too, but only against filled ones.
+ * Depths don't change. The marks don't depend on the order of the views. */
 uint32_t t3r_mark_flying(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, bool guessed,
                          const t3r_pointmap_work *work);
 

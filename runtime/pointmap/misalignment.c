@@ -6,12 +6,12 @@
 #include "kernels/points_parts.h"
 #include "reproject.h"
 
-#define SAME_SURFACE 16           /* depths that differ by at most a 16th of the lesser */
+#define SAME_SURFACE 16           /* on one surface, depths differ by at most 1/16 of the lesser */
 #define DERIVATIVE_MOST (1 << 20) /* levels a radian or scene unit */
 #define PULL_MOST (1 << 28)
 #define LEVER_MOST_Q20 (1 << 26)
 
-/* A pixel of one view as another one shows it. */
+/* A pixel of one view as seen in another. */
 typedef struct sighting {
     int32_t point_q20[3];
     int32_t ratio_q24[2];  /* x / z and y / z in the other view, within +-16 */
@@ -19,7 +19,7 @@ typedef struct sighting {
     int32_t inverse_z_q20; /* at most 2^25 */
 } sighting;
 
-/* Where `to` shows a pixel of `from`, if it has the same surface there. */
+/* Finds where `to` shows a pixel of `from`. Returns false if it has another surface there. */
 static bool sees(const t3r_pointmap *from, uint32_t u, uint32_t v, const t3r_pointmap *to, sighting *s)
 {
     const t3r_view *view = to->view;
@@ -47,7 +47,7 @@ static bool sees(const t3r_pointmap *from, uint32_t u, uint32_t v, const t3r_poi
     return true;
 }
 
-/* The luma at a place of a level, Q8. There are pixels around it. */
+/* Returns the luma at a place of a level, Q8, bilinear. The place must have pixels around it. */
 static int32_t luma_q8(const t3r_luma_level *luma, const int32_t at_q16[2])
 {
     const uint8_t *p = luma->pixels + (size_t)(at_q16[1] >> 16) * luma->width + (uint32_t)(at_q16[0] >> 16);
@@ -57,7 +57,7 @@ static int32_t luma_q8(const t3r_luma_level *luma, const int32_t at_q16[2])
     return t3r_round_shift32(above * (256 - fv) + below * fv, 8);
 }
 
-/* The place of full-size pixel coordinates in a level; false within a pixel and a half of its edges. */
+/* Converts full-size pixel coordinates to a level. Returns false within a pixel and a half of its edges. */
 static bool place_of(const t3r_luma_level *luma, const int32_t full_q16[2], int32_t at_q16[2])
 {
     const uint32_t side[2] = {luma->width, luma->height};
@@ -70,7 +70,7 @@ static bool place_of(const t3r_luma_level *luma, const int32_t full_q16[2], int3
     return true;
 }
 
-/* How the luma there changes with the point's ray, levels a radian in Q8, in the axes of the scene: times 1 / z that is
+/* Computes how luma changes with the point's ray, levels a radian in Q8, in the axes of the scene. Times 1 / z this is
  * the change with the point. */
 static void pull_of(const t3r_luma_level *luma, const int32_t at_q16[2], const sighting *s, const t3r_view *view,
                     int64_t pull_q8[3])
@@ -81,7 +81,7 @@ static void pull_of(const t3r_luma_level *luma, const int32_t at_q16[2], const s
         int32_t before[2] = {at_q16[0], at_q16[1]}, behind[2] = {at_q16[0], at_q16[1]};
         before[i] -= 1 << 16;
         behind[i] += 1 << 16;
-        const int64_t rise = luma_q8(luma, behind) - luma_q8(luma, before); /* of two pixels, Q8 */
+        const int64_t rise = luma_q8(luma, behind) - luma_q8(luma, before); /* over two pixels, Q8 */
         axis_q8[i] = t3r_clamp64(t3r_round_shift64(rise * focal_q16[i], luma->level + 17), -PULL_MOST, PULL_MOST);
     }
     const int64_t along = axis_q8[0] * s->ratio_q24[0] + axis_q8[1] * s->ratio_q24[1]; /* below 2^57 */
@@ -92,12 +92,12 @@ static void pull_of(const t3r_luma_level *luma, const int32_t at_q16[2], const s
     }
 }
 
-/* The derivatives by the six unknowns of a camera that stands at `centre`, if the point moves with it. |pull| is below
+/* Computes the derivatives by the six unknowns of a camera at `centre`, if the point moves with it. |pull| is below
  * 2^29 and levers are at most 2^26: products below 2^56. */
 static void derivatives(const sighting *s, const int64_t pull_q8[3], const int32_t centre_q20[3], int32_t sign,
                         int32_t d[T3R_ALIGN_UNKNOWNS])
 {
-    int64_t lever_q20[3]; /* by z */
+    int64_t lever_q20[3]; /* over z */
     for (int i = 0; i < 3; i++) {
         const int64_t offset = s->point_q20[i] - (int64_t)centre_q20[i];
         lever_q20[i] = t3r_clamp64(t3r_round_shift64(offset * s->inverse_z_q20, 20), -LEVER_MOST_Q20, LEVER_MOST_Q20);
@@ -111,8 +111,8 @@ static void derivatives(const sighting *s, const int64_t pull_q8[3], const int32
     }
 }
 
-/* Adds one pixel. With fewer than 2^16 of them a view, each at most 2^20 a derivative, 2^13 a difference and 2^8 a
- * weight, sums stay below 2^56. */
+/* Adds one pixel. A view has fewer than 2^16, each with derivatives up to 2^20, a difference up to 2^13 and a weight up
+ * to 2^8: sums stay below 2^56. */
 static void add(t3r_align_sums *sums, const int32_t d[T3R_ALIGN_UNKNOWNS], int32_t difference_q4, int32_t weight_q8)
 {
     for (uint32_t i = 0, at = 0; i < T3R_ALIGN_UNKNOWNS; i++) {
@@ -169,8 +169,8 @@ t3r_pair_levels t3r_levels_of(const uint32_t bins[T3R_ALIGN_BINS], uint32_t coun
     for (uint32_t below = bins[0]; 2 * below < count; below += bins[middle + most]) {
         middle++;
     }
-    /* At least half of the pixels lie on either side, the middle counted with both, so the loop ends within the bins.
-     */
+    /* At least half of the pixels lie on either side, the middle counted with both, so the loop ends within the
+     * bins. */
     for (uint32_t within = bins[middle + most]; 2 * within < count;) {
         spread++;
         T3R_BOUND(spread <= most + middle && spread < most - middle);

@@ -4,7 +4,7 @@
 #include "core/fixed.h"
 #include "kernels/points_parts.h"
 
-/* Farthest neighbour whose depth enters the slope */
+/* Distance of the farthest neighbour in the slope, pixels. */
 #define REACH 2
 /* tan 80 degrees, Q4 */
 #define SLANT_MOST_Q4 91
@@ -32,7 +32,7 @@ void t3r_ray_q24(const t3r_pointmap *map, uint32_t u, uint32_t v, int32_t ray_q2
     ray_q24[1] = t3r_ray_along_q24(v, map->view->cy_q16, map->inverse_fy_q32);
 }
 
-/* R v for a camera-frame vector, Q24 in and out: |v| <= 2^30 sqrt 3, so the sums stay below 2^61. */
+/* Rotates a camera-frame vector into the scene, Q24 in and out: |v| <= 2^30 sqrt 3, so the sums stay below 2^61. */
 static void to_scene(const int32_t *r_q30, const int64_t v[3], int64_t out[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -53,7 +53,7 @@ bool t3r_point(const t3r_pointmap *map, uint32_t u, uint32_t v, int32_t point_q2
     return true;
 }
 
-/* The mean slope over the neighbours up to REACH pixels away along one axis that lie on the pixel's surface, both
+/* Returns the mean slope along one axis over the neighbours on the pixel's surface, up to REACH pixels away, with both
  * sides weighted alike. */
 static int32_t slope_along(const t3r_pointmap *map, size_t pixel, uint32_t at, uint32_t length, size_t stride)
 {
@@ -84,7 +84,7 @@ void t3r_slopes(const t3r_pointmap *map, uint32_t u, uint32_t v, int32_t slope_q
     size_t pixel = (size_t)v * view->width + u;
     slope_q20[0] = slope_along(map, pixel, u, view->width, 1);
     slope_q20[1] = slope_along(map, pixel, v, view->height, view->width);
-    /* A pixel is z / f wide: steeper than tan 80 degrees times that is held. z < 2^30, 1/f < 2^29 in Q32. */
+    /* A pixel is z / f wide; slopes are clamped to tan 80 degrees times that. z < 2^30, 1/f < 2^29 in Q32. */
     int64_t z = t3r_depth_q20(map->scale, view->depth[pixel]);
     int64_t most_u = t3r_round_shift64(z * map->inverse_fx_q32, 32) * SLANT_MOST_Q4 >> 4;
     int64_t most_v = t3r_round_shift64(z * map->inverse_fy_q32, 32) * SLANT_MOST_Q4 >> 4;
@@ -103,7 +103,7 @@ bool t3r_tangents(const t3r_pointmap *map, uint32_t u, uint32_t v, int32_t tange
     t3r_ray_q24(map, u, v, ray);
     t3r_slopes(map, u, v, slope);
     int64_t z = t3r_depth_q20(map->scale, view->depth[pixel]);
-    /* X = z (x, y, 1): dX/du = (z / fx, 0, 0) + dz/du (x, y, 1), Q24: below 2^38, then held. */
+    /* X = z (x, y, 1): dX/du = (z / fx, 0, 0) + dz/du (x, y, 1), Q24: below 2^38, then clamped. */
     int64_t across = t3r_round_shift64(z * map->inverse_fx_q32, 28);
     int64_t down = t3r_round_shift64(z * map->inverse_fy_q32, 28);
     int64_t du[3] = {across + t3r_round_shift64((int64_t)slope[0] * ray[0], 20),

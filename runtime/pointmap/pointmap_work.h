@@ -1,4 +1,4 @@
-/* What the comparison of views works with. */
+/* Work memory of the comparison of views. */
 #ifndef T3R_POINTMAP_WORK_H
 #define T3R_POINTMAP_WORK_H
 
@@ -6,8 +6,8 @@
 
 typedef struct t3r_pointmap_work {
     t3r_workers workers;
-    uint32_t *pixels;                   /* one a pixel of a view */
-    uint32_t (*ratios)[T3R_RATIO_BINS]; /* of exposure: three histograms */
+    uint32_t *pixels;                   /* one for each pixel of a view */
+    uint32_t (*ratios)[T3R_RATIO_BINS]; /* three histograms of exposure */
     const t3r_kernels *kernels;
 } t3r_pointmap_work;
 

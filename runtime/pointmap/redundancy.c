@@ -5,7 +5,8 @@
 #include "core/fixed.h"
 #include "reproject.h"
 
-/* z / f of the projected pixel against the pixel's own, cross-multiplied: z < 2^31, f in Q8 < 2^23. */
+/* Whether z / f of the projected pixel is small enough next to the pixel's own. Cross-multiplied: z < 2^31, f in Q8 <
+ * 2^23. */
 static bool fine_enough(const t3r_view *view, int32_t z_q20, const t3r_view *other, int32_t other_z_q20, bool earlier)
 {
     int64_t focal = ((int64_t)view->fx_q16 + view->fy_q16) >> 8;
@@ -14,7 +15,7 @@ static bool fine_enough(const t3r_view *view, int32_t z_q20, const t3r_view *oth
     return earlier ? 16 * there <= 17 * here : 17 * there < 16 * here;
 }
 
-/* Whether what `to` has at the pixel is the surface of a point that `from` has at depth z. */
+/* Whether the pixel of `to` shows the surface of a point that `from` has at depth z, and fine enough to cover it. */
 static bool covers(const t3r_pointmap *from, int32_t z_q20, const t3r_pointmap *to, uint32_t pixel,
                    int32_t projected_z_q20, bool earlier)
 {
@@ -31,10 +32,10 @@ typedef struct covered_job {
     t3r_pointmap maps[T3R_MAX_VIEWS];
     uint32_t count, v;
     const t3r_kernels *kernels;
-    uint32_t *witness; /* of each pixel the one that covers it: view x pixels of a view + pixel + 1, or 0 */
+    uint32_t *witness; /* for each pixel: (view x pixels of a view + pixel + 1) of the pixel that covers it, or 0 */
 } covered_job;
 
-/* Of the points those that another view covers, the first that does; then there are none. */
+/* Marks covered points, records the first covering view, and empties the batch. */
 static void find_covered(const covered_job *job, t3r_points *points, const t3r_unprojection *unprojection)
 {
     const t3r_pointmap *from = &job->maps[job->v];
@@ -61,7 +62,8 @@ static void find_covered(const covered_job *job, t3r_points *points, const t3r_u
     points->count = 0;
 }
 
-/* Marks what is covered. The witnesses lie in other views, where another task may mark the same byte: later. */
+/* Marks covered pixels of rows. The pixels that cover them lie in other views, where another task may mark the same
+ * byte, so they are marked later. */
 static void mark_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     (void)worker;

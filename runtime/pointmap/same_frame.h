@@ -1,4 +1,4 @@
-/* Whether the views of a build that follows another (t3r_config.warm) stand in its frame as well. */
+/* Whether a build that follows another (t3r_config.warm) may keep its frame. */
 #ifndef T3R_SAME_FRAME_H
 #define T3R_SAME_FRAME_H
 
@@ -6,8 +6,8 @@
 
 #include "state/state.h"
 
-/* Whether the views that were added, whose planes these are, ask for the scale of the runtime's frame, and each camera
- * stands within 512 scene units of its origin along every axis. */
+/* Whether the added views, whose planes these are, still want the scale of the runtime's frame, and each camera is
+ * within 512 scene units of its origin along every axis. */
 bool t3r_is_in_frame(const t3r_runtime *rt, const t3r_view *views);
 
 #endif

@@ -4,7 +4,8 @@
 #include "core/memory.h"
 #include "core/scene_frame.h"
 
-/* floor(log2) of a raw depth in world units, Q40, offset so that it is never negative: raw < 2^16, unit < 2^64 */
+/* Returns floor(log2) of a raw depth in world units, Q40, offset so that it is never negative: raw < 2^16, unit <
+ * 2^64. */
 static uint32_t octave(uint64_t depth_unit_q40, uint16_t raw)
 {
     uint64_t high = (depth_unit_q40 >> 32) * raw + (((depth_unit_q40 & UINT32_MAX) * raw) >> 32);
@@ -12,12 +13,12 @@ static uint32_t octave(uint64_t depth_unit_q40, uint16_t raw)
 }
 
 #define OCTAVES 96
-/* Steps between 1 and 2 scene units, then what is nearer. */
+/* Bins between 1 and 2 scene units; the next bin counts nearer depths. */
 #define STEPS 1024
 #define NEARER STEPS
-#define BINS (STEPS + 64) /* of a worker: its histograms share no cache line with another's */
+#define BINS (STEPS + 64) /* bins a worker, padded so that workers share no cache line */
 
-/* Measured depths of all views, counted by bin: each worker for itself, in the end all by worker 0. */
+/* Histogram of the measured depths of all views: one a worker, finally summed into worker 0's. */
 typedef struct count_job {
     const t3r_view *view;
     int32_t exponent;
@@ -60,7 +61,7 @@ static void count_steps(void *context, uint32_t begin, uint32_t end, uint32_t wo
     }
 }
 
-/* All workers where the work has room for each, else one. */
+/* Returns all workers where the work memory has room for their histograms, else one. */
 static t3r_workers workers_of(const t3r_view *views, const t3r_pointmap_work *work)
 {
     const size_t room = (size_t)views[0].width * views[0].height + 3 * T3R_RATIO_BINS;
@@ -84,7 +85,7 @@ static void count_views(const t3r_view *views, uint32_t count, const t3r_pointma
     }
 }
 
-/* The first index at which the running sum passes half of the total */
+/* Returns the first bin at which the running sum passes half of the total. */
 static uint32_t median_bin(const uint32_t *histogram, uint32_t bins, uint64_t total, uint64_t before)
 {
     uint64_t sum = before;
@@ -97,7 +98,7 @@ static uint32_t median_bin(const uint32_t *histogram, uint32_t bins, uint64_t to
     return bins - 1;
 }
 
-/* The exponent, and how many depths there are. */
+/* Chooses the exponent and returns the number of depths. */
 static uint64_t choose_exponent(const t3r_view *views, uint32_t count, const t3r_pointmap_work *work, int32_t *exponent)
 {
     count_job job = {0};

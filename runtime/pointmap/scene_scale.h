@@ -7,10 +7,10 @@
 #include "pointmap_work.h"
 #include "state/views.h"
 
-/* The exponent of the frame that the measured depths of the views ask for. T3R_ERR_NO_DEPTH when no view has one. */
+/* Chooses the exponent of the frame from the views' measured depths. Returns T3R_ERR_NO_DEPTH when there are none. */
 t3r_status t3r_scene_exponent(const t3r_view *views, uint32_t count, const t3r_pointmap_work *work, int32_t *exponent);
 
-/* The same, and the median depth in that frame. */
+/* As t3r_scene_exponent(); also computes the median depth in that frame. */
 t3r_status t3r_scene_scale_choose(const t3r_view *views, uint32_t count, const t3r_pointmap_work *work,
                                   int32_t *exponent, int32_t *median_q20);
 

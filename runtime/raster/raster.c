@@ -1,7 +1,7 @@
-/* The rasterizer: project, order, bin by tiles, blend front to back.
+/* The rasterizer: projects, orders, bins by tiles and blends front to back.
  *
- * Fewer bytes never change a pixel: the depth order is global, a pass takes as many whole tiles as its lists have
- * room for (one tile always fits), and a tile's pixels depend on nothing but its own list. */
+ * Fewer bytes never change a pixel. The depth order is global, a pass takes as many whole tiles as its lists have
+ * room for (one tile always fits), and the pixels of a tile depend on its own list alone. */
 #include "raster_list.h"
 
 #include "core/features.h"
@@ -11,11 +11,11 @@
 typedef struct tile_job {
     const t3r_binning *bin;
     const t3r_target *target;
-    uint32_t pass_first; /* its list starts at 0 */
-    uint32_t first;      /* tile of index 0 */
+    uint32_t pass_first; /* tile whose list starts at entry 0 */
+    uint32_t first;      /* tile of task 0 */
 } tile_job;
 
-/* Tiles drawn between two looks at the progress hook, and splats blended into them: a multiple of T3R_STOP_INTERVAL. */
+/* Tiles and blended splats between two calls of the progress hook. DRAW_SPLATS is a multiple of T3R_STOP_INTERVAL. */
 #define DRAW_CHUNK 64u
 #define DRAW_SPLATS 65536u
 
@@ -37,7 +37,7 @@ static void draw_job(void *context, uint32_t index, uint32_t worker)
     t3r_draw_end(&drawn, job->target);
 }
 
-/* How many tiles from the first on are drawn at once: none when that one is too long. */
+/* Returns how many tiles from the first on are drawn at once; 0 when the first tile alone is too long. */
 static uint32_t chunk_of(const tile_job *job, uint32_t end)
 {
     const uint32_t most = T3R_MIN(end - job->first, DRAW_CHUNK);
@@ -51,7 +51,8 @@ static uint32_t chunk_of(const tile_job *job, uint32_t end)
     return tiles;
 }
 
-/* A tile that is too long to be drawn in one go: part after part, with a look at the hook before each. */
+/* Draws a tile that is too long for one go in parts, and calls the progress hook before each part but the first.
+ * Returns false when the hook cancels. */
 static bool draw_long(const t3r_runtime *rt, const tile_job *job)
 {
     const t3r_binning *bin = job->bin;

@@ -1,14 +1,14 @@
-/* Tile lists. A task counts or fills a band of tiles of its own: it looks at every splat's tiles, four bytes in depth
- * order, and takes those in its band. */
+/* Tile lists. Each task counts or fills a band of tiles. It reads the tile span of every splat, four bytes each in
+ * depth order, and takes the splats in its band. */
 #include "core/fixed.h"
 #include "raster_tile.h"
 
-/* Fewer splats are one band: they are looked through before another worker has begun. */
+/* Minimum number of splats a band: one worker is done with fewer before another has started. */
 #define SPLATS_A_BAND 4096u
 
 typedef struct bin_job {
     const t3r_binning *bin;
-    uint32_t begin, end; /* rows of tiles that are counted, or tiles whose lists are filled */
+    uint32_t begin, end; /* rows of tiles when counting, tiles when filling lists */
     uint32_t bands;
 } bin_job;
 
@@ -19,7 +19,8 @@ static void run_bands(const t3r_workers *workers, bin_job *job, t3r_task *task)
     t3r_run_tasks(workers, job->bands, task, job);
 }
 
-/* One more from x0 on, one less behind x1: two steps a row of tiles however wide a splat is. */
+/* Counts by differences: adds 1 at x0 and subtracts 1 after x1, so a row of tiles takes two steps however wide a splat
+ * is. */
 static void count_band(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
@@ -39,7 +40,7 @@ static void count_band(void *context, uint32_t index, uint32_t worker)
             uint32_t *row = table + y * across;
             row[span.x0]++;
             if (span.x1 + 1u < across) {
-                row[span.x1 + 1]--; /* wraps, and is whole again in the sum */
+                row[span.x1 + 1]--; /* may wrap; the prefix sum is right again */
             }
         }
     }
@@ -57,7 +58,7 @@ void t3r_bin_count(const t3r_workers *workers, const t3r_binning *bin)
     run_bands(workers, &job, count_band);
 }
 
-/* Turns the counts of the tiles that fit into the places where their lists start. */
+/* Replaces the counts of the tiles that fit by the starts of their lists. Returns the first tile that doesn't fit. */
 static uint32_t open_lists(const t3r_binning *bin, uint32_t first)
 {
     uint64_t sum = 0;
@@ -88,7 +89,7 @@ static void fill_band(void *context, uint32_t index, uint32_t worker)
         const t3r_tile_span span = spans[i];
         const uint32_t y0 = T3R_MAX(span.y0, first_row), y1 = T3R_MIN(span.y1, last_row);
         for (uint32_t y = y0; y <= y1; y++) {
-            /* the band begins and ends within a row of tiles */
+            /* the first and the last row of a band may be part of a row of tiles */
             const uint32_t x0 = y == first_row ? T3R_MAX(span.x0, first_column) : span.x0;
             const uint32_t x1 = y == last_row ? T3R_MIN(span.x1, last_column) : span.x1;
             uint32_t *row = table + y * across;

@@ -35,7 +35,7 @@ t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *project
     uint32_t *keys[2] = {histogram + T3R_SORT_BYTES / 4, histogram + T3R_SORT_BYTES / 4 + most};
     uint32_t *indices[2] = {keys[1] + most, keys[1] + 2 * (size_t)most};
 
-    /* until they are needed, lists hold spans, and the sort's other side depths */
+    /* memory reused before its own use: the lists hold all spans, the second key buffer holds the depths */
     t3r_tile_span *all_spans = (t3r_tile_span *)(void *)room->lists;
     uint32_t *depths = keys[1];
     project_job projecting = {&rt->kernels, projection, t3r_buffer_at(rt, T3R_BUFFER_SCENE), count, room->splats,

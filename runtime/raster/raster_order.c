@@ -1,9 +1,9 @@
-/* The global depth order: a stable radix sort, a byte a pass. */
+/* The global depth order: a stable radix sort, one byte a pass. */
 #include "raster_splat.h"
 
 #include "core/memory.h"
 
-/* Turns counts into starts; false when one value has all keys. */
+/* Turns counts into starts. Returns false when all keys have the same digit, so the pass can be skipped. */
 static bool find_starts(uint32_t counts[T3R_RADIX], uint32_t count)
 {
     bool differ = true;

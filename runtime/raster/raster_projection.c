@@ -1,4 +1,4 @@
-/* A camera's projection in the scene's frame. */
+/* Projection of a camera in the scene's frame. */
 #include "core/camera.h"
 #include "core/fixed.h"
 #include "core/scene_frame.h"

@@ -3,7 +3,7 @@
 #include "core/fixed.h"
 #include "core/memory.h"
 
-/* The splat at which a pixel's transmittance first falls below one half gives it its depth. */
+/* Stores the splat's depth in each pixel whose transmittance has just fallen below one half. */
 static void note_depth(t3r_drawn_tile *tile, const t3r_tile_splat *splat, int32_t z_q20)
 {
     for (uint32_t group = 0; group < splat->groups; group++) {
@@ -19,7 +19,7 @@ static void note_depth(t3r_drawn_tile *tile, const t3r_tile_splat *splat, int32_
     }
 }
 
-/* Most tiles have a pixel in their first row that is not done. */
+/* Whether all pixels are opaque. In most tiles the first row already has a pixel that isn't. */
 bool t3r_tile_stopped(const t3r_tile *tile)
 {
     for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
@@ -97,11 +97,11 @@ void t3r_draw_begin(t3r_drawn_tile *tile, uint32_t tile_x, uint32_t tile_y)
     t3r_tile_clear(&tile->pixels);
 }
 
-/* Splats that are placed at once. */
+/* Splats placed in one batch. */
 #define PLACE_SPLATS T3R_PLACED
 _Static_assert(T3R_STOP_INTERVAL % PLACE_SPLATS == 0, "a part of a list ends with a batch");
 
-/* A tile's splats lie anywhere in memory: those that are placed next are on their way while others are blended. */
+/* Prefetches the splats of the next batch while this one is blended: they lie anywhere in memory. */
 static void fetch(const t3r_splat *splats, const uint32_t *list, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -123,7 +123,7 @@ void t3r_draw_list(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_s
             kernels->place(splats, list + i, T3R_MIN(count - i, PLACE_SPLATS), tile->left, tile->top, placed);
         }
         if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(&tile->pixels)) {
-            tile->stopped = true; /* the rest would add nothing: the same pixels, sooner */
+            tile->stopped = true; /* the remaining splats add nothing to any pixel */
         } else {
             kernels->blend(&tile->pixels, &placed[at]);
             if (with_depth) {

@@ -5,19 +5,20 @@
 
 /* passes^2 x share x disagreement in levels^2. On the training scenes 400 to 800 are within 0.01 dB. */
 #define PAY 512u
-#define SHARE_COUNTED 4u /* a larger share than 1/4 counts as 1/4: Gaussians are no narrower than a pixel anyway */
-#define STEP 2u          /* pixels from one that is compared to the next */
-#define PAIRS_LEAST 64u  /* below which the views say nothing of each other */
-#define UNKNOWN_Q8 (150u << 8) /* levels^2, as sensors have that are not bad */
+#define SHARE_COUNTED 4u       /* a share above 1/4 counts as 1/4: Gaussians don't get narrower than a pixel */
+#define STEP 2u                /* pixels between compared pixels */
+#define PAIRS_LEAST 64u        /* with fewer compared pairs, the disagreement is unknown */
+#define UNKNOWN_Q8 (150u << 8) /* levels^2, typical of sensors that are not bad */
 
 uint32_t t3r_predict_passes(uint32_t points, uint32_t gaussians, uint32_t disagreement_q8, uint32_t most)
 {
-    if (gaussians == 0 || points == 0) { /* a restored arena may be without points */
+    if (gaussians == 0 || points == 0) { /* possible in a restored arena */
         return 1;
     }
     const uint64_t quarter = ((uint64_t)points + SHARE_COUNTED - 1) / SHARE_COUNTED;
     const uint64_t retained = T3R_MIN(gaussians, quarter);
-    /* four times the square, which its root halves and rounds: below 2^11 x 2^8 x 2^32 */
+    /* four times the square: the root of it is twice the result, which is then halved with rounding. Below 2^11 x 2^8 x
+     * 2^32. */
     const uint64_t square = (uint64_t)4 * PAY * 256u * points / (retained * T3R_MAX(disagreement_q8, 1u));
     return (uint32_t)t3r_clamp64(((int64_t)t3r_isqrt64(square) + 1) / 2, 1, most);
 }

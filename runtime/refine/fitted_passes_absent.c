@@ -1,4 +1,4 @@
-/* Fitted passes where they are left out: no configuration is allowed to ask for them (core/config.c). */
+/* Stub for builds without fitted passes: core/config.c refuses configurations that ask for them. */
 #include "fitted_passes.h"
 
 #if !T3R_FEATURE_LOSS

@@ -12,7 +12,7 @@
 #include "state/remembered.h"
 #include "state/state.h"
 
-/* Where a band's tile is compared with the view: while the first one is drawn, nothing is sorted. */
+/* Returns the residual buffer of a band. Band 0 borrows the idle sort histogram. */
 static t3r_wanted *wanted_of(const t3r_refine_layout *w, uint32_t band)
 {
     return band == 0 ? t3r_raster_spare_histogram(&w->room) : &w->wanted[band - 1];
@@ -25,7 +25,7 @@ static void shift_each(int32_t *sums, uint32_t count, uint32_t shift)
     }
 }
 
-/* Before a view adds to a Gaussian's sums they are brought to the scale that its box asks for. */
+/* Rescales a Gaussian's sums to the scale of its box in this view, before the view adds to them. */
 static void widen(t3r_refine_sums *sums, const t3r_splat *splat)
 {
     uint32_t area = sums->area + (uint32_t)(splat->x1 - splat->x0 + 1) * (uint32_t)(splat->y1 - splat->y0 + 1);
@@ -39,17 +39,17 @@ static void widen(t3r_refine_sums *sums, const t3r_splat *splat)
     }
 }
 
-/* |K| <= t / (t^2 + 0.3) < 0.913 for each of T's singular values t. */
+/* K| <= t / (t^2 + 0.3) < 0.913 for each singular value t of T */
 #define AXIS_MOST_Q15 30147
 
-/* The splat's own coordinates: e = K d, K = T^T S^-1 with the first two columns of T, so that d q = -e . step for a
+/* Stores the splat's own axes: e = K d, K = T^T S^-1 with the first two columns of T, so that d q = -e . step for a
  * shift by `step` of them. */
 static void set_axes(const t3r_projection *projection, const t3r_gaussian *g, const t3r_splat *s, t3r_refine_sums *sums)
 {
     int32_t row[2][3];
     (void)t3r_footprint_rows(projection, g, row[0], row[1]);
     for (int k = 0; k < 2; k++) {
-        /* S^-1 is the conic doubled: Q29. |T| <= 2^24: the sums stay below 2^56. */
+        /* the conic is S^-1 / 2, so it holds S^-1 in Q29. |T| <= 2^24: the sums stay below 2^56. */
         int64_t right = t3r_round_shift64((int64_t)row[0][k] * s->a_q30 + (int64_t)row[1][k] * s->b_q30, 26);
         int64_t down = t3r_round_shift64((int64_t)row[0][k] * s->b_q30 + (int64_t)row[1][k] * s->c_q30, 26);
         sums->right_q15[k] = (int16_t)t3r_clamp64(right, -AXIS_MOST_Q15, AXIS_MOST_Q15);
@@ -57,38 +57,38 @@ static void set_axes(const t3r_projection *projection, const t3r_gaussian *g, co
     }
 }
 
-/* One view on its way: what all its bands share. */
+/* One view being drawn, shared by all its bands. */
 typedef struct view_job {
     const t3r_runtime *rt;
     const t3r_refine_layout *work;
     const t3r_refine_view *view;
     const t3r_binning *bin;
     uint32_t done, total; /* for the progress hook */
-    uint32_t again;       /* splats drawn again since it was asked */
-    bool stopped;         /* it wanted no more */
-    uint32_t begin, end;  /* tiles of the pass: the first one's list starts at 0 */
-    uint32_t next;        /* tile that is not in a chunk yet */
+    uint32_t again;       /* splats drawn again since the last call of the hook */
+    bool stopped;         /* the hook has cancelled */
+    uint32_t begin, end;  /* tiles of the pass; the list of the first one starts at 0 */
+    uint32_t next;        /* first tile that is in no chunk yet */
     uint32_t count;       /* bands of this chunk */
     t3r_refine_band bands[T3R_MAX_WORKERS];
 } view_job;
 
-/* Tiles between two looks at the progress hook, and splats in their lists. One worker looks more often: a pair of a
- * tile and a splat takes some 30,000 instructions of plain C, and to hand out bands costs it nothing. Where little is
- * kept of a tile's splats, it looks within a tile, too. */
+/* Tiles and list entries between two calls of the progress hook. One worker calls it more often, as bands cost it
+ * nothing: a tile and splat pair takes some 30,000 instructions of plain C. Where few of a tile's splats are kept, it
+ * also calls it within a tile. */
 #define TILES_A_CHUNK 256u
 #define SPLATS_A_CHUNK 65536u
 #define SPLATS_ALONE 256u
 
-/* Bands that are measured at once: each finds more than there is stack for, for all that a hook may run. */
+/* Bands measured at once. Their results lie on the stack, which has no room for those of T3R_MAX_WORKERS bands. */
 #define MEASURED_AT_ONCE 4u
 
-/* A view that is drawn and compared while no Gaussian's sums change: what the bands find. */
+/* One view drawn and compared without a change of any sums, and what the bands find. */
 typedef struct measure_job {
     view_job job;
-    uint32_t first; /* of the bands that are measured */
+    uint32_t first; /* first of the bands being measured */
     uint64_t error[MEASURED_AT_ONCE];
     uint32_t pixels[MEASURED_AT_ONCE];
-    t3r_level_sums levels[MEASURED_AT_ONCE]; /* instead, where the view's levels are wanted */
+    t3r_level_sums levels[MEASURED_AT_ONCE]; /* filled instead where the view's levels are measured */
 } measure_job;
 
 static uint32_t list_begin(const view_job *job, uint32_t tile)
@@ -96,7 +96,7 @@ static uint32_t list_begin(const view_job *job, uint32_t tile)
     return tile == job->begin ? 0 : job->bin->table[tile - 1];
 }
 
-/* Whether the hook wants more. */
+/* Calls the progress hook. Returns false when it has cancelled. */
 static bool ask(view_job *job)
 {
     job->again = 0;
@@ -109,14 +109,14 @@ static bool draws_again(void *context, uint32_t splats)
     view_job *job = context;
     const t3r_workers workers = t3r_workers_of(job->rt);
     if (t3r_is_parallel(&workers)) {
-        return true; /* hooks are called by one alone */
+        return true; /* only one worker may call hooks */
     }
     job->again += splats;
     return job->again <= SPLATS_ALONE || ask(job);
 }
 
-/* Cuts the next tiles into bands, and fills their lists first where they are in no pass yet. No bands: all tiles are
- * done. False: the progress hook wants no more. */
+/* Cuts the next tiles into bands, after filling their lists where no pass has them yet. No bands: all tiles are done.
+ * Returns false when the progress hook cancels. */
 static bool next_chunk(view_job *job)
 {
     const t3r_workers workers = t3r_workers_of(job->rt);
@@ -141,7 +141,7 @@ static bool next_chunk(view_job *job)
 
 static void accumulate_band(void *context, uint32_t index, uint32_t worker)
 {
-    (void)worker; /* a band has room of its own, and there are no more bands than workers */
+    (void)worker; /* each band has its own memory, and there are at most as many bands as workers */
     view_job *job = context;
     const t3r_binning *bin = job->bin;
     const t3r_refine_band *band = &job->bands[index];
@@ -159,7 +159,7 @@ static void accumulate_band(void *context, uint32_t index, uint32_t worker)
     }
 }
 
-/* A view's levels are those of every so manyth tile, row by row two further: spread evenly, and pixels enough. */
+/* Levels are measured on one tile in four, shifted by two in each row: evenly spread, and pixels enough. */
 #define LEVELLED_TILES 4u
 
 static void measure_band(void *context, uint32_t index, uint32_t worker)
@@ -186,7 +186,8 @@ static void measure_band(void *context, uint32_t index, uint32_t worker)
     }
 }
 
-/* Draws view `v` of the scene and compares it; structure: NULL, or with the levels so far where they are measured. */
+/* Draws view `v` of the scene and compares it. structure: the view's current levels, to measure new ones, or NULL to
+ * measure the error. */
 static t3r_status measure_view(const t3r_runtime *rt, const t3r_refine_layout *w, const t3r_view *views, uint32_t v,
                                const t3r_structure *structure, uint32_t done, uint32_t total, measure_job *to)
 {
@@ -229,12 +230,12 @@ typedef struct slice_job {
     const t3r_kernels *kernels;
     const t3r_refine_layout *work;
     t3r_refine_slice slice;
-    const t3r_projection *projection; /* of the view that is begun */
+    const t3r_projection *projection; /* of the view being drawn */
     t3r_gaussian *scene;
     const t3r_map_record *records; /* NULL: all Gaussians change */
     uint32_t idle_most;
-    bool settles;                   /* by smaller steps where more keyframes saw the Gaussian */
-    const t3r_structure *structure; /* of every view, or NULL */
+    bool settles;                   /* smaller steps for Gaussians that more keyframes saw */
+    const t3r_structure *structure; /* one for each view, or NULL */
 } slice_job;
 
 static void begin_chunk(void *context, uint32_t index, uint32_t worker)
@@ -260,7 +261,8 @@ static void solve_chunk(void *context, uint32_t index, uint32_t worker)
     job->kernels->solve(job->slice.sums + begin, count, corrections + begin);
 }
 
-/* Q15: 1 / (1 + n) of the step behind n keyframes that saw it: what they agreed on is not given up for the next one. */
+/* Step share, Q15: 1 / (1 + n) after n keyframes saw the Gaussian, so that the next one doesn't undo what they agreed
+ * on. */
 static const uint16_t settled_q15[T3R_FITTED_MOST + 1] = {32768, 16384, 10923, 8192, 6554};
 
 static t3r_correction settled(const t3r_correction *whole, uint32_t fitted)
@@ -276,7 +278,7 @@ static t3r_correction settled(const t3r_correction *whole, uint32_t fitted)
     return c;
 }
 
-/* Here the slice is the whole scene. */
+/* Applies the corrections; here the slice is the whole scene. */
 static void apply_chunk(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
@@ -293,16 +295,16 @@ static void apply_chunk(void *context, uint32_t index, uint32_t worker)
     }
 }
 
-/* What a pass draws: a view at hand, or a remembered keyframe. */
+/* A view that a pass draws: a live one or a remembered keyframe. */
 typedef struct shown_view {
-    const t3r_view *view; /* of a remembered keyframe its size alone is read */
+    const t3r_view *view; /* for a remembered keyframe only its size is read */
     const t3r_camera *camera;
     const uint16_t *gain_q14;
     const uint16_t *remembered;     /* pixels; NULL: the view has planes */
-    const t3r_structure *structure; /* NULL: what it lacks counts as it is */
+    const t3r_structure *structure; /* NULL: residuals count as they are */
 } shown_view;
 
-/* What it adds to the sums of the slice. */
+/* Draws the view and adds to the sums of the slice. */
 static t3r_status accumulate(const t3r_runtime *rt, slice_job *slice, const shown_view *shown, uint32_t done,
                              uint32_t total)
 {
@@ -338,7 +340,7 @@ static t3r_status accumulate(const t3r_runtime *rt, slice_job *slice, const show
     return goes_on ? T3R_OK : T3R_ERR_CANCELLED;
 }
 
-/* What the remembered keyframes whose turn it is add. Those out of the map's range add nothing. */
+/* Draws the remembered keyframes whose turn it is. Those out of the map's range are skipped. */
 static t3r_status accumulate_remembered(const t3r_runtime *rt, slice_job *slice, const t3r_view *size, uint32_t turn,
                                         uint32_t *done, uint32_t total)
 {
@@ -361,7 +363,7 @@ static t3r_status accumulate_remembered(const t3r_runtime *rt, slice_job *slice,
     return T3R_OK;
 }
 
-/* The sums of a slice over all views. */
+/* Computes the sums of a slice over all views. */
 static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, const t3r_view *views, uint32_t turn,
                                    uint32_t *done, uint32_t total)
 {
@@ -380,7 +382,7 @@ static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, cons
     return t3r_is_stream(&rt->config) ? accumulate_remembered(rt, slice, views, turn, done, total) : T3R_OK;
 }
 
-/* The levels of all views are measured on the scene as it is. */
+/* Measures the levels of all views on the scene as it is. */
 static t3r_status measure_levels(const t3r_runtime *rt, const t3r_refine_layout *w, const t3r_view *views,
                                  uint32_t done, uint32_t total, t3r_structure structure[T3R_MAX_VIEWS])
 {
@@ -403,7 +405,8 @@ static t3r_status measure_levels(const t3r_runtime *rt, const t3r_refine_layout 
     return T3R_OK;
 }
 
-/* What counts in this pass: colours come first, so that the first one takes every level as it is. */
+/* Sets up the structural loss of a pass. The first pass corrects colours, so contrast counts only from the second
+ * on. */
 static t3r_status find_structure(const t3r_runtime *rt, const t3r_refine_layout *w, const t3r_view *views,
                                  uint32_t pass, uint32_t done, uint32_t total, t3r_structure structure[T3R_MAX_VIEWS])
 {

@@ -1,6 +1,5 @@
-/* Refinement: the context views are drawn, what they miss is scattered back to the Gaussians that drew it, and these
- * are corrected (SPEC.md, "Refinement"). Everything of one pass is measured on one scene; then all of it changes at
- * once. */
+/* Refinement: draws the context views, scatters the residuals back to the Gaussians that drew each pixel, and corrects
+ * these Gaussians (SPEC.md, "Refinement"). A pass measures everything on one scene, then changes all of it at once. */
 #ifndef T3R_REFINE_H
 #define T3R_REFINE_H
 
@@ -10,17 +9,18 @@
 #include "core/map_record.h"
 #include "state/views.h"
 
-/* A Gaussian takes the step of its correction. */
+/* Applies a correction to a Gaussian. */
 void t3r_refine_apply(const t3r_correction *correction, t3r_gaussian *gaussian);
 
-/* So many passes over the scene in the arena. T3R_ERR_CANCELLED leaves it somewhere between two passes. */
+/* Runs `passes` passes over the scene in the arena. T3R_ERR_CANCELLED leaves the scene as the last whole pass made
+ * it. */
 t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, uint32_t passes);
 
-/* The same of a map. A Gaussian stays as it is when no retained keyframe sees it as finely as its own keyframe did.
- * records: one a Gaussian; NULL: all change. */
+/* As t3r_refine(), of a map. A Gaussian doesn't change when no retained keyframe sees it as finely as its own keyframe
+ * did. records: one a Gaussian; NULL: all change. */
 t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t passes, const t3r_map_record *records);
 
-/* The room in which refinement draws a view of the working size: whoever draws one before can use it. */
+/* Returns the memory in which refinement draws a view of the working size. Others may use it before refinement runs. */
 t3r_raster_room t3r_refine_room(const t3r_runtime *rt);
 
 /* How far the scene in the arena is from the context views: mean squared residual a channel, levels^2 Q8, at most 2^24,

@@ -1,4 +1,4 @@
-/* What stands for refinement where it is left out: no configuration asks for a pass (core/config.c). */
+/* Stubs for builds without refinement: core/config.c refuses configurations that ask for a pass. */
 #include "refine.h"
 
 #if !T3R_FEATURE_REFINEMENT

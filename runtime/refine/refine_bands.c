@@ -13,7 +13,7 @@ static uint32_t last_tile_of(const t3r_splat *splat, uint32_t across)
     return splat->y1 / T3R_TILE_SIDE * across + splat->x1 / T3R_TILE_SIDE;
 }
 
-/* Bands of about as many list entries each; a band may be empty. */
+/* Cuts tiles into bands with about the same number of list entries each. A band may be empty. */
 static void cut(const t3r_binning *bin, uint32_t begin, uint32_t end, uint32_t listed, uint32_t count,
                 t3r_refine_band *bands)
 {
@@ -28,7 +28,7 @@ static void cut(const t3r_binning *bin, uint32_t begin, uint32_t end, uint32_t l
     }
 }
 
-/* The Gaussians of the slice that reach into the band from an earlier one; false when there is no room for them. */
+/* Lists the Gaussians of the slice that reach into the band from an earlier one. Returns false when they don't fit. */
 static bool find_crossing(const t3r_binning *bin, const t3r_refine_slice *slice, uint32_t most, t3r_refine_band *band,
                           uint32_t *index, t3r_refine_sums *sums)
 {
@@ -43,7 +43,7 @@ static bool find_crossing(const t3r_binning *bin, const t3r_refine_slice *slice,
         }
         const t3r_refine_sums *own = &slice->sums[i - slice->first];
         t3r_refine_sums *copy = &sums[band->crossing];
-        *copy = (t3r_refine_sums){.area = own->area, /* the scale in which both are kept */
+        *copy = (t3r_refine_sums){.area = own->area, /* the scale that both sums use */
                                   .right_q15 = {own->right_q15[0], own->right_q15[1]},
                                   .down_q15 = {own->down_q15[0], own->down_q15[1]}};
         index[band->crossing++] = i;
@@ -56,7 +56,8 @@ uint32_t t3r_refine_bands(const t3r_binning *bin, uint32_t begin, uint32_t end, 
                           t3r_refine_band bands[T3R_MAX_WORKERS])
 {
     uint32_t count = T3R_MIN(borders->bands, end - begin);
-    for (bool fits = false; !fits; count = fits ? count : count / 2) { /* a single band has no border */
+    for (bool fits = false; !fits; count = fits ? count : count / 2) { /* ends at the latest with one band, which has no
+                                                                        * border */
         cut(bin, begin, end, listed, count, bands);
         fits = true;
         for (uint32_t b = 1; b < count && fits; b++) {
@@ -76,7 +77,7 @@ t3r_refine_sums *t3r_refine_sums_in(const t3r_refine_band *bands, uint32_t band,
     }
     const size_t place = (size_t)(band - 1) * borders->most;
     const uint32_t *crossing = borders->index + place;
-    uint32_t low = 0, high = bands[band].crossing - 1; /* it is among them */
+    uint32_t low = 0, high = bands[band].crossing - 1; /* index is in the list */
     while (low < high) {
         uint32_t middle = (low + high) / 2;
         if (crossing[middle] < index) {

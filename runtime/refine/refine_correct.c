@@ -1,11 +1,11 @@
-/* A Gaussian takes its correction (SPEC.md, "Refinement"). */
+/* Applies a correction to a Gaussian (SPEC.md, "Refinement"). */
 #include "core/fixed.h"
 #include "core/scene_frame.h"
 #include "head/head.h"
 #include "refine.h"
 
 #define OPACITY_LEAST_Q15 256
-#define OPACITY_MOST_Q15 32440 /* 0.99: what the rasterizer draws at most */
+#define OPACITY_MOST_Q15 32440 /* 0.99: the most that the rasterizer draws */
 
 static void apply_opacity(int32_t step_q16, t3r_gaussian *g)
 {
@@ -18,7 +18,7 @@ static void apply_opacity(int32_t step_q16, t3r_gaussian *g)
     g->opacity_q15 = (uint16_t)t3r_clamp64(opacity, least, most);
 }
 
-/* position += F (x, y, 0) */
+/* Adds F (x, y, 0) to the position. */
 static void apply_shift(const int16_t step_q16[2], t3r_gaussian *g)
 {
     for (int i = 0; i < 3; i++) {
@@ -29,7 +29,7 @@ static void apply_shift(const int16_t step_q16[2], t3r_gaussian *g)
     }
 }
 
-/* F = F (I + s), s = (xx xy 0; xy yy 0; 0 0 0) */
+/* Multiplies F by I + s, s = (xx xy 0; xy yy 0; 0 0 0). */
 static void apply_shape(const int16_t step_q16[3], t3r_gaussian *g)
 {
     if (step_q16[0] == 0 && step_q16[1] == 0 && step_q16[2] == 0) {

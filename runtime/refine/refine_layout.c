@@ -17,7 +17,8 @@ t3r_refine_layout t3r_refine_layout_of(const t3r_runtime *rt)
     w.corrections = t3r_take(&cut, most * T3R_CORRECTION_BYTES);
     w.kept = t3r_take(&cut, T3R_KEPT_BYTES_(most));
     w.slice = (uint32_t)T3R_MIN((t3r_cut_left(&cut) - least_lists) / T3R_REFINE_SUMS_BYTES, most);
-    w.sums = t3r_take(&cut, (size_t)w.slice * T3R_REFINE_SUMS_BYTES); /* what is left is a multiple of the alignment */
+    w.sums = t3r_take(&cut, (size_t)w.slice * T3R_REFINE_SUMS_BYTES); /* the remaining bytes are a multiple of the
+                                                                       * alignment */
     w.room.capacity = T3R_MIN((uint64_t)t3r_cut_left(&cut) / sizeof(uint32_t), (uint64_t)UINT32_MAX);
     w.room.lists = t3r_take(&cut, t3r_cut_left(&cut));
 
@@ -29,7 +30,7 @@ t3r_refine_layout t3r_refine_layout_of(const t3r_runtime *rt)
     w.wanted = t3r_buffer_at(rt, T3R_BUFFER_WANTED);
 
     w.kept_words = T3R_KEPT_LEAST;
-    if (T3R_KEPT_BYTES_(most) == 0) { /* what sorting needed is enough */
+    if (T3R_KEPT_BYTES_(most) == 0) { /* the sort's key buffers are large enough */
         const uint32_t words = (uint32_t)(most * T3R_RASTER_SPARE_BYTES / sizeof *w.kept);
         w.borders.bands = T3R_MIN(w.borders.bands, words / T3R_KEPT_LEAST);
         w.kept = t3r_raster_spare(&w.room);

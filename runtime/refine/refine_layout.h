@@ -1,4 +1,4 @@
-/* Where refinement works. */
+/* Layout of the refinement work buffer. */
 #ifndef T3R_REFINE_LAYOUT_H
 #define T3R_REFINE_LAYOUT_H
 
@@ -6,16 +6,16 @@
 #include "refine_bands.h"
 #include "refine_tile.h"
 
-/* The refinement work, cut up. The first four parts and the least lists always fit; sums take what they can use of the
- * rest, lists what is left. */
+/* The refinement work buffer, cut up. The first four parts and the smallest lists always fit. Sums take what they can
+ * use of the rest, and lists take the remainder. */
 typedef struct t3r_refine_layout {
     t3r_raster_room room;
-    t3r_correction *corrections; /* of all Gaussians: the pass before's, as far as this one's are not there yet */
+    t3r_correction *corrections; /* one a Gaussian; holds the last pass's until this pass has solved its own */
     t3r_refine_sums *sums;
     uint32_t slice; /* Gaussians whose sums fit */
     t3r_refine_borders borders;
-    t3r_wanted *wanted; /* of each band but the first */
-    uint32_t *kept;     /* what bands keep while they draw, of each `kept_words` */
+    t3r_wanted *wanted; /* one for each band but the first */
+    uint32_t *kept;     /* `kept_words` a band for the splats kept while a tile is drawn */
     uint32_t kept_words;
 } t3r_refine_layout;
 

@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "state/remembered.h"
 
-/* Whether the pixel counts. */
+/* Whether the pixel counts in the loss. */
 static bool is_wanted(const t3r_refine_view *job, size_t at)
 {
     if (T3R_FEATURE_STREAMS && job->remembered != NULL) {
@@ -24,7 +24,7 @@ static uint32_t shown_q7(const t3r_refine_view *job, size_t at, int channel)
     return job->view->colour[channel][at] * 128u;
 }
 
-/* What the drawn tile lacks; columns and rows beyond the image count for nothing. */
+/* Computes the residuals of the drawn tile. Columns and rows beyond the image don't count. */
 static void compare(const t3r_refine_view *job, uint32_t left, uint32_t top, t3r_wanted *want)
 {
     const t3r_view *view = job->view;
@@ -45,15 +45,15 @@ static void compare(const t3r_refine_view *job, uint32_t left, uint32_t top, t3r
     }
 }
 
-/* The splats of the list from `begin` on that draw something, as they were blended: from the front of the room on a
- * word each, its place in the list and the scale of its weights, from the end of the room on their rows, the first
- * splat's last. */
+/* The last splats of the list, from entry `begin` on, that draw something, as they were blended. Each takes one word
+ * from the front of the buffer (list entry and weight scale) and its blended rows from the end of the buffer, the first
+ * splat's rows last. */
 typedef struct kept_splats {
     uint32_t begin, count;
-    uint32_t rows; /* all their rows */
+    uint32_t rows; /* rows of all kept splats */
 } kept_splats;
 
-#define SCALE_BITS 4 /* a list has at most 2^24 entries */
+#define SCALE_BITS 4 /* leaves 28 bits for the entry; a list has at most 2^24 */
 #define ROW_WORDS (uint32_t)(sizeof(t3r_blended_row) / sizeof(uint32_t))
 
 static t3r_blended_row *rows_at(const t3r_refine_view *job, uint32_t rows)
@@ -61,8 +61,8 @@ static t3r_blended_row *rows_at(const t3r_refine_view *job, uint32_t rows)
     return (t3r_blended_row *)(void *)(job->kept + job->kept_words - rows * ROW_WORDS);
 }
 
-/* Draws the list from its first splat to `end`, or until all pixels are done, and keeps the last splats of it: where
- * the room is full it begins anew. */
+/* Draws the list up to `end`, or until all pixels are opaque, and keeps its last splats: a full buffer is emptied and
+ * filled anew. */
 static kept_splats draw(const t3r_refine_view *job, const uint32_t *list, uint32_t end, uint32_t left, uint32_t top,
                         t3r_tile *tile)
 {
@@ -94,8 +94,8 @@ static kept_splats draw(const t3r_refine_view *job, const uint32_t *list, uint32
     return kept;
 }
 
-/* x, y and their changes a pixel of the tile, from the axes in Q15 and the offset of its first pixel from the mean,
- * Q12. All is modulo 2^16 in the end, so that 32 bits are enough on the way. */
+/* Computes x, y and their steps a pixel, from the axes in Q15 and the offset of the first pixel from the mean in Q12.
+ * The results are modulo 2^16, so 32-bit intermediates are enough. */
 static void place(const t3r_refine_sums *sums, const t3r_splat *s, uint32_t x, uint32_t y, t3r_scatter_splat *out)
 {
     const uint32_t dx_q12 = (x << 12) - (uint32_t)s->x_q12, dy_q12 = (y << 12) - (uint32_t)s->y_q12;
@@ -112,7 +112,7 @@ static bool is_in(const t3r_refine_slice *slice, uint32_t index)
     return index - slice->first < slice->count; /* unsigned: an index below the slice wraps and fails */
 }
 
-/* Sums are too many for the processor's nearest memory and are used in no order, so that they are asked for early. */
+/* Distance of the prefetch of sums, which don't fit the nearest cache and are used in no order. */
 #define SUMS_AHEAD 4
 static void ask_for_sums(const t3r_refine_slice *slice, uint32_t index)
 {
@@ -123,7 +123,8 @@ static void ask_for_sums(const t3r_refine_slice *slice, uint32_t index)
     }
 }
 
-/* The kept splats from the last to number `first` of the list: each accumulates, and is taken off the tile. */
+/* Goes through the kept splats from the last down to list entry `first`: accumulates each and removes it from the
+ * tile. */
 static void take_off(const t3r_refine_view *job, const uint32_t *list, const kept_splats *kept, uint32_t first,
                      uint32_t left, uint32_t top)
 {
@@ -149,7 +150,7 @@ static void take_off(const t3r_refine_view *job, const uint32_t *list, const kep
     }
 }
 
-/* A function of its own, as its tile is not needed while splats are taken off. */
+/* Not inlined: its tile shouldn't be on the stack while splats are removed. */
 static __attribute__((noinline)) kept_splats draw_again(const t3r_refine_view *job, const uint32_t *list, uint32_t end,
                                                         uint32_t left, uint32_t top)
 {
@@ -157,7 +158,8 @@ static __attribute__((noinline)) kept_splats draw_again(const t3r_refine_view *j
     return draw(job, list, end, left, top, &again);
 }
 
-/* The place in the list of the first splat of the slice, `count` when there is none. Nothing before it accumulates. */
+/* Returns the list entry of the first splat in the slice, or `count` when there is none. Earlier entries don't
+ * accumulate. */
 static uint32_t first_in(const t3r_refine_slice *slice, const uint32_t *list, uint32_t count)
 {
     uint32_t first = 0;
@@ -173,14 +175,15 @@ void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t 
     t3r_wanted *want = job->wanted;
     const uint32_t first = first_in(&job->slice, list, count);
     if (first == count) {
-        return; /* a slice is of neighbours: most tiles are drawn for few slices */
+        return; /* a slice holds neighbours, so most tiles are drawn for few slices */
     }
     kept_splats kept = draw(job, list, count, left, top, &want->pixels);
     compare(job, left, top, want);
     if (T3R_FEATURE_LOSS && job->structure != NULL) {
         t3r_structural_loss(want, job->structure);
     }
-    memset(want->pixels.colour_q7, 0, sizeof want->pixels.colour_q7); /* behind the last splat it is black */
+    memset(want->pixels.colour_q7, 0, sizeof want->pixels.colour_q7); /* after the last splat nothing but black
+                                                                       * follows */
     take_off(job, list, &kept, first, left, top);
     while (kept.begin > first && job->goes_on(job->context, kept.begin)) {
         kept = draw_again(job, list, kept.begin, left, top);

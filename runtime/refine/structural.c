@@ -11,7 +11,7 @@ enum { SIDE = T3R_TILE_SIDE };
 
 typedef uint32_t plane[SIDE][SIDE];
 
-/* Each becomes the sum of the 3 x 3 around it, of 0 beyond the tile. Modulo 2^32. */
+/* Replaces each value by the sum of the 3 x 3 around it, modulo 2^32. Values beyond the tile are 0. */
 static void sum_windows(plane p)
 {
     uint32_t above[SIDE] = {0};
@@ -27,21 +27,21 @@ static void sum_windows(plane p)
     }
 }
 
-/* Of the window around each pixel. */
+/* Sums over the window around each pixel. */
 typedef struct windows {
     union {
-        plane drawn;  /* the sum, levels Q4 */
-        plane weight; /* then, Q9 */
+        plane drawn;  /* sum, levels Q4 */
+        plane weight; /* then the weight, Q9 */
     };
     union {
         plane target;
-        plane shift; /* the weight times the mean residual, Q13 */
+        plane shift; /* weight times mean residual, Q13 */
     };
-    plane squares; /* of both, Q8: below 9 x 2^25 */
+    plane squares; /* of drawn and target, Q8: below 9 x 2^25 */
     uint8_t count[SIDE][SIDE];
 } windows;
 
-/* x / n, n at most 9 */
+/* Returns x / n, n at most 9. */
 static int32_t over(int32_t x, uint32_t n)
 {
     static const uint16_t inverse_q15[] = {0, 32768, 16384, 10923, 8192, 6554, 5461, 4681, 4096, 3641};

@@ -1,4 +1,4 @@
-/* A loss that sees structure, as eyes do. */
+/* A loss that weights errors of structure, as eyes do. */
 #ifndef T3R_STRUCTURAL_H
 #define T3R_STRUCTURAL_H
 
@@ -6,17 +6,17 @@
 
 #include "view_levels.h"
 
-/* What a drawn tile lacks becomes 11/16 of it and 5/16 of what structural similarity asks for. That one's descent
- * (Wang, Bovik, Sheikh and Simoncelli, "Image quality assessment", 2004) takes from each window's residuals their mean
- * and divides by the contrast in it: 256 / (variance drawn + variance wanted + 64 levels^2). Windows are of 3 x 3
- * pixels, of those that count and lie in the tile; a pixel takes the mean of the windows that it lies in. Pixels that
- * do not count keep anything. */
+/* Replaces each residual of a drawn tile by 11/16 of itself and 5/16 of the descent direction of structural similarity
+ * (Wang, Bovik, Sheikh and Simoncelli, "Image quality assessment", 2004). In a window that direction is the residual
+ * less the window's mean, times 256 / (variance drawn + variance wanted + 64 levels^2). A window is the pixels of 3 x 3
+ * that count and lie in the tile. A pixel takes the mean of the windows that it lies in. Pixels that do not count may
+ * get any value. */
 void t3r_structural_residuals(t3r_wanted *tile);
 
-/* What of a view's residuals counts. */
+/* What counts of a view's residuals. */
 typedef struct t3r_structure {
-    t3r_view_levels levels; /* that the view shows beyond the others count for nothing */
-    bool contrast;          /* structural similarity counts, too */
+    t3r_view_levels levels; /* differences of level from the other views, which don't count */
+    bool contrast;          /* whether structural similarity counts */
 } t3r_structure;
 
 void t3r_structural_loss(t3r_wanted *tile, const t3r_structure *structure);

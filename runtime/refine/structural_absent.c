@@ -1,4 +1,4 @@
-/* The structural loss where it is left out: no configuration is allowed to ask for it (core/config.c). */
+/* Stubs for builds without the structural loss: core/config.c refuses configurations that ask for it. */
 #include "structural.h"
 
 #if !T3R_FEATURE_LOSS

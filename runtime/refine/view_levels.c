@@ -5,10 +5,10 @@
 #define MIDDLE_Q4 (128 << 4)
 #define OFFSET_MOST_Q8 (32 << 8)
 #define SLOPE_MOST_Q14 (1 << 12)
-#define NOISE_Q16 (25 << 16) /* levels^2: a view with less contrast says nothing of the slope */
+#define NOISE_Q16 (25 << 16) /* levels^2: a view with less contrast doesn't determine the slope */
 #define RESIDUAL_MOST_Q4 (255 << 4)
 
-/* The target less 128 levels, as far as residual and drawn colour tell it: at most 128 levels either way. */
+/* Returns the target less 128 levels, from residual and drawn colour, clamped to 128 levels either way. */
 static int32_t target_q4(const t3r_wanted *tile, int c, uint32_t j, uint32_t i)
 {
     const int32_t drawn_q4 = t3r_round_shift32(T3R_MIN((int32_t)tile->pixels.colour_q7[c][j][i], 255 << 7), 3);
@@ -24,7 +24,7 @@ void t3r_add_levels(const t3r_wanted *tile, const t3r_view_levels *levels, t3r_l
 {
     for (int c = 0; c < 3; c++) {
         for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
-            int32_t target = 0, squares = 0, missing = 0, products = 0; /* of 16 pixels: below 2^29 */
+            int32_t target = 0, squares = 0, missing = 0, products = 0; /* sums over 16 pixels: below 2^29 */
             for (uint32_t i = 0; i < T3R_TILE_SIDE; i++) {
                 const int32_t counts = tile->counts[j][i] != 0, t = target_q4(tile, c, j, i) * counts;
                 const int32_t r =
@@ -82,7 +82,7 @@ void t3r_center_levels(t3r_view_levels *lines, uint32_t count)
         offset = t3r_round_div32(offset, (int32_t)count);
         slope = t3r_round_div32(slope, (int32_t)count);
         for (uint32_t v = 0; v < count; v++) {
-            lines[v].offset_q8[c] = (int16_t)(lines[v].offset_q8[c] - offset); /* at most twice the most */
+            lines[v].offset_q8[c] = (int16_t)(lines[v].offset_q8[c] - offset); /* at most twice the bound */
             lines[v].slope_q14[c] = (int16_t)(lines[v].slope_q14[c] - slope);
         }
     }

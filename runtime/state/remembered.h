@@ -1,4 +1,4 @@
-/* The keyframes that a stream remembers when their planes are gone: what each showed, for refinement. */
+/* Keyframes that a stream remembers after their planes are gone: their colours, for refinement. */
 #ifndef T3R_REMEMBERED_H
 #define T3R_REMEMBERED_H
 
@@ -10,7 +10,7 @@
 #include "core/fixed.h"
 #include "state.h"
 
-/* Its pixels follow, one after the other, at T3R_REMEMBERED_HEAD_BYTES. Any values are safe. */
+/* Head of a remembered keyframe. Its pixels follow row by row at T3R_REMEMBERED_HEAD_BYTES. Any values are safe. */
 typedef struct t3r_remembered {
     t3r_camera camera; /* of the working size */
     uint16_t gain_q14[3];
@@ -21,7 +21,7 @@ typedef struct t3r_remembered {
 _Static_assert(sizeof(t3r_remembered) <= T3R_REMEMBERED_HEAD_BYTES,
                "trim3r_arena.h knows what comes before the pixels");
 
-/* Number i of rt->remembered. */
+/* Returns remembered keyframe i of rt->remembered. */
 static inline t3r_remembered *t3r_remembered_at(const t3r_runtime *rt, uint32_t i)
 {
     uint8_t *all = t3r_buffer_at(rt, T3R_BUFFER_REMEMBERED);
@@ -33,7 +33,7 @@ static inline uint16_t *t3r_remembered_pixels(t3r_remembered *keyframe)
     return (void *)((uint8_t *)keyframe + T3R_REMEMBERED_HEAD_BYTES);
 }
 
-/* A pixel: five bits of r, g, b from the lowest on, and whether it had a depth. */
+/* Set in a pixel that had a depth. The lower bits are five each of r, g, b, from the lowest on. */
 #define T3R_REMEMBERED_KNOWN 0x8000u
 
 static inline bool t3r_is_remembered(uint16_t pixel)
@@ -41,13 +41,13 @@ static inline bool t3r_is_remembered(uint16_t pixel)
     return (pixel & T3R_REMEMBERED_KNOWN) != 0;
 }
 
-/* 32,640 / 31 is 1052.9: the largest value alone is above. */
+/* Returns a channel's level, Q7. 32,640 / 31 is 1052.9, so only the largest value needs the bound. */
 static inline uint32_t t3r_remembered_q7(uint16_t pixel, int channel)
 {
     return T3R_MIN((uint32_t)(pixel >> (5 * channel) & 31) * 1053u, 255u * 128u);
 }
 
-/* So many of them are drawn in a pass of refinement, in turn. */
+/* Remembered keyframes drawn in each pass of refinement, in turn. */
 #define T3R_REMEMBERED_A_PASS 2u
 
 static inline uint32_t t3r_remembered_a_pass(const t3r_runtime *rt)

@@ -1,6 +1,6 @@
-/* The head of the arena: everything the runtime remembers besides the planes. Offsets, never pointers, so
- * that a copied arena goes on working. The hooks, the bound weights and the table of kernels are the exceptions:
- * t3r_attach() clears the first two and fills the third anew. */
+/* The head of the arena: the runtime's whole state except the planes. It has offsets instead of pointers, so that a
+ * copied arena works. The hooks, the bound weights and the table of kernels are exceptions: t3r_attach() clears the
+ * first two and fills the third again. */
 #ifndef T3R_STATE_H
 #define T3R_STATE_H
 
@@ -19,8 +19,8 @@
 
 #define T3R_MAGIC 0x72336d74u /* "tm3r" */
 
-/* Misuse of the API (null pointers, calls out of order, going on after an error) is refused with a status in every
- * build; a debug build may also stop at it. */
+/* Refuses misuse of the API (null pointers, calls out of order, calls after an error) with a status in every build. A
+ * debug build may also stop at it. */
 #define T3R_REFUSE_UNLESS(condition, status)                                                                           \
     do {                                                                                                               \
         T3R_ASSERT(condition);                                                                                         \
@@ -29,12 +29,12 @@
         }                                                                                                              \
     } while (0)
 
-/* What a scene is made by: the configuration's values, or those of the request. */
+/* Parameters of a scene: the configuration's values, or those of the request. */
 typedef struct t3r_build {
     uint32_t gaussians; /* 1..max_gaussians */
     t3r_allocation allocate;
     t3r_head head;
-    uint32_t refine; /* 0..those of the configuration */
+    uint32_t refine; /* 0..the configuration's */
 } t3r_build;
 
 /* A stream allocates by pixel where a build does by SuperCluster: keys are to mean the same in every keyframe. */
@@ -45,7 +45,7 @@ static inline t3r_build t3r_build_of(const t3r_config *config)
     return (t3r_build){config->gaussians, allocation, config->head, config->refine};
 }
 
-/* A context view that came in part: the rows that are there, and what they are of. */
+/* A context view that arrives in strips: the rows received, and a digest of the frame they belong to. */
 typedef struct t3r_strips {
     uint64_t digest;
     uint32_t rows, depth_rows;
@@ -56,35 +56,36 @@ struct t3r_runtime {
     uint32_t bits_epoch;
     uint64_t arena_bytes;
     uint64_t layout_hash;
-    t3r_config config; /* of t3r_init(), with the numbers that 0 leaves open (t3r_settled) */
+    t3r_config config; /* from t3r_init(), with values for what 0 leaves open (t3r_settled) */
     t3r_ablation ablation;
     t3r_build build; /* of the scene, or of the last attempt at one */
     uint64_t offset[T3R_BUFFER_COUNT];
     uint64_t list_capacity;                  /* entries of the tile lists */
     uint64_t refine_bytes;                   /* of the refinement work */
     uint32_t views;                          /* context views added */
-    t3r_camera camera[T3R_MAX_VIEWS];        /* of the working size, undistorted; the poses are those in use */
-    t3r_placement given[T3R_MAX_VIEWS];      /* as views were added; not of a stream */
-    int32_t deviation_q30[T3R_MAX_VIEWS][6]; /* of those in use from those given: radians, scene units */
+    t3r_camera camera[T3R_MAX_VIEWS];        /* at the working size, undistorted; the poses are those in use */
+    t3r_placement given[T3R_MAX_VIEWS];      /* poses as views were added; unused by a stream */
+    int32_t deviation_q30[T3R_MAX_VIEWS][6]; /* of the pose in use from the given one: radians, scene units */
     uint64_t depth_unit_q40[T3R_MAX_VIEWS];
-    uint32_t analysed; /* labels, clusters and blurred textures are those of the current views */
+    uint32_t analysed; /* labels, clusters and blurred textures belong to the current views */
     uint32_t has_scene;
     t3r_scene_frame frame;
     int32_t median_depth_q20; /* scene units, [1, 2) */
     uint32_t valid_points;
-    uint8_t stereo_pair[T3R_MAX_VIEWS];    /* t3r_pair of each view, by stereo */
-    uint8_t stereo_partner[T3R_MAX_VIEWS]; /* and with which view */
+    uint8_t stereo_pair[T3R_MAX_VIEWS];    /* t3r_pair of each view, with stereo */
+    uint8_t stereo_partner[T3R_MAX_VIEWS]; /* partner view */
     uint16_t gain_q14[T3R_MAX_VIEWS][3];   /* brings r, g, b of a view to the mean exposure */
     uint32_t gaussians;                    /* in the scene */
     uint32_t passes;                       /* of refinement, in the last build */
     uint32_t render_passes;
     uint32_t head_crc;   /* of the weights bound last */
-    uint32_t keyframes;  /* taken by a stream; `views` of them are at hand */
-    uint32_t next_slot;  /* the view that the next one takes: of a stream, and with `warm` where all are there */
-    uint32_t remembered; /* keyframes that a stream holds without planes, at most config.remember */
-    t3r_reuse reuse;     /* nothing without `warm` */
-    uint32_t follows;    /* 1 = the last analysis took something over */
-    t3r_strips strips;   /* 0 unless a view comes in strips */
+    uint32_t keyframes;  /* taken by a stream; the last `views` of them are retained */
+    uint32_t next_slot;  /* the view that the next keyframe of a stream replaces; with `warm`, that the next view
+                          * replaces when all are there */
+    uint32_t remembered; /* keyframes that a stream keeps without planes, at most config.remember */
+    t3r_reuse reuse;     /* empty without `warm` */
+    uint32_t follows;    /* 1 = the last analysis reused something */
+    t3r_strips strips;   /* 0 unless a view arrives in strips */
     const void *weights;
     t3r_hooks hooks;
     t3r_kernels kernels; /* chosen by t3r_set_cpu(); plain C until then */
@@ -97,13 +98,13 @@ static inline void *t3r_buffer_at(const t3r_runtime *rt, enum t3r_buffer buffer)
     return (uint8_t *)(uintptr_t)rt + rt->offset[buffer];
 }
 
-/* Calls the progress hook; true = go on. */
+/* Calls the progress hook. Returns true to go on. */
 static inline bool t3r_progress(const t3r_runtime *rt, t3r_stage stage, uint32_t done, uint32_t total)
 {
     return rt->hooks.progress == NULL || rt->hooks.progress(rt->hooks.user, stage, done, total) == 0;
 }
 
-/* View v's camera is where it was given to be. */
+/* Sets view v's camera to the given pose. */
 static inline void t3r_pose_as_given(t3r_runtime *rt, uint32_t v)
 {
     t3r_place_camera(&rt->camera[v], &rt->given[v]);

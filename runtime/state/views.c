@@ -27,7 +27,7 @@ t3r_view t3r_view_of(const t3r_runtime *rt, uint32_t index)
         .depth_unit_q40 = rt->depth_unit_q40[index],
     };
     if (index < rt->views) {
-        /* In range once there is an analysis; t3r_analyse() asks again with the frame that it chooses. */
+        /* in range once there is an analysis; t3r_analyse() computes it again in the frame that it chooses */
         (void)t3r_pose_in_scene(camera, &rt->frame, &view.pose);
     }
     return view;
@@ -58,7 +58,7 @@ uint8_t t3r_confidence_of(uint8_t validity)
     } confidence[] = {
         [T3R_NO_DEPTH] = {0, 0, 0},
         [T3R_FILLED] = {128, 96, 32},
-        [T3R_BRIDGED] = {24, 16, 24}, /* none is doubtful */
+        [T3R_BRIDGED] = {24, 16, 24}, /* never doubtful */
         [T3R_MEASURED] = {255, 192, 64},
     };
     t3r_depth_source source = t3r_depth_source_of(validity);

@@ -25,7 +25,8 @@ static void copy(uint8_t *restrict to, const uint8_t *restrict from, size_t byte
     }
 }
 
-/* A row's census is made once: until the row has its disparities and confidences, it is kept in their place. */
+/* Computes a row's census, or copies it where `kept`: it is computed once and stored in the row's disparities and
+ * confidences until these are known. */
 static void row_census(const t3r_match *match, uint32_t side, uint32_t width, uint32_t y, bool kept, uint8_t *bits)
 {
     uint8_t *first = (uint8_t *)(match->disparity[side] + (size_t)y * width);
@@ -40,7 +41,7 @@ static void row_census(const t3r_match *match, uint32_t side, uint32_t width, ui
     copy(last, bits + 2 * (size_t)width, width);
 }
 
-/* kept: whether the row had its costs before */
+/* Computes the matching costs of a row. kept: whether this is the row's second time. */
 static void cost_row(const t3r_match *match, const t3r_match_layout *w, uint32_t y, bool kept, uint8_t *cost)
 {
     const uint32_t width = match->width, right = (uint32_t)T3R_MATCH_RIGHT(width, match->disparities);
@@ -85,7 +86,7 @@ void t3r_match_pair(const t3r_match *match)
             copy(w.states + y / rows * w.state_bytes, w.down[0], w.state_bytes);
         }
         if (y / rows + 1 == blocks) {
-            break; /* the last block is done from its state */
+            break; /* the last block starts from its stored state */
         }
         cost_row(match, &w, y, false, w.cost);
         row.luma = match->luma[0] + (size_t)y * width;

@@ -5,9 +5,9 @@
 #include "core/fixed.h"
 
 #define ONE (1 << T3R_DISPARITY_BITS)
-/* A step of luma that a surface rarely has inside. */
+/* A step of luma larger than a surface usually has. */
 #define EDGE 16
-/* Directions of eight in which a hole must end: what is open is not filled. */
+/* Directions of eight in which a hole must end: open areas are not filled. */
 #define SURROUNDED 4u
 
 typedef struct plane {
@@ -30,7 +30,7 @@ static bool near(uint16_t a, uint16_t b)
     return t3r_abs32((int32_t)a - b) <= ONE;
 }
 
-/* The column in the other plane that a pixel's disparity leads to; -1: outside. */
+/* Returns the column of the other plane that a pixel's disparity leads to, -1 outside. */
 static int32_t other_column(const t3r_match *match, uint32_t side, int32_t x, int32_t k)
 {
     int32_t shift = (int32_t)match->disparities - 1 - k;
@@ -74,8 +74,8 @@ static bool joined(const plane *p, size_t a, size_t b)
     return p->confidence[b] != 0 && near(p->disparity[a], p->disparity[b]);
 }
 
-/* Follows the region that begins at `start` until it ends or `least` pixels of it are known, or until it meets a pixel
- * of one known to be large. Returns how many pixels are in the queue; *large says whether the region is large. */
+/* Follows the region that begins at `start` until it ends, has `least` pixels, or meets a pixel of a region known to be
+ * large. Returns how many pixels are in the queue; *large says whether the region is large. */
 static uint32_t explore(const plane *p, uint32_t start, uint32_t least, uint8_t *mark, uint32_t *queue, bool *large)
 {
     uint32_t queued = 1;
@@ -102,7 +102,7 @@ static uint32_t explore(const plane *p, uint32_t start, uint32_t least, uint8_t 
     return queued;
 }
 
-/* The region that begins at `start`: its pixels, if they are too few, else 0. */
+/* Removes the region that begins at `start` if it is too small. Returns the number of pixels removed. */
 static uint32_t remove_speckle(const plane *p, uint32_t start, uint32_t least, uint8_t *mark, uint32_t *queue)
 {
     bool large;
@@ -125,13 +125,13 @@ uint32_t t3r_match_speckles(const t3r_match *match, uint32_t side)
     for (uint32_t i = 0; i < pixels; i++) {
         mark[i] = UNSEEN;
     }
-    /* Every pixel is queued once: afterwards it is known to belong to a large region, or has no confidence any more. */
+    /* Every pixel is queued at most once: then it either belongs to a large region or has lost its confidence. */
     for (uint32_t row = 0; row < pixels; row += p.width) {
         for (uint32_t i = row; i < row + p.width; i++) {
             if (p.confidence[i] == 0 || mark[i] != UNSEEN) {
                 continue;
             }
-            if (i > row && mark[i - 1] == LARGE && joined(&p, i, i - 1)) { /* most are */
+            if (i > row && mark[i - 1] == LARGE && joined(&p, i, i - 1)) { /* the usual case */
                 mark[i] = LARGE;
             } else {
                 removed += remove_speckle(&p, i, least, mark, queue);
@@ -145,12 +145,12 @@ uint32_t t3r_match_speckles(const t3r_match *match, uint32_t side)
 
 static inline void sort(uint16_t *a, uint16_t *b)
 {
-    const int16_t x = (int16_t)*a, y = (int16_t)*b; /* disparities are below 2^15: vectors compare signed numbers */
+    const int16_t x = (int16_t)*a, y = (int16_t)*b; /* disparities are below 2^15, and vectors compare signed numbers */
     *a = (uint16_t)(x < y ? x : y);
     *b = (uint16_t)(x < y ? y : x);
 }
 
-/* The medians of 3 x 3 places about columns 1..width - 2 of the middle row, by Paeth's network. */
+/* Computes the medians of 3 x 3 for columns 1..width - 2 of the middle row, by Paeth's network. */
 static void medians(const uint16_t *above, const uint16_t *middle, const uint16_t *below, uint32_t width,
                     uint16_t *restrict out)
 {
@@ -173,7 +173,7 @@ static inline uint8_t lesser(uint8_t a, uint8_t b)
     return a < b ? a : b;
 }
 
-/* Likewise the least of nine confidences. */
+/* Computes the least of nine confidences likewise. */
 static void least_of_nine(const uint8_t *above, const uint8_t *middle, const uint8_t *below, uint32_t width,
                           uint8_t *restrict out)
 {
@@ -193,7 +193,7 @@ void t3r_match_smooth(const t3r_match *match, uint32_t side)
     for (uint32_t y = 0; y < p.height; y++) {
         uint16_t *row = p.disparity + (size_t)y * p.width;
         for (uint32_t x = 0; x < p.width; x++) {
-            here[x] = row[x]; /* as it was */
+            here[x] = row[x]; /* unsmoothed */
         }
         if (y > 0 && y + 1 < p.height) {
             const uint8_t *c = p.confidence + (size_t)y * p.width;
@@ -214,7 +214,7 @@ void t3r_match_smooth(const t3r_match *match, uint32_t side)
 
 static const int8_t directions[8][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}, {1, -1}, {-1, 1}};
 
-/* Disparities, rising. */
+/* Disparities in rising order. */
 typedef struct gathering {
     uint32_t count;
     uint16_t disparity[8];
@@ -229,12 +229,12 @@ static void gather(gathering *g, uint16_t disparity)
     g->disparity[place] = disparity;
 }
 
-/* The disparities first met from (x, y) in the eight directions: all, and those that no edge hides. known: how far it
- * is to the first in the first three directions. */
+/* Finds the first trusted disparities from (x, y) in the eight directions: all of them, and those without a luma edge
+ * on the way. known: distance to the first one in each of the first three directions. */
 static void look_around(const plane *p, int32_t x, int32_t y, const uint8_t known[3], gathering *all, gathering *open)
 {
     all->count = open->count = 0;
-    /* Ends with the direction after which fewer than SURROUNDED can be met. */
+    /* ends once fewer than SURROUNDED can be met */
     for (uint32_t d = 0; d < 8 && d - all->count <= 8 - SURROUNDED; d++) {
         const int32_t dx = directions[d][0], dy = directions[d][1];
         const int32_t columns = dx == 0 ? T3R_MATCH_REACH : dx < 0 ? x : (int32_t)p->width - 1 - x;
@@ -259,8 +259,8 @@ static void look_around(const plane *p, int32_t x, int32_t y, const uint8_t know
     }
 }
 
-/* Marks the places of a row that some trusted pixel of the other plane leads to: they were seen twice, and where they
- * have no confidence, matched wrongly. */
+/* Marks the pixels of a row that a trusted pixel of the other plane leads to. Both pictures show them; those without
+ * confidence are mismatches. */
 static void mark_seen(const t3r_match *match, uint32_t side, const plane *p, const plane *other, uint32_t y,
                       uint8_t *seen)
 {
@@ -285,7 +285,7 @@ static uint8_t one_farther(uint8_t distance)
 void t3r_match_fill(const t3r_match *match, uint32_t side)
 {
     const plane p = plane_of(match, side), other = plane_of(match, 1 - side);
-    /* Of each column: whether it was seen, and how far it is to a trusted pixel to the right and above. */
+    /* for each column: seen by the other picture, distance to a trusted pixel to the right, and above */
     uint8_t *seen = match->work, *ahead = seen + p.width, *above = ahead + p.width;
     for (uint32_t x = 0; x < p.width; x++) {
         above[x] = UINT8_MAX;

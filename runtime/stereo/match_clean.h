@@ -1,4 +1,4 @@
-/* What is wrong with disparities, and what may stand there instead (SPEC.md, "Stereo"). */
+/* Cleaning of disparities: removing wrong ones and filling holes (SPEC.md, "Stereo"). */
 #ifndef T3R_MATCH_CLEAN_H
 #define T3R_MATCH_CLEAN_H
 
@@ -6,20 +6,20 @@
 
 #include "match.h"
 
-/* Pixels of either plane whose disparity is not that of the pixel it leads to, within a pixel, lose their confidence;
- * the right plane gets its confidences from the left one's. */
+/* Removes the confidence of pixels whose disparity differs by more than a pixel from that of the pixel it leads to. The
+ * right plane gets its confidences from the left one. */
 void t3r_match_agree(const t3r_match *match);
 
-/* Regions of less than 1/1024 of the picture, joined where neighbours differ by at most a pixel, lose their confidence.
- * side: 0 left, 1 right. Returns how many pixels. Uses match->work. */
+/* Removes the confidence of small regions, of less than 1/1024 of the picture; neighbours belong together where they
+ * differ by at most a pixel. side: 0 left, 1 right. Returns how many pixels. Uses match->work. */
 uint32_t t3r_match_speckles(const t3r_match *match, uint32_t side);
 
-/* Trusted pixels among eight trusted neighbours get the median of the nine disparities. Uses match->work. */
+/* Replaces trusted pixels with eight trusted neighbours by the median of the nine disparities. Uses match->work. */
 void t3r_match_smooth(const t3r_match *match, uint32_t side);
 
-/* Pixels without confidence get the disparity of what surrounds them within T3R_MATCH_REACH pixels, the farther surface
- * where the other picture does not see them, or T3R_NO_DISPARITY; their confidence stays 0. At most 8 T3R_MATCH_REACH
- * steps a pixel. Uses match->work. */
+/* Gives pixels without confidence a disparity from trusted pixels within T3R_MATCH_REACH around them, the farther
+ * surface where the other picture doesn't see them; or T3R_NO_DISPARITY. Their confidence stays 0. At most 8
+ * T3R_MATCH_REACH steps a pixel. Uses match->work. */
 #define T3R_MATCH_REACH 24
 void t3r_match_fill(const t3r_match *match, uint32_t side);
 

@@ -1,4 +1,4 @@
-/* Where the paths of the matching keep what they need: the parts of T3R_MATCH_PARTS_(). */
+/* Work memory of the matching paths: the parts of T3R_MATCH_PARTS_(). */
 #ifndef T3R_MATCH_LAYOUT_H
 #define T3R_MATCH_LAYOUT_H
 
@@ -8,10 +8,10 @@
 #define T3R_MATCH_PART_(type, part, count) type *part;
 typedef struct t3r_match_layout {
     /* sums, cost: a block's; winners: a row's; states: one a block, before its first row, and four more; bits: census
-     * of a left row; straight and mirrored: of a right row, by rising and by falling column; least: of the cost
+     * of a left row; straight, mirrored: census of a right row, by rising and by falling column; least: lowest cost
      * against each right pixel, by falling column */
     T3R_MATCH_PARTS_(T3R_MATCH_PART_, 0, 0, 0, 0)
-    uint8_t *down[2]; /* states of the row before and of this row */
+    uint8_t *down[2]; /* states of the last row and of this row */
     uint8_t *up[2];   /* likewise, from below */
     size_t state_bytes;
 } t3r_match_layout;

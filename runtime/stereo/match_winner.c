@@ -6,7 +6,7 @@
 
 #define ONE (1 << T3R_DISPARITY_BITS)
 
-/* k in Q7, moved towards the cheaper neighbour: the vertex of two lines of opposite slope through three sums. */
+/* Refines k to Q7, towards the cheaper neighbour: the vertex of two lines of opposite slope through three sums. */
 static uint16_t refined(uint32_t k, int32_t before, int32_t least, int32_t after)
 {
     int32_t steeper = T3R_MAX(before, after) - least;
@@ -22,7 +22,7 @@ void t3r_match_winners(const t3r_match *match, uint32_t y, const int16_t *sums, 
     uint16_t *disparity = match->disparity[0] + (size_t)y * width;
     uint16_t *disparity_right = match->disparity[1] + (size_t)y * right;
     uint8_t *confidence = match->confidence[0] + (size_t)y * width;
-    /* The planes' rows hold what is least and next to it, until they hold disparities. */
+    /* The rows hold the index and the second least sum until they hold disparities. */
     const t3r_winner_row row = {.width = width,
                                 .disparities = count,
                                 .luma = luma,

@@ -6,7 +6,8 @@
 
 #include "match.h"
 
-/* sums: width x disparities of row y; work: twice T3R_MATCH_RIGHT(width, disparities) int16. */
+/* Chooses the disparities of row y. sums: width x disparities; work: twice T3R_MATCH_RIGHT(width, disparities)
+ * int16. */
 void t3r_match_winners(const t3r_match *match, uint32_t y, const int16_t *sums, int16_t *work);
 
 #endif

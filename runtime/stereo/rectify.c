@@ -7,21 +7,21 @@
 
 #define ONE_Q24 (INT64_C(1) << 24)
 #define ONE_Q30 (INT64_C(1) << 30)
-/* Baselines shorter than 2^-20 world units have no direction to speak of in Q32. */
+/* Baselines shorter than 2^-20 world units have no usable direction in Q32. */
 #define LEAST_BASELINE_Q32 (1 << 12)
-/* Entries of two rotation matrices that differ by less are the same way of looking: 1/1024. */
+/* Rotation matrices are the same when their entries differ by at most this: 1/1024. */
 #define SAME_ROTATION_Q30 (1 << 20)
-/* Planar rectification holds rays up to 2 to the side of 1 ahead: beyond, planes are stretched more than five times. */
+/* Planar rectification takes rays up to 2 to the side of 1 ahead. Beyond, planes are stretched more than five times. */
 #define PLANAR_MOST 2
 /* Polar columns stay this far from the baseline's own direction, t = 1: 1/32, 3.6 degrees. */
 #define POLAR_MOST_Q24 (ONE_Q24 * 31 / 32)
-/* Pixels a unit of column or row: places up to 4 units away fit 32 bits in Q16. */
+/* Pixels a unit of column or row, at most: places up to 4 units away fit 32 bits in Q16. */
 #define SCALE_MOST_Q16 ((INT64_C(1) << 29) - 1)
-/* Places along each side of a picture at which its extent is measured */
+/* Points along each side of a picture at which its extent is measured. */
 #define BORDER_STEPS 32
-/* Rays of a view up to 16 to the side of 1 ahead, as the pointmap has it */
+/* Rays of a view are clamped to 16 to the side of 1 ahead, as in the pointmap. */
 #define RAY_MOST 16
-/* A ray of a plane is at most so steep. */
+/* Largest slope of a ray of a plane. */
 #define PLACE_MOST 4
 
 static int64_t dot(const int64_t a[3], const int64_t b[3])
@@ -29,7 +29,7 @@ static int64_t dot(const int64_t a[3], const int64_t b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* v / |v| in Q30, |v|_max < 2^30.6; returns 2 |v|, floor; 0: no direction */
+/* Computes v / |v| in Q30, |v|_max < 2^30.6. Returns floor(2 |v|); 0: v has no direction. */
 static uint64_t unit_q30(const int64_t v[3], int64_t unit[3])
 {
     uint64_t twice = t3r_isqrt64(4 * (uint64_t)dot(v, v));
@@ -39,7 +39,7 @@ static uint64_t unit_q30(const int64_t v[3], int64_t unit[3])
     return twice;
 }
 
-/* v, of a length up to 1 (Q30), less its part along the unit vector e */
+/* Subtracts from v, of a length up to 1 (Q30), its part along the unit vector e. */
 static void across(const int64_t v[3], const int64_t e[3], int64_t out[3])
 {
     int64_t along = t3r_round_shift64(dot(v, e), 30);
@@ -48,7 +48,7 @@ static void across(const int64_t v[3], const int64_t e[3], int64_t out[3])
     }
 }
 
-/* The direction and length of the baseline. */
+/* Computes the direction and length of the baseline. */
 static t3r_pair find_baseline(const t3r_camera *first, const t3r_camera *second, int32_t rotation[2][9],
                               t3r_rectification *rect, int64_t x_q30[3])
 {
@@ -75,7 +75,8 @@ static t3r_pair find_baseline(const t3r_camera *first, const t3r_camera *second,
     return T3R_PAIR_OK;
 }
 
-/* The rectified frame's axes: x given; z across it, as near as can be to where both cameras look; y completes them. */
+/* Computes the axes of the rectified frame: x is given; z is perpendicular to x and as near as possible to the viewing
+ * direction of both cameras; y completes them. */
 static void complete_axes(int32_t rotation[2][9], int64_t axes[3][3])
 {
     int64_t ahead[3], z[3];
@@ -84,8 +85,8 @@ static void complete_axes(int32_t rotation[2][9], int64_t axes[3][3])
     }
     across(ahead, axes[0], z);
     if (unit_q30(z, axes[2]) < ONE_Q30 / 16) {
-        /* Looking along the baseline any direction will do: the picture's own right. It is at least 40 degrees from
-         * the baseline, as the cameras are less than 90 degrees apart. */
+        /* When looking along the baseline, any direction is possible: the picture's own x axis. It is at least 40
+         * degrees from the baseline, as the cameras are less than 90 degrees apart. */
         for (int i = 0; i < 3; i++) {
             ahead[i] = rotation[0][3 * i];
         }
@@ -98,7 +99,7 @@ static void complete_axes(int32_t rotation[2][9], int64_t axes[3][3])
     }
 }
 
-/* R^T [x y z] */
+/* Computes R^T [x y z]. */
 static void turn(const int32_t rotation_q30[9], int64_t axes[3][3], int32_t turn_q30[9])
 {
     for (int row = 0; row < 3; row++) {
@@ -109,7 +110,7 @@ static void turn(const int32_t rotation_q30[9], int64_t axes[3][3], int32_t turn
     }
 }
 
-/* A view's pixel as a ray in the rectified frame, Q24; z = 1 in the view. */
+/* Computes the ray of a view's pixel in the rectified frame, Q24; z = 1 in the view. */
 static void ray_of(const t3r_rectified_view *view, int32_t u_q16, int32_t v_q16, int64_t ray_q24[3])
 {
     const int64_t most = RAY_MOST * ONE_Q24;
@@ -122,7 +123,7 @@ static void ray_of(const t3r_rectified_view *view, int32_t u_q16, int32_t v_q16,
     }
 }
 
-/* The row of a polar ray, Q24: the quarter turns from z by way of y, each two long and measured by its tangent. */
+/* Returns the row of a polar ray, Q24: quarter turns from z by way of y, each 2 long and measured by its tangent. */
 static int64_t sector_q24(int64_t y, int64_t z)
 {
     if (z >= t3r_abs64(y)) {
@@ -137,7 +138,8 @@ static int64_t sector_q24(int64_t y, int64_t z)
     return (y >= 0 ? 4 : -4) * ONE_Q24 + t3r_round_div64(-y * ONE_Q24, -z);
 }
 
-/* Column and row of a ray before scaling, Q24. False: behind the plane, or too near to the baseline's direction. */
+/* Computes column and row of a ray before scaling, Q24. Returns false behind the plane or too close to the baseline's
+ * direction. */
 static bool project(bool polar, const int64_t ray[3], int64_t at_q24[2], int64_t *across_q24)
 {
     if (!polar) {
@@ -166,7 +168,7 @@ typedef struct extent {
     int64_t least[2], most[2];
 } extent;
 
-/* The pixel at step `step` of 4 BORDER_STEPS around the picture. */
+/* Returns the pixel at step `step` of 4 BORDER_STEPS around the picture. */
 static void border(uint32_t width, uint32_t height, uint32_t step, int32_t *u_q16, int32_t *v_q16)
 {
     const uint32_t side = step / BORDER_STEPS, along = step % BORDER_STEPS;
@@ -195,7 +197,7 @@ static bool fits_plane(const t3r_rectification *rect, uint32_t view)
     return true;
 }
 
-/* Whether the baseline's direction, or its opposite, is in the picture: 1, -1, or 0. */
+/* Returns 1 if the baseline's direction is in the picture, -1 if its opposite is, else 0. */
 static int epipole_inside(const t3r_rectification *rect, uint32_t view)
 {
     const t3r_rectified_view *v = &rect->view[view];
@@ -207,7 +209,7 @@ static int epipole_inside(const t3r_rectification *rect, uint32_t view)
     return u >= 0 && w >= 0 && u < right && w < bottom ? (int)sign : 0;
 }
 
-/* What a view covers of columns and rows. */
+/* Measures the columns and rows that a view covers. */
 static extent measure(const t3r_rectification *rect, uint32_t view)
 {
     extent e = {{INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN}};
@@ -216,7 +218,7 @@ static extent measure(const t3r_rectification *rect, uint32_t view)
         int64_t ray[3], at[2] = {0, 0}, unused;
         border(rect->view_width, rect->view_height, step, &u, &v);
         ray_of(&rect->view[view], u, v, ray);
-        if (!project(rect->polar, ray, at, &unused)) { /* polar: what fits a plane has all its places there */
+        if (!project(rect->polar, ray, at, &unused)) { /* polar only: a view that fits a plane always projects */
             at[0] = ray[0] < 0 ? -POLAR_MOST_Q24 : POLAR_MOST_Q24;
         }
         for (int i = 0; i < 2; i++) {
@@ -234,7 +236,7 @@ static extent measure(const t3r_rectification *rect, uint32_t view)
     return e;
 }
 
-/* sqrt(f^2 w + g^2 (1 - w)), focal lengths in Q16, w in Q30; equal lengths as they are */
+/* Returns sqrt(f^2 w + g^2 (1 - w)), focal lengths in Q16, w in Q30. Equal lengths are returned unchanged. */
 static int64_t blend(int32_t f_q16, int32_t g_q16, int64_t w_q30)
 {
     if (f_q16 == g_q16) {
@@ -245,20 +247,21 @@ static int64_t blend(int32_t f_q16, int32_t g_q16, int64_t w_q30)
     return t3r_isqrt64((uint64_t)(f * f * w + g * g * ((1 << 14) - w)) << 2);
 }
 
-/* Pixels a unit of column and row with which the middle of the pictures keeps its resolution, or polar planes do so on
- * the whole: means over both views. */
+/* Chooses pixels a unit of column and row, as means over both views. They keep the resolution at the middle of the
+ * pictures, or with polar planes on the whole. */
 static void choose_scale(t3r_rectification *rect)
 {
     int64_t sum[2] = {0, 0};
     for (int view = 0; view < 2; view++) {
         const t3r_rectified_view *v = &rect->view[view];
-        const int64_t x = v->turn_q30[0], y = v->turn_q30[3];        /* the baseline's direction in the picture */
-        const int64_t cos = t3r_clamp64(v->turn_q30[8], 0, ONE_Q30); /* between ahead and z */
+        const int64_t x = v->turn_q30[0], y = v->turn_q30[3];        /* direction of the baseline in the picture */
+        const int64_t cos = t3r_clamp64(v->turn_q30[8], 0, ONE_Q30); /* between the optical axis and z */
         const int64_t length = x * x + y * y;
         const int64_t w = length >> 30 == 0 ? ONE_Q30 : T3R_MIN(ONE_Q30, x * x / (length >> 30));
         const int64_t along = blend(v->fx_q16, v->fy_q16, w), beside = blend(v->fy_q16, v->fx_q16, w);
         if (rect->polar) {
-            /* dt = (1 + t^2) / 2 of an angle's step; rows are as dense as pixels somewhat inside the picture */
+            /* dt = (1 + t^2) / 2 of an angle's step; rows are as dense as pixels some way from the middle of the
+             * picture */
             sum[0] += t3r_round_shift64(along * (ONE_Q30 + cos), 30) * 9 / 8;
             sum[1] += t3r_round_shift64(beside * (ONE_Q30 * 3 / 8 + cos / 2), 30);
         } else {
@@ -271,7 +274,7 @@ static void choose_scale(t3r_rectification *rect)
     }
 }
 
-/* Pixels from `least` to `most`, both included */
+/* Returns the number of pixels from `least` to `most`, both included. */
 static uint64_t pixels_between(int64_t least_q24, int64_t most_q24, int32_t scale_q16)
 {
     return (uint64_t)t3r_round_shift64((most_q24 - least_q24) * scale_q16, 40) + 1;
@@ -289,8 +292,8 @@ static bool matches_in(uint64_t width, uint64_t height, uint64_t side, uint32_t 
            T3R_MATCH_WORK_BYTES(width, height, disparities, 8) <= T3R_MATCH_WORK_BYTES(side, side, disparities, 8);
 }
 
-/* Size and place of the first view's plane: the rows that both views have, the columns of the first that the second
- * may have nearer to its left. */
+/* Sets size and place of the first view's plane: the rows that both views have, and the columns of the first that the
+ * second may show nearer, to their left. */
 static t3r_pair frame_plane(t3r_rectification *rect, uint32_t disparities)
 {
     const uint64_t side = T3R_RECTIFIED_SIDE(rect->view_width, rect->view_height);
@@ -305,7 +308,7 @@ static t3r_pair frame_plane(t3r_rectification *rect, uint32_t disparities)
     }
     rect->scale_q16[0] = reduced(rect->scale_q16[0], pixels_between(from[0], to[0], rect->scale_q16[0]), side);
     uint64_t width = pixels_between(from[0], to[0], rect->scale_q16[0]);
-    /* The larger right plane has no more pixels than in a square of that side. */
+    /* the wider right plane has no more pixels than with a square left plane */
     uint64_t tallest = rect->polar ? side * (side + disparities) / (width + disparities) : side;
     tallest = T3R_MIN(tallest, T3R_MAX_SIDE);
     while (tallest > side && !matches_in(width, tallest, side, disparities)) {
@@ -322,7 +325,7 @@ static t3r_pair frame_plane(t3r_rectification *rect, uint32_t disparities)
         rect->first_q16[i] = (int32_t)t3r_round_shift64(from[i] * rect->scale_q16[i], 24);
     }
     int64_t least = ((from[0] - second.most[0]) * rect->scale_q16[0]) >> 40;
-    int64_t most = ((to[0] - second.least[0]) * rect->scale_q16[0]) >> 40; /* not below 0: they overlap */
+    int64_t most = ((to[0] - second.least[0]) * rect->scale_q16[0]) >> 40; /* at least 0, because they overlap */
     rect->least_disparity = (int32_t)T3R_MAX(least, 0);
     rect->most_disparity = (int32_t)most + 1;
     return T3R_PAIR_OK;
@@ -347,7 +350,7 @@ t3r_pair t3r_rectify(const t3r_camera *first, const t3r_camera *second, uint32_t
         facing += (int64_t)rotation[0][3 * i + 2] * rotation[1][3 * i + 2];
     }
     if (facing <= 0) {
-        return T3R_PAIR_OVERLAP; /* 90 degrees and more apart */
+        return T3R_PAIR_OVERLAP; /* at least 90 degrees apart */
     }
     complete_axes(rotation, axes);
     for (int i = 0; i < 2; i++) {
@@ -394,7 +397,7 @@ void t3r_view_columns_of(const t3r_rectification *rect, uint32_t view, uint32_t 
     }
 }
 
-/* In planes, of rays up to 4 to the side: kernels/ray_row.h has their z below 2^27. */
+/* Computes places in planes, for rays up to 4 to the side: kernels/ray_row.h needs their z below 2^27. */
 static bool places_in_plane(const t3r_kernels *kernels, const t3r_rectification *rect, uint32_t view,
                             const t3r_view_columns *columns, uint32_t v, t3r_ray_places *places)
 {
@@ -406,7 +409,7 @@ static bool places_in_plane(const t3r_kernels *kernels, const t3r_rectification 
     t3r_ray_map map = {.steepest = PLACE_MOST,
                        .scale_q16 = {rect->scale_q16[0], rect->scale_q16[1]},
                        .offset_q16 = {0, -rect->first_q16[1]}};
-    /* the columns rise: the outermost are the ends */
+    /* columns rise, so the first and last are the outermost */
     if (t3r_abs64(y) > most || columns->x_q24[0] < -most || columns->x_q24[columns->count - 1] > most) {
         return false;
     }

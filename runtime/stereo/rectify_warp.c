@@ -4,7 +4,7 @@
 
 #define ONE_Q24 (INT64_C(1) << 24)
 
-/* e(row): its parts along y and z, Q24 */
+/* Computes e(row): its parts along y and z, Q24. */
 static void row_direction(const t3r_rectification *rect, uint32_t row, int64_t e_q24[2])
 {
     int64_t at = t3r_round_div64(((int64_t)row * 65536 + rect->first_q16[1]) * ONE_Q24, T3R_MAX(rect->scale_q16[1], 1));
@@ -22,13 +22,13 @@ static void row_direction(const t3r_rectification *rect, uint32_t row, int64_t e
     e_q24[1] = sector == 0 ? one : sector == 1 ? -slant : sector == -1 ? slant : -one;
 }
 
-/* A row's rays, seen by the view: what kernels/ray_row.h makes places of. */
+/* Sets up a row's rays in the view's frame, as kernels/ray_row.h takes them. */
 static void map_row(const t3r_rectification *rect, const t3r_rectified_view *v, uint32_t row, t3r_ray_map *map)
 {
     int64_t e[2];
     row_direction(rect, row, e);
     for (int i = 0; i < 3; i++) {
-        /* |e| below 2^26.1 in planes, 2^24 elsewhere: there the direction is a unit vector's */
+        /* e| below 2^26.1 in planes, 2^24 in polar ones, where e is a unit vector */
         const int64_t direction = t3r_round_shift64(e[0] * v->turn_q30[3 * i + 1] + e[1] * v->turn_q30[3 * i + 2], 24);
         map->turn_q30[i] = v->turn_q30[3 * i];
         map->slope_q30[i] = rect->polar ? (int32_t)direction : 0;
@@ -36,7 +36,7 @@ static void map_row(const t3r_rectification *rect, const t3r_rectified_view *v, 
     }
 }
 
-/* Columns from x_q16 on, as the rays' a and b; 0 where there is no ray, and behind the last. */
+/* Computes a and b of the rays of columns from x_q16 on; 0 where there is no ray, and after the last. */
 static void take_columns(const t3r_rectification *rect, int64_t x_q16, uint32_t count, int32_t a_q24[T3R_RAYS],
                          int32_t b_q24[T3R_RAYS])
 {
@@ -47,7 +47,7 @@ static void take_columns(const t3r_rectification *rect, int64_t x_q16, uint32_t 
         const t3r_column c = t3r_rectified_column(rect, (int32_t)(x_q16 + (int64_t)i * 65536));
         const bool any = c.b_q24 > 0;
         a_q24[i] = any ? c.a_q24 : 0;
-        b_q24[i] = any && rect->polar ? c.b_q24 : 0; /* a plane's b is in the map's base */
+        b_q24[i] = any && rect->polar ? c.b_q24 : 0; /* b of planar columns is in the map's base */
     }
 }
 

@@ -1,4 +1,4 @@
-/* A pair of views, from colours to depth. */
+/* Stereo of one pair of views, from colours to depth. */
 #include "stereo.h"
 
 #include "core/fixed.h"
@@ -7,25 +7,25 @@
 #include "stereo_depth.h"
 #include "stereo_planes.h"
 
-/* The first look is at a quarter of the size. */
+/* The coarse pass runs at a quarter of the size. */
 #define QUARTER 4
-/* Rows of that size that are made at once, where there is room */
+/* Rows of that size drawn at once, where there is room. */
 #define BAND 8
-/* Coarse disparities beyond the outermost 1/128 of all on either side are taken for errors. */
+/* The outermost 1/128 of coarse disparities on either side count as errors. */
 #define TAIL 128
-/* Disparities more on either side than the first look found, pixels. */
+/* Disparities added on either side of the range from the coarse pass, pixels. */
 #define MARGIN 6
-/* Disparities may be below 0 by this where poses are not exact, pixels. */
+/* Disparities may be below 0 by this where poses are inexact, pixels. */
 #define BEYOND_INFINITY 2
-/* The disparity with which a place is half known, as partners are compared, pixels. */
+/* Disparity at which a pixel counts half in the match score, pixels. */
 #define HALF_KNOWN 8
-/* A pair is refused when less than 1/16 of the first look can be trusted. */
+/* A pair is refused when the coarse pass trusts less than 1/16 of the pixels. */
 #define LEAST_SHARE 16
 
-/* A pair of planes and what belongs to it; the right one is `disparities` - 1 columns wider. */
+/* A pair of planes with its work memory; the right plane is `disparities` - 1 columns wider. */
 typedef struct planes {
     t3r_stereo_side side[2];
-    size_t pixels[2]; /* there is room for so many */
+    size_t pixels[2]; /* capacity */
     uint8_t *work;
     size_t work_bytes;
 } planes;
@@ -42,7 +42,7 @@ static planes divide(const t3r_stereo_settings *settings, uint32_t width, uint32
     return p;
 }
 
-/* A quarter of the size, where confidences and disparities of the full size will be. */
+/* Lays out planes of a quarter of the size in the memory of the full size's confidences and disparities. */
 static planes divide_quarter(const planes *full, uint32_t width, uint32_t height, uint32_t disparities)
 {
     planes p = {.pixels = {(size_t)width * height, T3R_MATCH_RIGHT(width, disparities) * height}, .work = full->work};
@@ -74,7 +74,7 @@ static t3r_match match_of(const planes *p, const t3r_stereo_settings *settings, 
     };
 }
 
-/* 1..255, 0 where the view shows nothing: there undistortion leaves black. */
+/* Computes luma: 1..255, 0 where the view shows nothing, which undistortion makes black. */
 static void luma_of(const t3r_view *view, uint8_t *restrict luma)
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
@@ -85,7 +85,7 @@ static void luma_of(const t3r_view *view, uint8_t *restrict luma)
     }
 }
 
-/* One side of a rectified pair, row by row. */
+/* One side of a rectified pair, drawn row by row. */
 typedef struct side_job {
     const t3r_kernels *kernels;
     const t3r_rectification *rect;
@@ -103,14 +103,14 @@ static void rectify_rows(void *context, uint32_t begin, uint32_t end, uint32_t w
                        job->columns, job->out + (size_t)begin * job->columns);
 }
 
-/* Where a plane's columns begin: the right one's so that `first` is the disparity at its end. */
+/* Returns where a plane's columns begin. The right plane begins where `first` is the disparity of k = 0. */
 static int32_t begin_q16(const t3r_rectification *rect, uint32_t side, int32_t first, uint32_t disparities)
 {
     return rect->first_q16[0] - (side == 0 ? 0 : (first + (int32_t)disparities - 1) * 65536);
 }
 
-/* One row at a quarter of the size: the mean of 4 x 4 pixels, 0 unless all of them show something. rows: four rows,
- * each `pitch` behind the one before. */
+/* Computes one row at a quarter of the size: means of 4 x 4 pixels, 0 unless all of them show something. rows: four
+ * rows, `pitch` apart. */
 static __attribute__((noinline)) void quarter_row(const uint8_t *rows, size_t pitch, uint32_t count,
                                                   uint8_t *restrict out)
 {
@@ -130,19 +130,19 @@ static uint32_t lanes(uint32_t disparities)
     return (disparities + T3R_PATH_LANES - 1) / T3R_PATH_LANES * T3R_PATH_LANES;
 }
 
-/* The right plane as a first look has drawn it, in full size; columns, rows: 0 where it had no room to keep it. */
+/* The right plane in full size as the coarse pass drew it. columns, rows: 0 where there was no room to keep it. */
 typedef struct drawing {
-    const uint8_t *view; /* luma of the right view, from which it is drawn */
+    const uint8_t *view; /* luma of the right view */
     const uint8_t *luma;
     uint32_t columns, rows;
     int32_t begin_q16;
 } drawing;
 
-/* The right plane at a quarter of the size; each worker has `band` times four rows of the full size. */
+/* Draws the right plane at a quarter of the size. Each worker has `band` times four rows of the full size. */
 typedef struct quarter_job {
-    side_job full; /* columns: a quarter of them */
+    side_job full; /* with a quarter of the columns */
     uint32_t band;
-    bool kept; /* all rows of the full size have their places */
+    bool kept; /* all rows of the full size are kept */
     uint8_t *rows;
 } quarter_job;
 
@@ -163,8 +163,8 @@ static void quarter_rows(void *context, uint32_t begin, uint32_t end, uint32_t w
     }
 }
 
-/* What a first look finds: disparities from `first`, at most as many as the settings have, and the match score; and
- * what it has drawn. */
+/* Result of the coarse pass: disparities from `first` on, at most as many as the settings allow; the match score; and
+ * what was drawn of the right plane. */
 typedef struct look {
     int32_t first;
     uint32_t disparities;
@@ -172,8 +172,7 @@ typedef struct look {
     drawing right;
 } look;
 
-/* Each trusted pixel as far as its distance would be known, d / (d + HALF_KNOWN) of a disparity of d pixels, in 256ths.
- */
+/* Returns the match score: each trusted pixel counts d / (d + HALF_KNOWN) at a disparity of d pixels, in 256ths. */
 static uint32_t match_score_of(const uint32_t *histogram, uint32_t count, int32_t base)
 {
     uint32_t sum = 0; /* below 2^20 x 2^8 */
@@ -184,8 +183,9 @@ static uint32_t match_score_of(const uint32_t *histogram, uint32_t count, int32_
     return sum;
 }
 
-/* The left plane's luma in full, which is the same whatever disparities are found, and at a quarter of the size.
- * Functions of their own, like the next: workers' tasks need the stack that their caller's histogram takes. */
+/* Draws the left plane's luma in full size, which doesn't depend on the disparities found, and at a quarter of the
+ * size. This function and the next are not inlined, because workers' tasks need the stack of their caller's
+ * histogram. */
 static __attribute__((noinline)) void fill_left(const t3r_stereo_settings *settings, const t3r_rectification *rect,
                                                 const t3r_view *view, const planes *full, uint8_t *out)
 {
@@ -204,15 +204,15 @@ static __attribute__((noinline)) void fill_left(const t3r_stereo_settings *setti
     }
 }
 
-/* Whether the matching of the first look leaves so many bytes of the work. */
+/* Whether the matching of the coarse pass leaves `bytes` of the work memory. */
 static bool look_leaves(const t3r_stereo_settings *settings, const planes *full, const t3r_match *coarse, size_t bytes)
 {
     const size_t taken = T3R_MATCH_WORK_BYTES(coarse->width, coarse->height, coarse->disparities, settings->paths);
     return taken + bytes <= full->work_bytes;
 }
 
-/* The right plane at a quarter of the size. In full size it is kept behind the work of that look, if there is room,
- * with the view's luma. */
+/* Draws the right plane at a quarter of the size. In full size it is kept with the view's luma at the end of the work
+ * memory, if there is room. */
 static __attribute__((noinline)) void fill_right(const t3r_stereo_settings *settings, const t3r_rectification *rect,
                                                  const t3r_view *view, const planes *full, const t3r_match *coarse,
                                                  uint8_t *out, drawing *drawn)
@@ -250,7 +250,7 @@ static __attribute__((noinline)) void fill_right(const t3r_stereo_settings *sett
     t3r_run_rows(&workers, coarse->height, quarter_rows, &job);
 }
 
-/* The right plane of the disparities that were found, from what is drawn of it. */
+/* Draws the right plane for the disparities found, reusing what the coarse pass drew. */
 typedef struct right_job {
     side_job side;
     drawing drawn;
@@ -261,7 +261,7 @@ static void finish_right(void *context, uint32_t begin, uint32_t end, uint32_t w
     (void)worker;
     const right_job *job = context;
     const side_job *side = &job->side;
-    /* column x is drawn at x + apart, if it is between `from` and `to` */
+    /* columns x in from..to - 1 are already drawn at x + apart */
     const int32_t apart = (side->begin_q16 - job->drawn.begin_q16) / 65536, columns = (int32_t)side->columns;
     const int32_t from = t3r_clamp32(-apart, 0, columns);
     const int32_t to = t3r_clamp32((int32_t)job->drawn.columns - apart, from, columns);
@@ -279,7 +279,7 @@ static void finish_right(void *context, uint32_t begin, uint32_t end, uint32_t w
     }
 }
 
-/* The range of disparities that the first look trusts, and what it is worth. */
+/* Computes the range of disparities that the coarse pass trusts, and the match score. */
 static __attribute__((noinline)) t3r_pair judge(const t3r_stereo_settings *settings, const planes *p, uint32_t pixels,
                                                 uint32_t count, int32_t base, look *found)
 {
@@ -297,14 +297,14 @@ static __attribute__((noinline)) t3r_pair judge(const t3r_stereo_settings *setti
     }
     uint32_t low = 0, high = count - 1, below = histogram[low], above = histogram[high];
     while (below <= trusted / TAIL) {
-        below += histogram[++low]; /* ends: all together are more than a tail */
+        below += histogram[++low]; /* ends: all pixels together are more than the tail */
     }
     while (above <= trusted / TAIL) {
         above += histogram[--high];
     }
-    const uint32_t most = (settings->disparities - 2 * MARGIN) / QUARTER; /* coarse ones that fit */
+    const uint32_t most = (settings->disparities - 2 * MARGIN) / QUARTER; /* coarse disparities that fit */
     if (high - low + 1 > most) {
-        /* The window that holds the most pixels, the first of equals. */
+        /* the window with the most pixels, the first of equals */
         uint32_t inside = 0, best = 0, best_low = low;
         for (uint32_t k = low; k <= high; k++) {
             inside += histogram[k];
@@ -329,7 +329,7 @@ static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectif
     const uint32_t width = rect->width / QUARTER, height = rect->height / QUARTER;
     const int32_t base = rect->least_disparity;
     const uint32_t wanted = (uint32_t)(rect->most_disparity - base) / QUARTER + 1;
-    /* As many as there are columns at most, nor more than the work has room for. */
+    /* at most as many as there are columns, and as the work memory has room for */
     const uint32_t room = T3R_MIN(T3R_MIN(rect->width, T3R_PATH_MOST), QUARTER * settings->disparities);
     const uint32_t count = lanes(T3R_MIN(wanted, room));
     const planes p = divide_quarter(full, width, height, count);
@@ -382,7 +382,7 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
         found.confidence[side] = full.side[side].confidence;
     }
     if (seen.right.view == NULL) {
-        luma_of(&views[1], full.work); /* the left plane's luma is the first look's */
+        luma_of(&views[1], full.work); /* the left plane's luma is there from the coarse pass */
     }
     right_job job = {.side = {.kernels = settings->kernels,
                               .rect = &rect,

@@ -1,4 +1,4 @@
-/* What stands for depth by stereo where it is left out: no configuration asks for it (core/config.c). */
+/* Stubs for builds without stereo: core/config.c refuses configurations that ask for it. */
 #include "stereo_views.h"
 
 #if !T3R_FEATURE_STEREO

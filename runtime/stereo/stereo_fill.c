@@ -6,14 +6,14 @@
 #include "stereo.h"
 #include "surface.h"
 
-/* Sweeps over the picture: down, up, down, up. Ways with more bends than that are found as longer ones. */
+/* Sweeps over the picture: down, up, down, up. Paths with more bends are found as longer ones. */
 #define SWEEPS 4
-/* The length of a step to a neighbour, straight and diagonal, and of a level of luma on it. */
+/* Length of a straight and of a diagonal step to a neighbour, and of each level of luma on it. */
 #define STRAIGHT 5
 #define DIAGONAL 7
 #define LEVEL 5
 #define CELLS T3R_STEREO_FILL_CELLS
-/* Two square pixels: a slope takes more than one row or column. */
+/* Two square pixels, so that a slope needs more than one row or column. */
 #define SPREAD_Q4 32
 
 _Static_assert(sizeof(t3r_surface_sums) == T3R_STEREO_FILL_SUMS_BYTES, "stereo_fill.h knows the sums' size");
@@ -21,10 +21,10 @@ _Static_assert(sizeof(t3r_surface_sums) == T3R_STEREO_FILL_SUMS_BYTES, "stereo_f
 /* A view being filled. */
 typedef struct filling {
     const t3r_view *view;
-    uint32_t cell, columns, rows; /* side of a cell; their numbers, at most CELLS */
+    uint32_t cell, columns, rows; /* side of a cell in pixels; numbers of cells, at most CELLS */
     t3r_surface_sums *sums;
-    uint32_t *source; /* the pixel whose depth is taken */
-    uint16_t *cost;   /* the length of the way there; UINT16_MAX = none yet, or longer */
+    uint32_t *source; /* pixel whose depth is taken */
+    uint16_t *cost;   /* length of the path from it; UINT16_MAX = none yet, or longer */
     uint8_t *luma;
 } filling;
 
@@ -57,7 +57,7 @@ static void begin(const filling *f)
     t3r_stereo_luma(f->view, f->luma);
 }
 
-/* Pixel `to` takes what pixel `from` has, if the way by it is shorter. */
+/* Gives pixel `to` the source of pixel `from`, if the path through it is shorter. */
 static inline void offer(const filling *f, size_t to, size_t from, uint32_t step)
 {
     const int32_t level = t3r_abs32((int32_t)f->luma[to] - f->luma[from]);
@@ -67,7 +67,7 @@ static inline void offer(const filling *f, size_t to, size_t from, uint32_t step
     f->source[to] = source;
 }
 
-/* Pixels from..end - 1 of a row, a hole, from the row before it on the sweep and along themselves both ways. */
+/* Sweeps a hole, pixels from..end - 1 of a row: from the sweep's last row, then along the row both ways. */
 static void sweep_hole(const filling *f, size_t row, size_t before, uint32_t from, uint32_t end, bool first)
 {
     const uint32_t width = f->view->width;
@@ -98,11 +98,11 @@ static bool any_hole(const uint16_t *cost, uint32_t count)
     return any != 0;
 }
 
-/* One row. What has depth costs nothing and takes nothing, so that each hole of the row is on its own. */
+/* Sweeps one row. Pixels with depth cost nothing and take nothing, so each hole of the row is independent. */
 static void sweep_row(const filling *f, uint32_t y, bool first, bool down)
 {
     const uint32_t width = f->view->width;
-    const size_t row = (size_t)y * width, before = down ? row - width : row + width; /* unused of the first */
+    const size_t row = (size_t)y * width, before = down ? row - width : row + width; /* unused in the first row */
     const uint16_t *cost = f->cost + row;
     for (uint32_t x = 0; x < width; x++) {
         while (width - x > 16 && !any_hole(cost + x, 16)) {
@@ -125,7 +125,7 @@ static size_t cell_of(const filling *f, uint32_t x, uint32_t y)
     return (size_t)(y / f->cell) * f->columns + x / f->cell;
 }
 
-/* Adds `count` pixels of a row of a cell, the first of them x0 right of its middle, all y below it. */
+/* Adds `count` pixels of a row of a cell; the first is x0 right of the cell's middle, and all are y below it. */
 static void sum_row(t3r_surface_sums *s, const uint16_t *depth, uint32_t count, int32_t x0, int64_t y)
 {
     /* at most 2^9 pixels, |x| at most 2^8, i at most 2^24 */
@@ -168,7 +168,7 @@ static void sum_cells(const filling *f)
     }
 }
 
-/* Those of another cell, counted from a place dx, dy away from its middle. */
+/* Adds the sums of another cell, relative to a place dx, dy away from its middle. */
 static void add_moved(t3r_surface_sums *to, const t3r_surface_sums *s, int64_t dx, int64_t dy)
 {
     to->n += s->n;
@@ -182,7 +182,7 @@ static void add_moved(t3r_surface_sums *to, const t3r_surface_sums *s, int64_t d
     to->yi += s->yi + dy * s->i;
 }
 
-/* The plane through one over depth in a cell and the eight about it, by least squares. */
+/* Fits a plane to one over depth in a cell and the eight around it, by least squares. */
 static t3r_surface_slope fit(const filling *f, uint32_t column, uint32_t row)
 {
     t3r_surface_sums s = {0};
@@ -198,7 +198,7 @@ static t3r_surface_slope fit(const filling *f, uint32_t column, uint32_t row)
 
 /* ---- depth ------------------------------------------------------------------------------------------------------- */
 
-/* The depth at (u, v) of the plane through a pixel's, its distance between half and twice as far. */
+/* Returns the depth at (u, v) of the plane through the source pixel, clamped to half and twice the pixel's depth. */
 static uint16_t extend(const filling *f, const t3r_surface_slope *slopes, uint32_t u, uint32_t v)
 {
     const t3r_view *view = f->view;
@@ -225,7 +225,7 @@ static void finish(const filling *f)
         for (uint32_t u = 0; u < view->width; u++) {
             const size_t i = (size_t)v * view->width + u;
             if (f->cost[i] == UINT16_MAX || f->cost[i] == 0) {
-                continue; /* nothing to take, or its own */
+                continue; /* no source, or has depth */
             }
             if (shows(view, i)) {
                 view->depth[i] = extend(f, slopes, u, v);

@@ -1,4 +1,4 @@
-/* One side of a rectified pair in the work of stereo: the parts of T3R_STEREO_SIDE_BYTES_(). */
+/* One side of a rectified pair in the work memory of stereo: the parts of T3R_STEREO_SIDE_BYTES_(). */
 #ifndef T3R_STEREO_PLANES_H
 #define T3R_STEREO_PLANES_H
 

@@ -11,11 +11,12 @@
 
 #define PARTNERS T3R_STEREO_PARTNERS
 
-/* Every pair as a first look has it, symmetric. */
+/* Results of the coarse pass for all pairs, symmetric. */
 typedef struct survey {
     uint32_t match_score[T3R_MAX_VIEWS][T3R_MAX_VIEWS];
     uint8_t pair[T3R_MAX_VIEWS][T3R_MAX_VIEWS]; /* t3r_pair */
-    uint8_t rank[T3R_MAX_VIEWS][T3R_MAX_VIEWS]; /* how many partners are to be preferred, for the one or the other */
+    uint8_t rank[T3R_MAX_VIEWS][T3R_MAX_VIEWS]; /* number of better partners, for whichever of the two views has
+                                                 * fewer */
 } survey;
 
 void t3r_stereo_clear(const t3r_view *views, uint32_t count)
@@ -27,7 +28,7 @@ void t3r_stereo_clear(const t3r_view *views, uint32_t count)
     }
 }
 
-/* Filled is what all pairs left. */
+/* Returns the settings of a pair. Pairs don't fill: filling follows after all of them. */
 static t3r_stereo_settings stereo_settings(const t3r_runtime *rt)
 {
     return (t3r_stereo_settings){
@@ -40,7 +41,7 @@ static t3r_stereo_settings stereo_settings(const t3r_runtime *rt)
     };
 }
 
-/* First looks at all pairs; of two views there is nothing to choose. */
+/* Runs the coarse pass of all pairs; with two views there is no choice to make. */
 static t3r_status look_at_all(const t3r_runtime *rt, const t3r_view *views, survey *found)
 {
     const t3r_stereo_settings settings = stereo_settings(rt);
@@ -63,7 +64,7 @@ static t3r_status look_at_all(const t3r_runtime *rt, const t3r_view *views, surv
     return T3R_OK;
 }
 
-/* Whether a is to be preferred to b as a partner of v: not refused, a higher match score, earlier. */
+/* Whether a is a better partner of v than b: not refused, a higher match score, or earlier. */
 static bool precedes(const survey *s, uint32_t v, uint32_t a, uint32_t b)
 {
     const bool refused = s->pair[v][a] != T3R_PAIR_OK, other_refused = s->pair[v][b] != T3R_PAIR_OK;
@@ -73,7 +74,7 @@ static bool precedes(const survey *s, uint32_t v, uint32_t a, uint32_t b)
     return s->match_score[v][a] != s->match_score[v][b] ? s->match_score[v][a] > s->match_score[v][b] : a < b;
 }
 
-/* How many others are to be preferred to `a` as partners of v. */
+/* Returns how many other views are better partners of v than `a`. */
 static uint32_t rank(const survey *s, uint32_t count, uint32_t v, uint32_t a)
 {
     uint32_t before = 0;
@@ -93,7 +94,7 @@ static void rank_all(const t3r_runtime *rt, survey *s)
     }
 }
 
-/* Where one pair leaves its depths when several pairs contribute to a view: behind the pair's work. */
+/* Places the depths of one pair after its work memory, where several pairs contribute to a view. */
 static void divide_pair(const t3r_runtime *rt, t3r_view both[2])
 {
     const uint32_t width = rt->config.width, height = rt->config.height;
@@ -121,7 +122,7 @@ static void match(t3r_runtime *rt, t3r_view *views, survey *s, uint32_t a, uint3
     for (int side = 0; side < 2 && pair == T3R_PAIR_OK; side++) {
         t3r_view *view = &views[index[side]];
         both[side].depth_unit_q40 = unit_q40;
-        if (rt->stereo_pair[index[side]] != T3R_PAIR_OK) { /* the first: its unit is the view's */
+        if (rt->stereo_pair[index[side]] != T3R_PAIR_OK) { /* the first pair sets the view's unit */
             rt->stereo_pair[index[side]] = T3R_PAIR_OK;
             rt->depth_unit_q40[index[side]] = view->depth_unit_q40 = unit_q40;
         }
@@ -131,7 +132,7 @@ static void match(t3r_runtime *rt, t3r_view *views, survey *s, uint32_t a, uint3
     }
 }
 
-/* Pairs of one rank, the earlier views first. */
+/* Matches the pairs of one rank, earlier views first. */
 static t3r_status match_rank(t3r_runtime *rt, t3r_view *views, survey *s, uint32_t rank)
 {
     const uint32_t pairs = rt->views * (rt->views - 1) / 2;
@@ -151,13 +152,13 @@ static t3r_status match_rank(t3r_runtime *rt, t3r_view *views, survey *s, uint32
     return T3R_OK;
 }
 
-/* What each view's depth came from, or why there is none. */
+/* Records which pair each view's depth came from, or why there is none. Returns false when no view has depth. */
 static bool settle(t3r_runtime *rt, const survey *s)
 {
     bool any = false;
     for (uint32_t v = 0; v < rt->views; v++) {
         uint32_t best = v;
-        for (uint32_t w = 0; w < rt->views; w++) { /* its own first choice is one of them */
+        for (uint32_t w = 0; w < rt->views; w++) { /* includes the view's own first choice */
             if (w != v && s->rank[v][w] < PARTNERS && (best == v || precedes(s, v, w, best))) {
                 best = w;
             }
@@ -174,8 +175,8 @@ static bool settle(t3r_runtime *rt, const survey *s)
 typedef struct fill_job {
     const t3r_runtime *rt;
     const t3r_view *views;
-    uint32_t first; /* view of the task of index 0 */
-    size_t bytes;   /* of each task's work */
+    uint32_t first; /* view of task 0 */
+    size_t bytes;   /* of each task */
 } fill_job;
 
 static void finish_view(void *context, uint32_t index, uint32_t worker)
@@ -193,7 +194,7 @@ static void finish_view(void *context, uint32_t index, uint32_t worker)
     t3r_stereo_marks(view, T3R_STEREO_SURE);
 }
 
-/* As many views at once as their work fits where pairs had theirs. */
+/* Finishes as many views at once as fit into the work memory of pairs. */
 static void finish_views(const t3r_runtime *rt, const t3r_view *views)
 {
     const uint32_t width = rt->config.width, height = rt->config.height;
@@ -213,7 +214,7 @@ t3r_status t3r_stereo_views(t3r_runtime *rt, t3r_view *views)
     t3r_status status = look_at_all(rt, views, &s);
     rank_all(rt, &s);
     for (uint32_t v = 0; v < rt->views; v++) {
-        rt->stereo_pair[v] = T3R_PAIR_OVERLAP; /* until one pair can be matched */
+        rt->stereo_pair[v] = T3R_PAIR_OVERLAP; /* until a pair is matched */
     }
     for (uint32_t rank = 0; rank < PARTNERS && status == T3R_OK; rank++) {
         status = match_rank(rt, views, &s, rank);

@@ -1,4 +1,4 @@
-/* A single SuperCluster, for allocations and streams that know none. */
+/* A single SuperCluster, for allocations and streams that use none. */
 #ifndef T3R_ONE_CLUSTER_H
 #define T3R_ONE_CLUSTER_H
 
@@ -7,7 +7,8 @@
 #include "state/views.h"
 #include "superclusters.h"
 
-/* Every pixel with depth becomes its point. Nobody asks for its centre, which is 0. Returns how many points it has. */
+/* Assigns every pixel with depth to the cluster and returns the number of its points. The centre is unused, so it is
+ * 0. */
 uint32_t t3r_one_cluster(const t3r_view *views, uint32_t count, t3r_cluster *all);
 
 #endif

@@ -7,7 +7,7 @@
 #include "state/state.h"
 #include "superclusters.h"
 
-/* Pixels of all views, view after view, as points x, y, z over the median depth and r, g, b over 255. */
+/* Pixels of all views, view after view, as points: x, y, z over the median depth and r, g, b over 255. */
 typedef struct pixel_points {
     const t3r_view *views;
     t3r_pointmap maps[T3R_MAX_VIEWS];
@@ -17,7 +17,7 @@ typedef struct pixel_points {
     int32_t colour_scale_q16;   /* 8-bit level to Q11 */
 } pixel_points;
 
-/* The features of pixels of view v, which leave `points`. */
+/* Computes the features of a batch of pixels of view v, and empties the batch. */
 static void write_features(const pixel_points *source, uint32_t v, t3r_points *points,
                            int16_t feature_q11[][T3R_DIMENSIONS])
 {
@@ -59,7 +59,7 @@ static uint32_t pixel_features(const void *context, const uint32_t *index, uint3
     return valid;
 }
 
-/* Planes of all views lie one behind the other. */
+/* Stores labels. Planes of all views follow each other in memory, so the index may run across views. */
 static void label_pixels(const void *context, uint32_t first, const uint8_t *which, uint32_t count,
                          const uint16_t *label)
 {

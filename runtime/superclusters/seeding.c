@@ -3,11 +3,13 @@
 #include "core/fixed.h"
 #include "core/memory.h"
 
-#define PART 256u /* points of the sample whose distances are summed up, so that a draw passes them in one step */
+#define PART 256u /* sample points a part; a draw skips whole parts by their summed distances */
 #define PARTS (T3R_CLUSTER_SAMPLE / PART)
-#define CENTRES_A_STEP 8u /* about 7 million instructions of plain C, with the whole sample */
+#define CENTRES_A_STEP                                                                                                 \
+    8u /* centres between two steps of the host: about 7 million instructions of plain C with the                      \
+        * whole sample */
 
-/* Valid points spread evenly over the source, at most `most`; returns how many. */
+/* Draws at most `most` valid points, spread evenly over the source. Returns their number. */
 static uint32_t draw_sample(const t3r_point_source *source, uint32_t most, const t3r_sample *sample)
 {
     uint32_t strata = T3R_MIN(source->points, most), count = 0;
@@ -39,12 +41,13 @@ static void sample_point(const t3r_sample *sample, uint32_t index, int16_t c[T3R
     }
 }
 
-/* One worker alone: what a centre takes is less than it costs to hand its parts to others. */
+/* State of the seeding. One worker does it alone: a centre takes less time than handing parts of the sample to
+ * others. */
 typedef struct seeding {
     const t3r_kernels *kernels;
     const t3r_sample *sample;
     uint32_t count, parts;     /* of the sample */
-    uint64_t potential[PARTS]; /* sums of a part's distances */
+    uint64_t potential[PARTS]; /* sum of distances for each part */
 } seeding;
 
 static void add_centre(seeding *s, const int16_t centre[T3R_DIMENSIONS])
@@ -55,14 +58,14 @@ static void add_centre(seeding *s, const int16_t centre[T3R_DIMENSIONS])
     }
 }
 
-/* The sample point at a random place of the running sum of distances: by the sums of the parts, then in one part. */
+/* Draws a sample point with a probability proportional to its distance: first the part, then the point in the part. */
 static uint32_t draw_far(const seeding *s, uint32_t random)
 {
     uint64_t potential = 0;
     for (uint32_t part = 0; part < s->parts; part++) {
         potential += s->potential[part];
     }
-    /* potential < 2^31 x 2^12, of which the place is a 2^-20 step */
+    /* potential < 2^31 x 2^12; place = potential x (random >> 12) / 2^20 */
     uint64_t place = (potential >> 20) * (random >> 12) + (((potential & 0xfffff) * (random >> 12)) >> 20);
     uint64_t sum = 0;
     uint32_t part = 0;
@@ -78,7 +81,7 @@ static uint32_t draw_far(const seeding *s, uint32_t random)
     return s->count - 1;
 }
 
-/* Of a few draws the one with which the sum of all distances is least, the earlier one among equals. */
+/* Chooses the best of a few draws: the one with the least sum of all distances, the earlier one among equals. */
 static void choose_centre(const seeding *s, uint32_t *random, int16_t centre[T3R_DIMENSIONS])
 {
     uint64_t least = UINT64_MAX;
@@ -94,7 +97,7 @@ static void choose_centre(const seeding *s, uint32_t *random, int16_t centre[T3R
     }
 }
 
-/* Those that stay; whether there is one. */
+/* Adds the centres that stay. Returns whether there is one. */
 static bool add_staying(seeding *s, uint32_t count, const bool *stays, const t3r_cluster *clusters)
 {
     bool any = false;

@@ -7,10 +7,12 @@
 
 #define BLOCK T3R_POINTS  /* points gathered at a time */
 #define TASK_POINTS 512u  /* points a task labels */
-#define FOLLOW_PART 6u    /* of the batches are taken where centres are taken over */
-#define FOLLOW_WEIGHT 16u /* points behind such a centre */
-#define FOLLOW_SHARE 2u   /* of the mean are the least points of the first batch with which it stays */
-#define WEIGHT_MOST 2048u /* a centre forgets what lies further back, so that late batches still move it */
+#define FOLLOW_PART 6u    /* a build that follows another takes 1 / FOLLOW_PART of the batches */
+#define FOLLOW_WEIGHT 16u /* initial weight of a centre that is taken over, in points */
+#define FOLLOW_SHARE                                                                                                   \
+    2u /* such a centre is kept if its points in the first batch are at least 1 / FOLLOW_SHARE of the                  \
+        * mean */
+#define WEIGHT_MOST 2048u /* bound of a centre's weight, so that late batches still move it */
 
 static void load_centres(t3r_centres *centres, const t3r_cluster *clusters, uint32_t count)
 {
@@ -34,20 +36,20 @@ typedef struct cluster_sums {
     uint32_t *points;
 } cluster_sums;
 
-/* A run over points that workers share: each adds to sums of its own, and these are added up in the end. */
+/* A pass over points that workers share. Each worker adds to its own sums, which are added up at the end. */
 typedef struct means_job {
     const t3r_kernels *kernels;
     const t3r_point_source *source;
     const t3r_cluster_host *host;
-    uint32_t count; /* of the centres */
+    uint32_t count; /* number of centres */
     t3r_centres centres;
-    t3r_sample sample; /* while centres are placed, in the memory of all that follows */
+    t3r_sample sample; /* used while centres are placed, in the memory of the fields below */
     t3r_neighbours neighbours;
-    cluster_sums sums[T3R_MAX_WORKERS]; /* of worker 0 in the end of all */
-    uint32_t *weight;                   /* points behind a centre so far, held at a bound */
-    uint32_t first;                     /* block of the task of index 0 */
-    uint32_t batch;                     /* of run_batch() */
-    uint32_t points;                    /* of the run */
+    cluster_sums sums[T3R_MAX_WORKERS]; /* sums[0] finally holds those of all workers */
+    uint32_t *weight;                   /* points averaged into each centre so far, at most WEIGHT_MOST */
+    uint32_t first;                     /* index of the first task's block of TASK_POINTS */
+    uint32_t batch;                     /* number of the batch */
+    uint32_t points;                    /* of this pass */
 } means_job;
 
 static cluster_sums cut_sums(t3r_cut *cut, uint32_t clusters)
@@ -57,7 +59,7 @@ static cluster_sums cut_sums(t3r_cut *cut, uint32_t clusters)
     return sums;
 }
 
-/* What the job works in, of the bytes that trim3r_arena.h plans. */
+/* Cuts up the work memory that trim3r_arena.h plans. */
 static void cut_work(means_job *job, void *work)
 {
     const uint32_t room = (uint32_t)T3R_CENTRE_ROOM_(job->count), points = t3r_cluster_sample(job->count);
@@ -111,7 +113,7 @@ static void add_point(const cluster_sums *sums, uint16_t label, const int16_t fe
     }
 }
 
-/* Labels of `valid` gathered points, which are added to the worker's sums. A label does not depend on the guess. */
+/* Labels `valid` gathered points and adds them to the worker's sums. Labels don't depend on the guess. */
 static void label_block(const means_job *job, uint32_t worker, uint32_t valid, const int16_t feature[][T3R_DIMENSIONS],
                         uint16_t *guess, uint16_t *label)
 {
@@ -122,7 +124,7 @@ static void label_block(const means_job *job, uint32_t worker, uint32_t valid, c
     }
 }
 
-/* The points that a task takes: TASK_POINTS from its own place on. */
+/* Returns the points of a task: TASK_POINTS from its own place on. */
 static t3r_share points_of(const means_job *job, uint32_t index)
 {
     const uint32_t begin = (job->first + index) * TASK_POINTS;
@@ -134,7 +136,7 @@ static uint32_t tasks_of(uint32_t points)
     return (points + TASK_POINTS - 1) / TASK_POINTS;
 }
 
-/* The batch takes a point of its own from each of `job->points` parts of the source: where the s-th part begins. */
+/* Returns where part s of the source begins. A batch takes one point from each of `job->points` parts. */
 static uint32_t part_begin(const means_job *job, uint32_t s)
 {
     return (uint32_t)((uint64_t)s * job->source->points / job->points);
@@ -151,7 +153,7 @@ static void batch_task(void *context, uint32_t index, uint32_t worker)
         int16_t feature[BLOCK][T3R_DIMENSIONS];
         uint16_t label[BLOCK];
         uint8_t which[BLOCK];
-        uint32_t place[BLOCK]; /* all of them before the first is read, so that reads from memory overlap */
+        uint32_t place[BLOCK]; /* computed before the first is read, so that memory reads overlap */
         const uint32_t count = T3R_MIN(BLOCK, points.end - first);
         for (uint32_t i = 0; i < count; i++) {
             const uint32_t end = part_begin(job, first + i + 1);
@@ -178,7 +180,8 @@ static void begin_means(means_job *job, const t3r_cluster *clusters)
     clear_sums(job);
 }
 
-/* One mini-batch (Sculley 2010, with whole-batch means): points spread over the source, a different set each time. */
+/* Runs one mini-batch (Sculley 2010, with whole-batch means) on points spread over the source, different ones each
+ * time. */
 static void run_batch(means_job *job, uint32_t batch, t3r_cluster *clusters)
 {
     job->batch = batch;
@@ -256,7 +259,7 @@ static void set_weights(const means_job *job, uint32_t points)
     }
 }
 
-/* False: cancelled. */
+/* Places all centres anew. Returns false when cancelled. */
 static bool place_centres(const means_job *job, const t3r_cluster_settings *settings, t3r_cluster *clusters,
                           uint32_t total)
 {
@@ -268,8 +271,8 @@ static bool place_centres(const means_job *job, const t3r_cluster_settings *sett
     return true;
 }
 
-/* The first batch of centres that were taken over: those that get fewer than half of the mean number of its points are
- * placed anew. False: cancelled. */
+/* Runs the first batch with centres taken over from the last build. Centres that get fewer than half of the mean number
+ * of its points are placed anew. Returns false when cancelled. */
 static bool follow_centres(means_job *job, const t3r_cluster_settings *settings, t3r_cluster *clusters, uint32_t total)
 {
     bool stays[T3R_MAX_CLUSTERS];

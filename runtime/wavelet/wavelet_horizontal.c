@@ -1,4 +1,4 @@
-/* Horizontal lifting: a row is split into its lows and highs in the working memory, lifted there and stored back,
+/* Horizontal lifting: splits a row into lows and highs in the working memory, lifts them there and stores them back,
  * lows first. */
 #include "wavelet_level.h"
 
@@ -7,7 +7,7 @@
 
 #define PAD T3R_WAVELET_PAD
 
-/* A split row, with room for a sample before and two behind each half. */
+/* A split row, with room for one sample before and two after each half. */
 typedef struct halves {
     int16_t *low, *high;
     uint32_t lows, highs;
@@ -38,7 +38,7 @@ static void store_halves(int16_t *row, halves x)
 static void forward_db2(int16_t *row, halves x)
 {
     const uint32_t width = x.lows + x.highs, pairs = (width - 1) / 2;
-    int16_t last = row[width - 1]; /* the sample that an even width leaves */
+    int16_t last = row[width - 1]; /* last sample of an even width, which has no pair */
 
     if (width % 2 == 0) {
         t3r_row_db2_last(&last, &row[width - 2], &row[width - 3], 1);
@@ -62,14 +62,14 @@ static void forward_haar(int16_t *row, halves x)
     store_halves(row, x);
 }
 
-/* The odd samples on both sides of each even one. */
+/* Pads the highs at both ends: each even sample needs an odd one on both sides. */
 static void repeat_odds(halves x)
 {
     x.high[-1] = x.high[0];
     x.high[x.highs] = x.high[x.highs - 1];
 }
 
-/* The even sample behind the last odd one. */
+/* Pads the lows: the last odd sample needs an even one after it. */
 static void repeat_even(halves x)
 {
     if (x.lows == x.highs) {

@@ -1,4 +1,4 @@
-/* Texture energy: a transform whose rows stay in place, then the absolute coefficients of all levels summed.
+/* Texture energy: a transform whose rows stay in place, then the sum of absolute coefficients over all levels.
  *
  * 16 and 32 bits suffice, by the table in wavelet_level.h: |h| + |v| <= 2 x 10,430 on every level; 0.268 |d| <= 8,750
  * on level 1, so their sum is below 2^15; |d| <= 23,620 on the others. */
@@ -7,8 +7,9 @@
 #include "core/memory.h"
 #include "kernels/wavelet_rows.h"
 
-/* Orthonormal over lifted. db2: low 1.93185, high 0.51764, so h and v 1, d 2 - sqrt 3, and 2 + sqrt 3 a level
- * more. Haar, and 5/3 on the same footing: low sqrt 2, high 1 / sqrt 2, so 1, 1/2, and 2 a level more. */
+/* Ratio of orthonormal to lifted coefficients. db2: low 1.93185, high 0.51764, so h and v 1, d 2 - sqrt 3, and times 2
+ * + sqrt 3 for each further level. Haar, and 5/3 treated alike: low sqrt 2, high 1 / sqrt 2, so 1, 1/2, and times 2 for
+ * each further level. */
 static const uint16_t finest_d_gain_q16[T3R_WAVELET_COUNT] = {17560, 32768, 32768};
 static const uint16_t gain_q8[T3R_WAVELET_COUNT][T3R_MAX_LEVELS] = {
     {256, 955, 3566, 13307, 49662}, {256, 512, 1024, 2048, 4096}, {256, 512, 1024, 2048, 4096}};
@@ -18,8 +19,8 @@ static uint16_t texture_of_one(int16_t coefficient, uint32_t gain)
     return (uint16_t)T3R_MIN((gain * (uint32_t)t3r_abs32(coefficient) + 128) >> 8, 65535u);
 }
 
-/* The texture of low row n and high row n of level `index` (from 0); coefficients missing at odd sides count
- * nothing. */
+/* Computes the texture of low row n and high row n of level `index` (from 0). Coefficients that odd sides lack count
+ * 0. */
 static void texture_row(const t3r_level *x, uint32_t index, uint32_t n, uint16_t *out)
 {
     uint32_t lows = (x->width + 1) / 2, highs = x->width / 2;
@@ -27,7 +28,7 @@ static void texture_row(const t3r_level *x, uint32_t index, uint32_t n, uint16_t
     const int16_t *h = t3r_low_row(x, n) + lows;
 
     if (n == x->height / 2) {
-        /* an odd height's last low row has no high row */
+        /* the last low row of an odd height has no high row */
         for (uint32_t i = 0; i < highs; i++) {
             out[i] = texture_of_one(h[i], gain);
         }
@@ -47,7 +48,7 @@ static void texture_row(const t3r_level *x, uint32_t index, uint32_t n, uint16_t
     }
 }
 
-/* Rows of all levels down the image: a level's row is made when the image reaches it and holds the sum of itself
+/* Goes down the image. A row of a level is computed when the image reaches it, and then holds the sum of its own level
  * and the coarser ones. */
 static void texture_plane(const t3r_level *level, uint32_t levels, uint16_t *texture_q4, uint16_t *work)
 {
@@ -71,7 +72,8 @@ static void texture_plane(const t3r_level *level, uint32_t levels, uint16_t *tex
         uint16_t *out = texture_q4 + (size_t)y * width;
         level[0].kernels->texture_spread(out, rows[0], width);
         if (y + 1 < height) {
-            level[0].kernels->texture_spread(out + width, rows[0], width); /* a copy would wait for what was written */
+            level[0].kernels->texture_spread(out + width, rows[0], width); /* a copy would wait for the stores before
+                                                                            * it */
         }
     }
 }

@@ -1,5 +1,5 @@
-/* Vertical lifting of a level: whole rows are lifted against each other. It runs down the rows and makes each, that
- * is its luma and its horizontal lifting, just before it is first needed, so that all is done while it is in cache. */
+/* Vertical lifting of a level: lifts whole rows against each other. It runs down the rows and makes each row (luma and
+ * horizontal lifting) just before it is first needed, so that the work stays in cache. */
 #include "wavelet_level.h"
 
 #include "kernels/wavelet_rows.h"
@@ -17,19 +17,19 @@ static void make_row(const t3r_level *x, uint32_t y)
 
 /* ---- db2 -------------------------------------------------------------------------------------------------- */
 
-/* a[n], then s[n] */
+/* Returns the row that holds a[n], then s[n]. */
 static int16_t *a_row(const t3r_level *x, uint32_t n)
 {
     return t3r_low_row(x, n);
 }
 
-/* b[n], then d1[n], then d[n - 1] */
+/* Returns the row that holds b[n], then d1[n], then d[n - 1]. */
 static int16_t *b_row(const t3r_level *x, uint32_t n)
 {
     return t3r_high_row(x, n - 1);
 }
 
-/* d1 of pair n; the last pair first serves the row that an even height leaves behind it. */
+/* Computes d1 of pair n. The last pair of an even height first predicts the unpaired row after it. */
 static void predict_pair(const t3r_level *x, uint32_t n)
 {
     make_row(x, 2 * n - 1);
@@ -73,7 +73,7 @@ static void forward_haar(const t3r_level *x)
     }
 }
 
-/* The even row behind odd row n. */
+/* Returns the even row after odd row n, at the end the one before it. */
 static const int16_t *even_behind(const t3r_level *x, uint32_t n)
 {
     if (2 * n + 2 < x->height) {

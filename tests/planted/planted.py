@@ -57,7 +57,7 @@ FAULTS = (
           "reader->count - reader->at < padding", "asan", "test_recording_foreign", "recording_foreign"),
     Fault("undefined", "a byte is shifted into the sign", "platform", "bytes.h", "(uint32_t)b[3] << 24",
           "(uint32_t)(b[3] << 24)", "asan", "test_recording", "recording"),
-    Fault("file", "a file has one Gaussian more than its bytes", "tools", "splat.c", "(uint32_t)(count / ROW_BYTES)",
+    Fault("file", "a file has one Gaussian more than its bytes", "tools/scene", "splat.c", "(uint32_t)(count / ROW_BYTES)",
           "(uint32_t)(count / ROW_BYTES + 1)", "asan", "fuzz_splat", "seeds_splat"),
     Fault("race", "a thread reads what another still writes", "platform", "threads.c",
           "return atomic_load_explicit(&threads->busy, memory_order_acquire) == 0;",
@@ -73,14 +73,18 @@ def table():
 
 
 def copy_of_tree(folder):
-    """The tracked files, each written only where it differs, so that builds stay fresh."""
-    for name in run("git", "-C", ROOT, "ls-files", "--cached", "--others", "--exclude-standard").stdout.splitlines():
-        source, copy = ROOT / name, folder / name
-        if not source.is_file():
-            continue
-        if not copy.exists() or copy.read_bytes() != source.read_bytes():
+    """The tracked files and no others, each written only where it differs, so that builds stay fresh."""
+    listed = run("git", "-C", ROOT, "ls-files", "--cached", "--others", "--exclude-standard").stdout.splitlines()
+    names = [name for name in listed if (ROOT / name).is_file()]
+    for path in folder.rglob("*"):
+        name = path.relative_to(folder)
+        if name.parts[0] != "build" and path.is_file() and name.as_posix() not in names:
+            path.unlink()
+    for name in names:
+        copy = folder / name
+        if not copy.exists() or copy.read_bytes() != (ROOT / name).read_bytes():
             copy.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(source, copy)
+            shutil.copy(ROOT / name, copy)
 
 
 def file_of(folder, fault):

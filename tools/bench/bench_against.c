@@ -18,14 +18,14 @@
 #define TURN_SECONDS 600.0
 #define THIS "/proc/self/exe"
 
-/* What both time, or one of them alone. */
+/* What both programs time, or only one of them. */
 typedef struct contest_state {
     const bench_contest *contest;
-    bool has_stages;                /* the other takes --stages */
-    bool shared[BENCH_STAGES_MOST]; /* of bench_stages: the other has it */
+    bool has_stages;                /* the other program takes --stages */
+    bool shared[BENCH_STAGES_MOST]; /* of bench_stages: the other program has it */
     char list[LIST_BYTES];          /* the shared ones, for --stages */
     char this_alone[LIST_BYTES], other_alone[LIST_BYTES];
-    double figure[2][BENCH_STAGES_MOST][BENCH_TURNS_MOST]; /* this program's, the other's */
+    double figure[2][BENCH_STAGES_MOST][BENCH_TURNS_MOST]; /* this program's, the other program's */
 } contest_state;
 
 static void add_word(char list[LIST_BYTES], const char *word)
@@ -37,8 +37,8 @@ static void add_word(char list[LIST_BYTES], const char *word)
 /* ---- one run ------------------------------------------------------------------------------------------------------
  */
 
-/* The object that `bench --json` of that program prints; NULL after a message, which a refusal of the options does not
- * get when it is `allowed`. */
+/* Returns the object that `bench --json` of that program prints; NULL after a message. If `allowed`, refused options
+ * give no message. */
 static cJSON *run_bench(const contest_state *s, const char *program, const char *stages, bool allowed)
 {
     char list[LIST_BYTES + 16], error[ERROR_BYTES] = "";
@@ -77,10 +77,9 @@ static double number_of(const cJSON *object, const char *key)
     return cJSON_IsNumber(item) ? item->valuedouble : 0;
 }
 
-/* ---- what the other is --------------------------------------------------------------------------------------------
- */
+/* ---- the other program ------------------------------------------------------------------------------------------- */
 
-/* Whether it is a trim3r that has a bench, and which options that takes. */
+/* Asks whether the other program is a trim3r with a bench, and which options that takes. */
 static int ask_for_help(contest_state *s)
 {
     const char *other = s->contest->other;
@@ -114,7 +113,7 @@ static bool ends_a_row(const char *key)
     return false;
 }
 
-/* A row of the other that is no row or part of a row of this program. */
+/* Whether a row of the other program is neither a row nor part of a row of this program. */
 static bool is_foreign(const char *key)
 {
     for (const bench_stage *stage = bench_stages; stage->key != NULL; stage++) {
@@ -127,11 +126,12 @@ static bool is_foreign(const char *key)
 
 static bool is_compared(const contest_state *s, uint32_t stage)
 {
-    /* the machine is the same for both */
+    /* both run on the same machine */
     return s->contest->chosen[stage] && strncmp(bench_stages[stage].key, "machine_", 8) != 0;
 }
 
-/* What the other prints: of the chosen stages where it has them all, else of all that it has. NULL after a message. */
+/* Returns the other program's output: for the chosen stages if it has them all, else for all that it has. NULL after a
+ * message. */
 static cJSON *try_other(const contest_state *s)
 {
     char wanted[LIST_BYTES] = "";
@@ -146,7 +146,7 @@ static cJSON *try_other(const contest_state *s)
     return found != NULL ? found : run_bench(s, s->contest->other, NULL, false);
 }
 
-/* What is compared: the stages chosen here that the other has. */
+/* Chooses what is compared: the chosen stages that the other program has. */
 static int share_stages(contest_state *s, const cJSON *theirs)
 {
     const cJSON *item;
@@ -175,7 +175,7 @@ static int take_turns(contest_state *s)
 {
     for (uint32_t turn = 0; turn < s->contest->turns; turn++) {
         for (uint32_t half = 0; half < 2; half++) {
-            /* each begins as often as the other */
+            /* each program goes first equally often */
             const uint32_t who = (half + turn) % 2;
             cJSON *found =
                 run_bench(s, who == 0 ? THIS : s->contest->other, who == 0 || s->has_stages ? s->list : NULL, false);
@@ -200,10 +200,9 @@ static int take_turns(contest_state *s)
     return CLI_OK;
 }
 
-/* ---- what came of it -----------------------------------------------------------------------------------------------
- */
+/* ---- results ----------------------------------------------------------------------------------------------------- */
 
-/* How many times as fast this program is, of each turn's pair. */
+/* Returns how many times as fast this program is, over the pairs of all turns. */
 static spread ratio_of(const contest_state *s, uint32_t stage)
 {
     double ratios[BENCH_TURNS_MOST];

@@ -1,4 +1,4 @@
-/* This program's bench and another's, in turns: how many times as fast each stage is. */
+/* This program's bench and another program's, in turns: how many times as fast each stage is. */
 #ifndef TRIM3R_TOOLS_BENCH_AGAINST_H
 #define TRIM3R_TOOLS_BENCH_AGAINST_H
 
@@ -11,15 +11,15 @@
 #define BENCH_PASSED_MOST 8
 
 typedef struct bench_contest {
-    const char *other;                     /* its file */
+    const char *other;                     /* path of the other program */
     const bool *chosen;                    /* of bench_stages */
     uint32_t turns;                        /* 1..BENCH_TURNS_MOST */
-    const char *passed[BENCH_PASSED_MOST]; /* options for both, as "--threads=2" */
+    const char *passed[BENCH_PASSED_MOST]; /* options passed to both, such as "--threads=2" */
     uint32_t passed_count;
     bool json;
 } bench_contest;
 
-/* Prints the table or one JSON object. An exit status of cli.h, after a message. */
+/* Prints the table or one JSON object. Returns an exit status of cli.h, after a message. */
 int bench_against(const bench_contest *contest);
 
 #endif

@@ -8,7 +8,7 @@
 
 _Static_assert(T3R_VARIANTS_COUNT <= BENCH_KERNELS_MOST, "the list holds every entry");
 
-/* The highest of the features: what the variant is for, beside what comes with it. */
+/* Returns the highest of the features, which names the variant; the others are its prerequisites. */
 static uint32_t last_feature(uint32_t features)
 {
     while ((features & (features - 1)) != 0) {

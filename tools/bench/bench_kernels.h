@@ -1,4 +1,4 @@
-/* Which variant of each inner loop a table of kernels has. */
+/* The variants of inner loops in a table of kernels. */
 #ifndef TRIM3R_TOOLS_BENCH_KERNELS_H
 #define TRIM3R_TOOLS_BENCH_KERNELS_H
 
@@ -16,12 +16,12 @@ typedef struct bench_kernel {
     char set[16]; /* the instruction set of its variant, "c" for plain C */
 } bench_kernel;
 
-/* The entries that have variants in this build, in the table's order; returns their number. */
+/* Lists the entries that have variants in this build, in the table's order; returns their number. */
 uint32_t bench_kernels_of(const t3r_kernels *kernels, bench_kernel list[BENCH_KERNELS_MOST]);
 
-/* A line: the entries by the instruction set of their variants. Those that are not named have plain C alone. */
+/* Prints a line of the entries by instruction set. Entries that are not listed exist only in plain C. */
 void bench_kernels_print(const t3r_kernels *kernels, FILE *out);
-/* An object "kernels": the set of each entry. */
+/* Adds an object "kernels" with the set of each entry. */
 void bench_kernels_add_json(cJSON *root, const t3r_kernels *kernels);
 
 #endif

@@ -10,12 +10,12 @@
 #include <arm_neon.h>
 #endif
 
-/* Sums that do not wait for each other: as many as an instruction takes cycles, times how many begin in one. */
+/* Independent sums: an instruction's latency in cycles times the number that start per cycle. */
 #define SUMS 12
 
 static volatile int32_t sink;
 
-/* `opaque` does nothing, but the compiler must take what it names for another value each time. */
+/* `opaque` does nothing, but makes the compiler assume another value each time. */
 #define ROUNDS(lanes) ((uint32_t)(BENCH_MULTIPLY_ADDS / ((lanes)*SUMS)))
 #define LOOP(lanes, opaque, step)                                                                                      \
     for (uint32_t round = 0; round < ROUNDS(lanes); round++) {                                                         \
@@ -58,7 +58,7 @@ __attribute__((target("avx2"))) static double multiply_avx2(void)
     return 32.0 * SUMS * ROUNDS(32);
 }
 
-/* SSE2 multiplies 16 bits. */
+/* Uses SSE2, which multiplies 16-bit numbers. */
 static double multiply_plain(void)
 {
     __m128i sums[SUMS], a = _mm_set1_epi16(3), all = _mm_setzero_si128();
@@ -120,7 +120,7 @@ double bench_multiply_adds(uint32_t cpu)
 
 #else
 
-/* What the compiler makes of it. */
+/* Leaves vectorization to the compiler. */
 double bench_multiply_adds(uint32_t cpu)
 {
     enum { LENGTH = 256 };

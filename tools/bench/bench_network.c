@@ -33,7 +33,7 @@ void bench_network_features(const t3r_runtime *runtime, int8_t *features)
     }
 }
 
-/* The retained points of a row. Returns their number. */
+/* Runs the network at the retained points of a row. Returns their number. */
 static uint32_t run_points(const t3r_network *network, const t3r_view *view, uint32_t y, const int8_t *row)
 {
     uint32_t points = 0;

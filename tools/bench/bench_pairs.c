@@ -5,7 +5,7 @@
 #include "kernels/kernels.h"
 #include "state/state.h"
 
-static _Atomic uint64_t pairs; /* workers count at the same time */
+static _Atomic uint64_t pairs; /* workers count concurrently */
 static t3r_kernels saved;
 
 static void count(const t3r_tile_splat *splat)

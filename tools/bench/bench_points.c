@@ -11,7 +11,7 @@
 #include "host/little_floats.h"
 #include "host/reason.h"
 
-/* as in GaussianTrim3R */
+/* values of GaussianTrim3R */
 enum { CLUSTERS = 300, BATCHES = 24 };
 
 void bench_points_free(bench_points *points)
@@ -36,7 +36,8 @@ static int allocate(bench_points *p, uint32_t count, char *error, size_t error_b
     return 0;
 }
 
-/* Around the middle of the range, times `scale` halved until it fits: neither changes who is nearest to whom. */
+/* Quantizes around the middle of the range, multiplied by `scale`, which is halved until it fits. Neither changes which
+ * points are nearest. */
 static void quantize(bench_points *p, double scale)
 {
     double half_range = 0;
@@ -86,7 +87,7 @@ int bench_points_read(bench_points *points, const char *path, char *error, size_
     }
     free(data);
     if (result == 0) {
-        quantize(points, 0x1p120); /* numbers of any size: as many steps as fit */
+        quantize(points, 0x1p120); /* input of any size: as many steps as fit */
     }
     return result;
 }
@@ -112,7 +113,7 @@ int bench_points_unproject(bench_points *points, uint32_t views, uint32_t width,
     if (allocate(points, views * width * height, error, error_bytes) != 0) {
         return -1;
     }
-    /* the labels are as many and as wide: borrowed for the sorting */
+    /* the labels, as many and as wide, are a buffer for sorting */
     double median = median_depth(views, pixels, depth_mm, points->labels);
     for (uint32_t v = 0; v < views; v++) {
         const t3r_camera *c = &cameras[v];
@@ -132,7 +133,7 @@ int bench_points_unproject(bench_points *points, uint32_t views, uint32_t width,
             }
         }
     }
-    quantize(points, 2048); /* Q11, as the runtime has them */
+    quantize(points, 2048); /* Q11, as in the runtime */
     return 0;
 }
 

@@ -1,4 +1,4 @@
-/* The matching of views alone, on views that were analysed before. */
+/* Stereo matching alone, on views that have been analysed. */
 #ifndef TRIM3R_TOOLS_BENCH_STEREO_H
 #define TRIM3R_TOOLS_BENCH_STEREO_H
 
@@ -8,14 +8,14 @@
 
 #include "trim3r.h"
 
-/* Depth of all views by stereo once more, from their colours. The configuration has keep_analysis and depth by stereo;
- * nothing may have been drawn since the analysis, which is of no use afterwards. */
+/* Computes the depth of all views by stereo again, from their colours. The configuration must have keep_analysis and
+ * depth by stereo; nothing may have been drawn since the analysis, which is unusable afterwards. */
 bool bench_stereo_run(t3r_runtime *runtime);
 
-/* The same for its first two views, with 4 or 8 paths, whatever the pipeline takes; `work` has bench_stereo_bytes(). */
+/* The same for its first two views, with 4 or 8 paths, whatever the pipeline uses; `work` has bench_stereo_bytes(). */
 bool bench_stereo_paths_run(t3r_runtime *runtime, uint32_t paths, void *work);
 
-/* Aligned to 64, for views of that size. */
+/* Returns the bytes for views of that size, to be aligned to 64. */
 size_t bench_stereo_bytes(uint32_t width, uint32_t height, uint32_t paths);
 
 #endif

@@ -17,10 +17,10 @@
 
 static const struct {
     uint32_t gaussians;
-    enum { ANALYTIC, SMALL, MEASURED } head; /* the closed form; `small`; the one that --head names */
-    bool keep;                               /* the analysis, to run a stage alone again */
+    enum { ANALYTIC, SMALL, MEASURED } head; /* the closed form; `small`; the one named by --head */
+    bool keep;                               /* keep the analysis, to run a stage alone again */
     uint32_t refine;
-    bool stereo; /* whatever --depth says */
+    bool stereo; /* stereo, whatever --depth says */
 } scene_settings[BENCH_SCENES] = {
     [BENCH_FULL] = {BENCH_POINTS, ANALYTIC, false, REFINEMENTS, false},
     [BENCH_TRIMMED] = {BENCH_TRIMMED_TO, ANALYTIC, false, REFINEMENTS, false},
@@ -195,7 +195,7 @@ int bench_work_open(bench_work *w, const bench_settings *o)
     if (o->processor.threads > 1 && (w->threads = t3r_threads_start(o->processor.threads)) == NULL) {
         return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", o->processor.threads);
     }
-    /* seen from between them */
+    /* a view between them */
     room_camera(1, BENCH_SIDE, BENCH_SIDE, &w->viewpoint);
     room_frame(0, BENCH_WAVELET_WIDTH, BENCH_WAVELET_HEIGHT, SEED, w->wavelet_rgb, NULL);
     size_t pixels = (size_t)BENCH_WAVELET_WIDTH * BENCH_WAVELET_HEIGHT;

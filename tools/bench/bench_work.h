@@ -1,5 +1,5 @@
-/* The piece of work that the bench times: two 256x256 views of the built-in room, the scenes that are made of them, and
- * what single stages need besides. */
+/* The work that the bench times: two 256x256 views of the built-in room, the scenes made of them, and what single
+ * stages need besides. */
 #ifndef TRIM3R_TOOLS_BENCH_WORK_H
 #define TRIM3R_TOOLS_BENCH_WORK_H
 
@@ -16,12 +16,12 @@
 #define BENCH_SIDE 256u
 #define BENCH_VIEWS 2u
 #define BENCH_POINTS (BENCH_SIDE * BENCH_SIDE * BENCH_VIEWS)
-#define BENCH_TRIMMED_TO 13107u /* 10 % of them */
-#define BENCH_MORE_PATHS 8u     /* of stereo, beside the four of the pipeline */
+#define BENCH_TRIMMED_TO 13107u /* 10 % of the points */
+#define BENCH_MORE_PATHS 8u     /* of stereo, compared with the pipeline's four */
 #define BENCH_WAVELET_WIDTH 1280u
 #define BENCH_WAVELET_HEIGHT 720u
 
-/* What the stages work on, each built before the first of them that needs it. */
+/* The scenes that stages work on; each is built before the first stage that needs it. */
 typedef enum bench_scene {
     BENCH_FULL,
     BENCH_TRIMMED,
@@ -36,9 +36,9 @@ typedef enum bench_scene {
 } bench_scene;
 
 typedef struct bench_settings {
-    const char *points; /* a file of points to cluster in the place of the room's; NULL = none */
-    const char *head;   /* of BENCH_HEADED and BENCH_NETWORKED */
-    t3r_depth depth;    /* of the scenes */
+    const char *points; /* a file of points to cluster instead of the room's; NULL = none */
+    const char *head;   /* for BENCH_HEADED and BENCH_NETWORKED */
+    t3r_depth depth;    /* for the scenes */
     processor_options processor;
 } bench_settings;
 
@@ -50,32 +50,32 @@ typedef struct bench_work {
         t3r_runtime *runtime;
         void *arena;
     } scene[BENCH_SCENES];
-    t3r_gaussian *start; /* what each measured pass of refinement begins with: its scene as it was built */
-    void *stereo_work;   /* of a pair matched with eight paths */
-    int8_t *features;    /* that the network alone runs on */
+    t3r_gaussian *start; /* what each measured refinement pass starts from: its scene as built */
+    void *stereo_work;   /* for a pair matched with eight paths */
+    int8_t *features;    /* input of the network alone */
     chosen_head small, measured;
     t3r_threads *threads;
     uint32_t cpu; /* features that kernels may use */
     t3r_kernels kernels;
-    uint8_t *view; /* where renders go */
+    uint8_t *view; /* target of renders */
     uint8_t *wavelet_rgb;
     uint8_t *wavelet_planes;
     int16_t *wavelet_plane, *wavelet_work;
     uint16_t *texture;
     uint8_t *copy_from, *copy_to;
-    double multiply_adds; /* that bench_multiply_adds() did last */
+    double multiply_adds; /* count of the last bench_multiply_adds() */
     bench_points points;
 } bench_work;
 
-/* An exit status of cli.h after a message; bench_work_close() in any case. */
+/* Returns an exit status of cli.h after a message; bench_work_close() is due in any case. */
 int bench_work_open(bench_work *work, const bench_settings *settings);
-/* The scene is built, unless it was before. */
+/* Builds the scene, unless it has been built. */
 t3r_status bench_work_open_scene(bench_work *work, bench_scene scene);
-/* Once more from the frames. */
+/* Builds the scene from the frames again. */
 t3r_status bench_work_build(bench_work *work, bench_scene scene);
-/* The same, with the time that each stage takes; hashes are collected, so the whole takes longer. */
+/* The same with the time of each stage; it collects hashes, so the whole takes longer. */
 t3r_status bench_work_profile(bench_work *work, bench_scene scene, stage_times *times);
-/* Seen from between the context views. */
+/* Draws the view between the context views. */
 t3r_status bench_work_draw(bench_work *work, bench_scene scene);
 void bench_work_close(bench_work *work);
 

@@ -6,7 +6,7 @@
 
 #include "host/text.h"
 
-/* The value of the first line of /proc/cpuinfo that begins with one of these words. */
+/* Reads the value of the first line of /proc/cpuinfo that begins with one of these words. */
 static bool read_line(const char *const words[], char *value, size_t bytes)
 {
     char line[8192];

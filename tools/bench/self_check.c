@@ -10,7 +10,7 @@
 
 enum { SIDE = 64, VIEWS = 2, BUDGET = 400, SEED = 1, PIXELS = SIDE * SIDE };
 
-/* A change of any bit is a new epoch, and a new hash: `trim3r doctor` prints it. */
+/* A change of any bit needs a new epoch, and a new hash: `trim3r doctor` prints it. */
 _Static_assert(T3R_BITS_EPOCH == 10, "SELF_CHECK_HASH is that of another bits epoch");
 
 typedef struct check {
@@ -57,7 +57,7 @@ static t3r_status open(check *c, const processor_options *processor)
     return status == T3R_OK ? t3r_bind_head(c->runtime, c->head.weights, c->head.bytes) : status;
 }
 
-/* Frame `index` of the room: its depth as little-endian bytes. */
+/* Adds frame `index` of the room, with depth as little-endian bytes. */
 static t3r_status add_frame(check *c, uint32_t index)
 {
     t3r_camera camera;

@@ -6,11 +6,11 @@
 
 #include "cli/options/processor_options.h"
 
-/* Of this version: stages of the build chained, then the view. */
+/* Hash of this version: the stages of the build chained, then the view. */
 #define SELF_CHECK_HASH UINT64_C(0x19c8fc0d8cc14f74)
 
-/* Two views of 64x64 with depth, 400 Gaussians by the head `small`, four passes of refinement, and the view between
- * them, with these threads and features of the processor. CLI_OK, or an exit status after a message. */
+/* Builds two views of 64x64 with depth, 400 Gaussians by the head `small`, four passes of refinement, and draws the
+ * view between them, with these threads and processor features. Returns CLI_OK, or an exit status after a message. */
 int self_check_run(const processor_options *processor, uint64_t *hash);
 
 #endif

@@ -1,4 +1,4 @@
-/* Several figures of one thing. */
+/* Order statistics of repeated figures. */
 #ifndef TRIM3R_TOOLS_SPREAD_H
 #define TRIM3R_TOOLS_SPREAD_H
 
@@ -8,7 +8,7 @@ typedef struct spread {
     double median, least, most;
 } spread;
 
-/* Of `count` of them, at least one, which are sorted. */
+/* Sorts `count` figures, at least one, and returns their spread. */
 spread spread_of(double *values, uint32_t count);
 
 #endif

@@ -30,7 +30,7 @@ t3r_recorded_camera capture_camera_recorded(const t3r_capture_frame *frame)
     return c;
 }
 
-/* A double into [low, high) in fixed point. */
+/* Converts a double in [low, high) to fixed point. */
 static bool fixed_in(double value, uint32_t fraction_bits, int64_t low, int64_t high, int32_t *out)
 {
     int64_t fixed;

@@ -6,8 +6,8 @@
 #include "geometry/quaternion.h"
 #include "host/reason.h"
 
-#define MOST_SHIFT 8      /* of columns and rows between neighbours: a tenth of the picture */
-#define LEAST_MOTIONS 12u /* with poses at both ends */
+#define MOST_SHIFT 8      /* most columns and rows between neighbours: a tenth of the picture */
+#define LEAST_MOTIONS 12u /* fewest motions with poses at both ends */
 #define COARSE_NS INT64_C(4000000)
 #define FINE_NS INT64_C(250000)
 #define APART_NS INT64_C(50000000)
@@ -16,7 +16,7 @@
 
 /* ---- pictures ---- */
 
-/* 0..255; of colours the green one, of YUV luma. */
+/* Returns a brightness of 0..255: the green of colours, the luma of YUV. */
 static float brightness(const t3r_frame *f, uint32_t x, uint32_t y)
 {
     const uint8_t *row = f->planes[0] + (size_t)y * f->stride_bytes[0];
@@ -36,7 +36,7 @@ static float brightness(const t3r_frame *f, uint32_t x, uint32_t y)
     }
 }
 
-/* Box means of every second sample at most. */
+/* Computes box means from at most every second sample. */
 void clock_picture_of(const t3r_frame *frame, clock_picture *out)
 {
     float count[CLOCK_ROWS][CLOCK_COLUMNS] = {{0}};
@@ -64,7 +64,7 @@ void clock_picture_of(const t3r_frame *frame, clock_picture *out)
     }
 }
 
-/* Sum of squared differences, the second picture moved back by (right, down). */
+/* Returns the sum of squared differences after moving the second picture back by (right, down). */
 static float mismatch(const clock_picture *a, const clock_picture *b, int right, int down)
 {
     float sum = 0;
@@ -77,7 +77,7 @@ static float mismatch(const clock_picture *a, const clock_picture *b, int right,
     return sum;
 }
 
-/* Where the parabola through three equally spaced values is lowest, from the middle one. */
+/* Returns the minimum of the parabola through three equally spaced values, relative to the middle one. */
 static double lowest(float before, float middle, float after)
 {
     double curve = (double)before - 2 * (double)middle + (double)after;
@@ -111,8 +111,8 @@ void clock_motion_of(const clock_picture *before, const clock_picture *after, cl
 
 /* ---- poses ---- */
 
-/* What the picture should do between two poses: to the right and down, by rotation (radians) and by translation (world
- * units), seen in the first camera. */
+/* Predicts how the picture moves between two poses: right and down, by rotation (radians) and by translation (world
+ * units), in the first camera. */
 static void expected(const rigid *a, const rigid *b, double right[TERMS], double down[TERMS])
 {
     const rigid back = rigid_inverse(a), second = rigid_compose(&back, b); /* in the first camera */
@@ -126,8 +126,8 @@ static void expected(const rigid *a, const rigid *b, double right[TERMS], double
     down[1] = -local[1];
 }
 
-/* Least squares of the motions by the terms at one offset: the share of their squares that is explained. Both axes
- * share their factors but for the picture's aspect, which each axis's own factor takes up. */
+/* Fits the motions by the predicted terms at one offset, in least squares; returns the share of their variance that is
+ * explained. Both axes share their factors except for the picture's aspect, which each axis's own factor absorbs. */
 static double explained_at(const clock_motion *motions, size_t count, const trajectory *t, int64_t offset_ns,
                            size_t *used)
 {
@@ -155,7 +155,7 @@ static double explained_at(const clock_motion *motions, size_t count, const traj
     }
     for (int axis = 0; axis < 2; axis++) {
         double(*m)[TERMS] = a[axis];
-        /* a little of the diagonal keeps a term that does not occur at nothing */
+        /* a small ridge keeps the factor of a term that does not occur at 0 */
         double ridge = 1e-6 * (m[0][0] + m[1][1]) + 1e-30;
         double d0 = m[0][0] + ridge, d1 = m[1][1] + ridge, det = d0 * d1 - m[0][1] * m[1][0];
         if (det > 0) {
@@ -193,7 +193,7 @@ int clock_offset_estimate(const clock_motion *motions, size_t count, const traje
     for (size_t i = 0; i < count; i++) {
         moved += hypot(motions[i].right, motions[i].down);
     }
-    /* offsets at which much of the capture lies outside the trajectory do not compete */
+    /* excludes offsets at which much of the capture lies outside the trajectory */
     size_t enough = count / 2 > LEAST_MOTIONS ? count / 2 : LEAST_MOTIONS;
     if (count < LEAST_MOTIONS || moved / (double)count < 0.2 / CLOCK_COLUMNS) {
         return t3r_reason(error, error_bytes, "the clocks' offset is not to be told: %s",

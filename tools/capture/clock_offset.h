@@ -1,6 +1,6 @@
-/* How much a trajectory's clock is ahead of the camera's, from how the picture moves: how far is told by matching
- * neighbouring frames, made small, as a whole; how far it should be by the rotation and the translation between the
- * poses; the offset at which one explains the other best is the answer. */
+/* Estimates how far a trajectory's clock is ahead of the camera's from the motion of the picture. The motion is
+ * measured by matching whole neighbouring frames at a small size, and predicted from the rotation and translation
+ * between the poses. The result is the offset at which the prediction explains the motion best. */
 #ifndef TRIM3R_TOOLS_CLOCK_OFFSET_H
 #define TRIM3R_TOOLS_CLOCK_OFFSET_H
 
@@ -11,31 +11,31 @@
 #include "import/poses/trajectory.h"
 #include "trim3r.h"
 
-enum { CLOCK_COLUMNS = 80, CLOCK_ROWS = 60 }; /* pictures are looked at in this size */
+enum { CLOCK_COLUMNS = 80, CLOCK_ROWS = 60 }; /* working size of the pictures */
 
-/* How much the picture moved from one frame to the next, as shares of its width and height. */
+/* Motion of the picture from one frame to the next, relative to its width and height. */
 typedef struct clock_motion {
     int64_t from_ns, to_ns;
     double right, down;
 } clock_motion;
 
-/* A picture made small, its mean taken off. */
+/* A small picture with its mean subtracted. */
 typedef struct clock_picture {
     float value[CLOCK_ROWS][CLOCK_COLUMNS];
 } clock_picture;
 
 void clock_picture_of(const t3r_frame *frame, clock_picture *out);
-/* From one picture to the next; stamps are the caller's. */
+/* Measures the motion from one picture to the next; the caller sets the stamps. */
 void clock_motion_of(const clock_picture *before, const clock_picture *after, clock_motion *out);
 
 typedef struct clock_offset {
-    int64_t offset_ns; /* trajectory's time less camera's */
+    int64_t offset_ns; /* trajectory's time minus camera's */
     double explained;  /* of the motion's variance, 0..1 */
-    double runner_up;  /* the best explained elsewhere, 50 ms away or more */
+    double runner_up;  /* best explained share at least 50 ms away */
 } clock_offset;
 
-/* Searches offsets within +-range_ns of `around_ns`, both below 2^62. 0, or -1 with a reason: too few frames with
- * poses, too little motion, or an answer that is not clear. */
+/* Searches offsets within +-range_ns of `around_ns`, both below 2^62. Returns 0, or -1 with a reason: too few frames
+ * with poses, too little motion, or an ambiguous result. */
 int clock_offset_estimate(const clock_motion *motions, size_t count, const trajectory *t, int64_t around_ns,
                           int64_t range_ns, clock_offset *out, char *error, size_t error_bytes);
 

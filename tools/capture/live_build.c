@@ -9,7 +9,7 @@
 #include "reconstruction/reconstruction_error.h"
 #include "recording/pixel_layout.h"
 
-/* Of all rows without padding. */
+/* Returns the bytes of all rows without padding. */
 static size_t all_bytes(const t3r_frame *f)
 {
     size_t rows = (size_t)t3r_pixel_rows(f->format, 0, f->height) + t3r_pixel_rows(f->format, 1, f->height);
@@ -25,7 +25,7 @@ const char *live_build_lacks(const t3r_capture_frame *frame)
                                       : NULL;
 }
 
-/* The largest budget that a build may ask for. */
+/* Returns the largest budget that a build may request. */
 static uint32_t most_gaussians(const live_build *build)
 {
     uint64_t points = (uint64_t)build->r.config.width * build->r.config.height * build->r.context_count;
@@ -119,7 +119,7 @@ void live_build_close(live_build *build)
     *build = (live_build){0};
 }
 
-/* Packs rows: a driver's buffer may end with the last row's samples, without its padding. */
+/* Copies rows without padding: a driver's buffer may end after the last row's samples. */
 static const uint8_t *copy_rows(uint8_t **to, const uint8_t *from, uint32_t rows, size_t row_bytes, size_t stride_bytes)
 {
     const uint8_t *start = *to;
@@ -169,7 +169,7 @@ static int frame_error(t3r_status status, const t3r_capture_frame *frame)
     return cli_error(CLI_BAD_INPUT, "frame %" PRIu32 ": %s", frame->index, t3r_error_text(status));
 }
 
-/* The valid points of all views, in the arena that the build will take next. */
+/* Counts the valid points of all views, in the arena that the build will use next. */
 static int count_valid_points(live_build *build, const t3r_capture_frame *const *frames)
 {
     reconstruction *r = &build->r;

@@ -98,7 +98,7 @@ static const struct argp_option options[] = {
 
 /* ---- options ---- */
 
-/* Seconds below CAPTURE_MOST_OFFSET_S with up to nine digits behind the point, exactly. */
+/* Parses seconds below CAPTURE_MOST_OFFSET_S with up to nine decimal places, exactly. */
 static bool signed_seconds(const char *text, int64_t *ns)
 {
     bool negative = *text == '-';
@@ -176,7 +176,7 @@ static const char *name_of(int key)
     return o->name;
 }
 
-/* Which adapters use an option of the camera's, and what it needs besides. */
+/* The adapters that use a camera option, and what the option requires. */
 static const struct {
     int key;
     const char *adapters;
@@ -190,7 +190,7 @@ static const struct {
     {KEY_STALL, "v4l2 libcamera opencv", false},  {KEY_RECONNECT, "v4l2 libcamera opencv", false},
 };
 
-/* Whether the word is one of the words, each but the last with a space behind it. */
+/* Whether the word is one of the words, which are separated by spaces. */
 static bool is_among(const char *word, size_t length, const char *words)
 {
     for (const char *at = words; *at != '\0'; at += strspn(at, " ")) {
@@ -203,7 +203,7 @@ static bool is_among(const char *word, size_t length, const char *words)
     return false;
 }
 
-/* No option is taken that its adapter would pass over. */
+/* Refuses options that the source's adapter would ignore. */
 static void check_uses(struct argp_state *state, const capture_options *o)
 {
     size_t length = strcspn(o->source, ":");

@@ -15,7 +15,7 @@ typedef struct capture_options {
     t3r_recorded_camera intrinsics;
     bool has_intrinsics, fisheye;
     bool has_offset, estimate, has_centre;
-    int64_t offset_ns; /* given; of an estimate its centre */
+    int64_t offset_ns; /* given, or the centre of an estimate */
     const char *scene;
     recording_options stored; /* how the recording stores messages */
     bool list, json, sync, hash, local, quiet;
@@ -23,13 +23,13 @@ typedef struct capture_options {
     uint64_t max_bytes;
     double seconds, reconnect_seconds;
     reconstruction_options build;
-    uint64_t given; /* a bit for each KEY_* that stands in the command */
+    uint64_t given; /* a bit for each KEY_* on the command line */
 } capture_options;
 
-#define CAPTURE_MOST_OFFSET_S INT64_C(4000000000) /* of clocks, to either side */
+#define CAPTURE_MOST_OFFSET_S INT64_C(4000000000) /* of clocks, in either direction */
 
-/* Reads the command line; an option that is wrong, or that the source would pass over, ends the process with a message.
- * With `list` nothing else is to be read. */
+/* Reads the command line; an option that is wrong, or that the source would ignore, ends the process with a message.
+ * With `list` nothing else may be used. */
 void capture_options_read(int argc, char **argv, capture_options *o);
 
 #endif

@@ -8,7 +8,7 @@
 #include "cli/files/file_guard.h"
 #include "host/reason.h"
 
-#define MESSAGE_OVERHEAD 1024u /* of a message without its data, of a camera_info or a pose, of a chunk: below it */
+#define MESSAGE_OVERHEAD 1024u /* bound for a message without its data, a camera_info, a pose or a chunk */
 #define EVENT_BYTES 2048u
 #define MOST_STAMP_NS ((int64_t)1000000000 << 31)
 
@@ -87,7 +87,7 @@ static int end_file(capture_record *record)
     return wrong != 0 || closed != 0 ? failed(record) : 0;
 }
 
-/* Another file when this one has no room for so many bytes and its end. */
+/* Begins another file when this one has no room for so many bytes and its end. */
 static int make_room(capture_record *record, uint64_t bytes)
 {
     if (record->max_bytes == 0 ||

@@ -1,4 +1,4 @@
-/* What `trim3r capture` tells of a capture when it has ended. */
+/* The report of `trim3r capture` at the end of a capture. */
 #ifndef TRIM3R_TOOLS_CAPTURE_RESULT_H
 #define TRIM3R_TOOLS_CAPTURE_RESULT_H
 
@@ -6,7 +6,7 @@
 #include "capture/run.h"
 #include "capture/clock_offset.h"
 
-/* name: the source's, without passwords. On stdout, as lines or with --json as one object. */
+/* Prints the report on stdout, as lines or with --json as one object. name: the source's, without passwords. */
 void capture_result_print(const capture_options *o, const char *name, const t3r_capture *capture,
                           const capture_account *a, const clock_offset *offset);
 

@@ -13,7 +13,7 @@
 #include "recording/pixel_layout.h"
 #include "scene/scene_file.h"
 
-#define MOST_FAILED 100u /* frames in a row that cannot be read: the source is useless */
+#define MOST_FAILED 100u /* so many unreadable frames in a row: the source is unusable */
 #define RETRY_NS 100000000
 
 typedef struct run_state {
@@ -23,17 +23,17 @@ typedef struct run_state {
     capture_record *record; /* NULL = none */
     live_build build;
     bool building;         /* build is open */
-    bool built_once;       /* the one build of plan->every == 0 is done */
-    uint32_t next_context; /* which of build->context comes next */
-    uint64_t since_build;  /* frames fit for context since the last build or keep */
+    bool built_once;       /* the single build for plan->every == 0 is done */
+    uint32_t next_context; /* index into build->context of the next frame to use */
+    uint64_t since_build;  /* frames usable as context since the last build or kept frame */
     uint32_t failed_in_row;
-    double lost_since; /* 0: it is not */
+    double lost_since; /* 0: not lost */
     double first_seconds, drawn;
     bool visible; /* the progress line is on the screen */
-    int code;     /* of an event that could not be recorded */
+    int code;     /* status of an event that could not be recorded */
 } run_state;
 
-/* ---- small things ---- */
+/* ---- helpers ---- */
 
 static bool stopped(const capture_plan *plan)
 {
@@ -144,7 +144,7 @@ static void hear(void *user, const t3r_capture_event *event)
 
 /* ---- a frame ---- */
 
-/* The camera that the plan knows better than the source. */
+/* Completes a frame's camera by what the plan specifies, which overrides the source. */
 static int complete(run_state *s, t3r_capture_frame *frame)
 {
     const capture_plan *plan = s->plan;
@@ -152,7 +152,7 @@ static int complete(run_state *s, t3r_capture_frame *frame)
     const capture_account *a = s->account;
     bool resized = a->frames > 0 && (frame->frame.width != a->width || frame->frame.height != a->height);
     if (plan->intrinsics != NULL) {
-        /* after a change of format they are another size's */
+        /* after a change of format they belong to another size */
         frame->has_intrinsics = !resized;
         wrong = resized ? NULL : capture_camera_set_intrinsics(plan->intrinsics, &frame->camera);
     }
@@ -175,13 +175,13 @@ static uint32_t views_of(const capture_plan *plan)
     return plan->every > 0 || plan->build->context_count == 0 ? 2 : plan->build->context_count;
 }
 
-/* The index of the context frame that is waited for; without --context frames 0 and 1. */
+/* Returns the index of the next context frame; without --context frames 0 and 1. */
 static uint32_t context_at(const capture_plan *plan, uint32_t i)
 {
     return plan->build->context_count == 0 ? i : plan->build->context[i];
 }
 
-/* Opens the build with the first frame that it will use: those before may lack depth, and need less room. */
+/* Opens the build with the first frame that it uses: earlier ones may lack depth, and need less room. */
 static int open_build(run_state *s, const t3r_capture_frame *frame)
 {
     const capture_plan *plan = s->plan;
@@ -222,11 +222,11 @@ static int make_scene(run_state *s, const t3r_capture_frame *frame)
     a->context_count = r->context_count;
     memcpy(a->context, r->context, sizeof a->context);
     a->scene_hash = reconstruction_hash(r);
-    /* a scene of every build is written at the end: files need memory of the library */
+    /* repeated builds write a scene only at the end, because writing allocates */
     return s->plan->every > 0 ? CLI_OK : write_scene(s);
 }
 
-/* The one build of chosen frames. */
+/* Builds once, from the chosen frames. */
 static int build_chosen(run_state *s, const t3r_capture_frame *frame)
 {
     uint32_t wanted = context_at(s->plan, s->next_context);
@@ -245,7 +245,7 @@ static int build_chosen(run_state *s, const t3r_capture_frame *frame)
     return make_scene(s, frame);
 }
 
-/* A build with every N-th frame that can be context. */
+/* Builds with every N-th frame that is usable as context. */
 static int build_repeatedly(run_state *s, const t3r_capture_frame *frame)
 {
     if (live_build_lacks(frame) != NULL) {
@@ -293,7 +293,7 @@ static int handle(run_state *s, t3r_capture_frame *frame)
     if (ours && !t3r_capture_recorded(s->capture)) {
         int64_t now = clock_now_ns(clock[0] == 'b' ? CLOCK_BOOTTIME : CLOCK_MONOTONIC);
         double ms = (double)(now - frame->stamp_ns) * 1e-6;
-        if (ms >= 0 && ms < 60000) { /* else the driver's clock is not the one that it names */
+        if (ms >= 0 && ms < 60000) { /* else the driver's clock is not the one that it reports */
             add_time(&a->latency, ms);
         }
     }
@@ -308,8 +308,8 @@ static int handle(run_state *s, t3r_capture_frame *frame)
 
 /* ---- the loop ---- */
 
-/* Waits for a lost device: CLI_OK when it is back, or when it is time to stop. The time counts from when it was first
- * lost since its last frame: one that opens again and again and gives none is not back. */
+/* Waits for a lost device. Returns CLI_OK when it is back, or when it is time to stop. The time counts from the first
+ * loss since its last frame: a device that reopens again and again without a frame is not back. */
 static int reconnect(run_state *s)
 {
     double now = cli_now();

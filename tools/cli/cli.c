@@ -1,4 +1,4 @@
-/* What every subcommand shares. The state here is the process's own: its name in messages and its progress line. */
+/* What every subcommand shares. The state here is per process: its name in messages and its progress line. */
 #include "cli/cli.h"
 
 #include <inttypes.h>
@@ -64,7 +64,7 @@ int cli_error(int code, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    t3r_text_clean(message); /* names of files and what they hold stand in it */
+    t3r_text_clean(message); /* messages contain names and contents of files */
     if (kept.text != NULL) {
         snprintf(kept.text, kept.bytes, "%s", message);
     } else {
@@ -78,7 +78,7 @@ int cli_error(int code, const char *format, ...)
     return code;
 }
 
-/* "12 of 400 rows, 3 min left   " */
+/* Draws "12 of 400 rows, 3 min left   ". */
 static void draw_outer(double now)
 {
     uint32_t done = progress.outer.done, total = progress.outer.total;
@@ -151,7 +151,7 @@ void cli_progress_silence(void)
     progress.silent = true;
 }
 
-/* A decimal number at *text that fits 32 bits; *text moves behind it. */
+/* Parses a decimal number at *text that fits 32 bits; *text moves past it. */
 static int parse_u32(const char **text, uint32_t *value)
 {
     const char *p = *text;
@@ -192,7 +192,7 @@ int cli_parse_list_percent(const char *text, double *values, uint32_t most, uint
 {
     uint32_t n = 0;
     for (;;) {
-        /* digits and one point alone: strtod() would also take signs, exponents, hexadecimal and "nan" */
+        /* only digits and one point: strtod() would also take signs, exponents, hexadecimal and "nan" */
         size_t length = strspn(text, "0123456789.");
         char *end;
         if (n == most || length == 0) {

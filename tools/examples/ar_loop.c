@@ -1,10 +1,10 @@
-/* What glasses do: every frame becomes Gaussians as it comes in, and these are drawn from where the head will be when
- * the next one comes. A line a frame on stderr; on stdout the views, PPM pictures one behind the other:
+/* The loop of AR glasses: every frame becomes Gaussians as it arrives, and these are drawn from where the head will be
+ * when the next frame arrives. Prints a line per frame on stderr, and the views on stdout as consecutive PPM pictures:
  *
  *     trim3r room --frames 60 -o room.mcap
  *     ar_loop replay:room.mcap | ffplay -f image2pipe -c:v ppm -
  *
- * It is the same with v4l2:, libcamera: and opencv:, once locate() asks your tracker. */
+ * The same works with v4l2:, libcamera: and opencv:, once locate() asks your tracker. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -37,21 +37,21 @@ static bool next_frame(t3r_capture *source, t3r_capture_frame *frame)
     return got == T3R_CAPTURE_FRAME;
 }
 
-/* The camera of a frame: a recording knows it, live your tracker does. */
+/* Gets the camera of a frame: a recording has it; live, ask your tracker. */
 static bool locate(t3r_capture_frame *frame)
 {
     return frame->has_pose && frame->has_intrinsics;
 }
 
-/* The display's camera one frame later: moving on as it did from the last frame to this. */
+/* Predicts the display's camera one frame later, by repeating the motion from the last frame to this one. */
 static t3r_camera foresee(const t3r_camera *last, const t3r_camera *now)
 {
     t3r_camera next = {focal_q16, focal_q16, (SIDE - 1) << 15, (SIDE - 1) << 15, .distortion = T3R_DISTORTION_NONE};
-    double dot = 0; /* below 0 the last rotation is nearer as -q, which is the same one */
+    double dot = 0; /* negative: the last rotation is nearer as -q, which is the same rotation */
     for (int i = 0; i < 4; i++) {
         dot += (double)last->rotation_q30[i] * now->rotation_q30[i];
     }
-    for (int i = 0; i < 4; i++) { /* 2/3 keep its length within 0.5 to 1.5: the runtime normalises */
+    for (int i = 0; i < 4; i++) { /* 2/3 keeps the length within 0.5 to 1.5: the runtime normalises */
         const int64_t from = dot < 0 ? -(int64_t)last->rotation_q30[i] : last->rotation_q30[i];
         next.rotation_q30[i] = (int32_t)((2 * (int64_t)now->rotation_q30[i] - from) * 2 / 3);
     }

@@ -1,5 +1,5 @@
-/* What a product's own test does: frames that were recorded once must give the same bits ever after, on its processor,
- * by its compiler, with its next release. Every stage of every build and of every view is hashed:
+/* A product's own regression test: frames that were recorded once must always give the same bits, on its processor,
+ * with its compiler, with its next release. Every stage of every build and of every view is hashed:
  *
  *     replay_test room.mcap >room.txt        what it is now, a line a stage, to be kept beside the recording
  *     replay_test room.mcap room.txt         exit status 1 with the first line that is another, should a bit change */
@@ -18,7 +18,7 @@ static const t3r_target picture = {SIDE, SIDE, .rgb = &view[0][0][0], .rgb_strid
 
 typedef struct test {
     FILE *expected; /* NULL: lines are printed */
-    uint32_t frame; /* the last one of a build */
+    uint32_t frame; /* last frame of a build */
     uint32_t lines;
     bool failed;
 } test;
@@ -33,11 +33,11 @@ static void hear(void *user, t3r_stage stage, uint64_t hash)
         fputs(now, stdout);
     } else if (!t->failed && (fgets(then, sizeof then, t->expected) == NULL || strcmp(now, then) != 0)) {
         printf("line %" PRIu32 ": %sexpected: %s", t->lines, now, then);
-        t->failed = true; /* all that follows from it differs, too */
+        t->failed = true; /* later lines differ as well */
     }
 }
 
-/* The scene of the frames added, and a view of it from the last of them. */
+/* Builds the scene of the added frames, and draws a view of it from the last frame. */
 static t3r_status build(t3r_runtime *rt, t3r_camera camera)
 {
     camera.fx_q16 = camera.fy_q16 = SIDE << 16;
@@ -60,7 +60,7 @@ static t3r_status replay(t3r_runtime *rt, t3r_capture *source, test *t)
             status = build(rt, frame.camera);
         }
     }
-    return status == T3R_OK && views % VIEWS != 0 ? build(rt, frame.camera) : status; /* what is left over */
+    return status == T3R_OK && views % VIEWS != 0 ? build(rt, frame.camera) : status; /* a remainder of frames */
 }
 
 int main(int argc, char **argv)

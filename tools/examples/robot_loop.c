@@ -1,6 +1,6 @@
-/* What a robot does: all memory of its map is one block whose size is a promise. Two frames at a time become as many
- * Gaussians as that has room for, and the map tells how far ahead the way is clear. Nothing is allocated once the
- * camera is open, no number is a float, and which map fits is known when this compiles:
+/* The loop of a robot: all memory of its map is one block of guaranteed size. Two frames at a time become as many
+ * Gaussians as fit, and the map shows how far ahead the way is clear. Nothing is allocated once the camera is open, no
+ * number is a float, and the size of the map is fixed at compile time:
  *
  *     cc -DROBOT_BYTES=589824 ...      less room: fewer Gaussians; too little: an error of the compiler */
 #include <inttypes.h>
@@ -17,7 +17,7 @@ enum { SIDE = 128, VIEWS = 2 };
 
 static struct {
     _Alignas(T3R_ARENA_ALIGN) uint8_t arena[ROBOT_BYTES - sizeof(uint32_t[SIDE][SIDE])];
-    uint32_t depth_q20[SIDE][SIDE]; /* what is ahead, in scene units */
+    uint32_t depth_q20[SIDE][SIDE]; /* depth ahead, in scene units */
 } memory;
 _Static_assert(sizeof memory <= ROBOT_BYTES, "ROBOT_BYTES must be a multiple of T3R_ARENA_ALIGN");
 
@@ -28,7 +28,7 @@ _Static_assert(FITS(LEAST), "ROBOT_BYTES have no room for any map");
 static const t3r_target ahead = {SIDE, SIDE, .depth_q20 = &memory.depth_q20[0][0],
                                  .depth_stride_bytes = sizeof memory.depth_q20[0]};
 
-/* A frame that is no use is told and left out: the next one comes soon. */
+/* Reports an unusable frame, which is skipped: the next one follows soon. */
 static bool fine(t3r_status status, uint32_t frame)
 {
     if (status != T3R_OK) {
@@ -37,13 +37,14 @@ static bool fine(t3r_status status, uint32_t frame)
     return status == T3R_OK;
 }
 
-/* The camera of a frame: a recording knows it, live your odometry does. */
+/* Gets the camera of a frame: a recording has it; live, ask your odometry. */
 static bool locate(t3r_capture_frame *frame)
 {
     return frame->has_pose && frame->has_intrinsics;
 }
 
-/* The nearest thing in the middle third of what is ahead, in thousandths of world units; 0: there is nothing. */
+/* Returns the distance of the nearest surface in the middle third of the view, in thousandths of world units; 0: there
+ * is none. */
 static uint64_t clear_way(const t3r_scene_frame *frame)
 {
     uint32_t nearest = UINT32_MAX;
@@ -53,7 +54,7 @@ static uint64_t clear_way(const t3r_scene_frame *frame)
             nearest = depth != 0 && depth < nearest ? depth : nearest;
         }
     }
-    /* a scene unit is 2^exponent world units, where these are metres far below 2^20 of them */
+    /* a scene unit is 2^exponent world units; in metres, far fewer than 2^20 of them */
     return nearest == UINT32_MAX ? 0 : (uint64_t)nearest * 1000 >> (20 - frame->exponent);
 }
 
@@ -103,7 +104,7 @@ int main(int argc, char **argv)
         }
     }
     if (got != T3R_CAPTURE_END) {
-        printf("%s: stop\n", t3r_capture_error(source)); /* blind: stand still */
+        printf("%s: stop\n", t3r_capture_error(source)); /* without sight: stand still */
     }
     t3r_capture_close(source);
     return got == T3R_CAPTURE_END ? 0 : 1;

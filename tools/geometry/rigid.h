@@ -10,10 +10,10 @@ typedef struct rigid {
 
 extern const rigid rigid_identity;
 
-/* outer after inner: from inner's child to outer's parent. */
+/* Returns outer after inner: from inner's child to outer's parent. */
 rigid rigid_compose(const rigid *outer, const rigid *inner);
 rigid rigid_inverse(const rigid *transform);
-/* At t of the way from a to b, 0..1: the straight line between the positions, the arc between the rotations (slerp), on
+/* Interpolates at t, 0..1, from a to b: linearly between the positions, along the arc between the rotations (slerp),
  * the shorter way. */
 rigid rigid_between(const rigid *a, const rigid *b, double t);
 void rigid_apply(const rigid *transform, const double point[3], double out[3]);

@@ -10,7 +10,7 @@
 
 struct html_page {
     char *title, *introduction;
-    char *table_text, *body_text; /* behind the streams */
+    char *table_text, *body_text; /* buffers of the streams */
     size_t table_bytes, body_bytes;
     FILE *table, *body;
     bool within_table, within_row, heading_done, within_section, within_strip, failed;
@@ -60,7 +60,7 @@ static const char style[] =
     "1fr; } }\n"
     "</style>\n</head>\n<body>\n";
 
-/* "data:image/png;base64,..." */
+/* Writes "data:image/png;base64,...". */
 static void write_picture(html_page *page, uint32_t width, uint32_t height, uint32_t channels, const uint8_t *samples)
 {
     size_t count;

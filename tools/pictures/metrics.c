@@ -69,7 +69,7 @@ double metric_ssim(const uint8_t *target, const uint8_t *render, const uint8_t *
     if (planes == NULL) {
         return NAN;
     }
-    /* windowed means of a, b, a a, b b, a b; then the map and the filter's work */
+    /* windowed means of a, b, a a, b b, a b; then the map and the filter's workspace */
     double *blurred[5], *map = planes + 5 * pixels, *work = planes + 6 * pixels;
     double taps[WINDOW_TAPS];
     gaussian_window(taps);
@@ -103,12 +103,13 @@ double metric_ssim(const uint8_t *target, const uint8_t *render, const uint8_t *
     return mean;
 }
 
-/* Mean of r, g, b as numpy's gradient sees it: central differences inside, one-sided ones at the edges. */
+/* Returns the mean of r, g and b. */
 static double grey(const uint8_t *rgb, size_t pixel)
 {
     return ((double)rgb[3 * pixel] + rgb[3 * pixel + 1] + rgb[3 * pixel + 2]) / 3;
 }
 
+/* Returns the slope as numpy's gradient does: central differences inside, one-sided ones at the edges. */
 static double slope(const uint8_t *rgb, size_t base, uint32_t at, uint32_t n, size_t step)
 {
     uint32_t before = at > 0 ? at - 1 : at, after = at + 1 < n ? at + 1 : at;

@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-/* Where the border rule finds sample `i` of a line of n samples. */
+/* Returns the index of sample `i` of a line of n samples under the border rule. */
 static size_t border_index(int64_t i, int64_t n, metrics_border border)
 {
     if (border == METRICS_BORDER_REPLICATE) {

@@ -1,4 +1,4 @@
-/* Separable filters on planes of doubles, for the measures alone. */
+/* Separable filters on planes of doubles, only for the measures. */
 #ifndef TRIM3R_TOOLS_METRICS_FILTER_H
 #define TRIM3R_TOOLS_METRICS_FILTER_H
 
@@ -9,8 +9,8 @@ typedef enum metrics_border {
     METRICS_BORDER_REPLICATE /* a a a | a b c */
 } metrics_border;
 
-/* Correlates rows with across[0..2 radius] and columns with down[0..2 radius]. `work` holds another plane; `out` may
- * be `in`. Needs no heap. */
+/* Correlates rows with across[0..2 radius] and columns with down[0..2 radius]. `work` is another plane; `out` may be
+ * `in`. Needs no heap. */
 void metrics_filter(const double *in, double *out, double *work, uint32_t width, uint32_t height, const double *across,
                     const double *down, uint32_t radius, metrics_border border);
 

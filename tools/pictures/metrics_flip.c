@@ -62,7 +62,7 @@ static double lab_curve(double t)
     return t > delta * delta * delta ? cbrt(t) : t / (3 * delta * delta) + 4.0 / 29;
 }
 
-/* Linear RGB to L*a*b* with Hunt's adjustment: chroma fades with lightness. */
+/* Converts linear RGB to L*a*b* with Hunt's adjustment: chroma decreases with lightness. */
 static void hunt_lab(flip_space *space, const double rgb[3], double lab[3])
 {
     double xyz[3];
@@ -97,7 +97,7 @@ static void flip_space_init(flip_space *space)
     space->largest = pow(hyab(green, blue), exponent_colour);
 }
 
-/* Samples of exp(-x^2 / (2 sigma^2)), x = -radius..radius; returns their sum. */
+/* Samples exp(-x^2 / (2 sigma^2)), x = -radius..radius; returns the sum. */
 static double bell(double *taps, uint32_t radius, double sigma)
 {
     double sum = 0;
@@ -109,13 +109,13 @@ static double bell(double *taps, uint32_t radius, double sigma)
     return sum;
 }
 
-/* Contrast sensitivity of one channel: a1 sqrt(pi / b1) exp(-pi^2 d^2 / b1) + the same of a2, b2, where d is in
- * degrees; normalised to a sum of 1. Each term is separable. `sum` and `term` hold a plane. */
+/* Filters one channel by its contrast sensitivity: a1 sqrt(pi / b1) exp(-pi^2 d^2 / b1) + the same of a2, b2, where d
+ * is in degrees; normalised to a sum of 1. Each term is separable. `sum` and `term` hold a plane. */
 static void contrast_filter(double *plane, double *sum, double *term, double *work, uint32_t width, uint32_t height,
                             const double a[2], const double b[2])
 {
     double taps[2][MOST_TAPS], scaled[MOST_TAPS], weight[2], total = 0;
-    double widest = sqrt(0.04 / (2 * PI * PI)); /* the largest b of all channels gives the radius of all */
+    double widest = sqrt(0.04 / (2 * PI * PI)); /* the largest b of all channels determines the common radius */
     uint32_t radius = (uint32_t)ceil(3 * widest * PIXELS_A_DEGREE);
     size_t pixels = (size_t)width * height;
     for (int t = 0; t < 2; t++) {
@@ -143,7 +143,7 @@ static void contrast_filter(double *plane, double *sum, double *term, double *wo
     }
 }
 
-/* The image as opponent colours: Y, Cx, Cz (linear, as L*a*b* would be without its cube root). */
+/* Converts the image to opponent colours: Y, Cx, Cz (linear, as L*a*b* would be without its cube root). */
 static void opponent_planes(flip_space *space, const uint8_t *rgb, size_t pixels, double *planes)
 {
     for (size_t i = 0; i < pixels; i++) {
@@ -169,8 +169,8 @@ static void perceived_lab(flip_space *space, const double *planes, size_t pixels
     hunt_lab(space, rgb, lab);
 }
 
-/* Taps of a detector along its own axis, such that with bell `smooth` across the positive weights sum to 1 and the
- * negative ones to -1: the first derivative of a bell finds edges, the second points. */
+/* Computes a detector's taps along its own axis, such that with the Gaussian `smooth` across, the positive weights sum
+ * to 1 and the negative ones to -1. The first derivative of a Gaussian detects edges, the second points. */
 static void detector_taps(int points, double sigma, uint32_t radius, double *taps, double *smooth)
 {
     double across = bell(smooth, radius, sigma), positive = 0, negative = 0;
@@ -185,7 +185,8 @@ static void detector_taps(int points, double sigma, uint32_t radius, double *tap
     }
 }
 
-/* strength = length of the detector's answer along x and along y, on luminance in 0..1. `answer` holds two planes. */
+/* Computes strength = length of the vector of the detector's responses along x and y, on luminance in 0..1. `answer`
+ * holds two planes. */
 static void feature_strength(const double *luma, double *strength, double *answer, double *work, uint32_t width,
                              uint32_t height, int points)
 {
@@ -201,7 +202,7 @@ static void feature_strength(const double *luma, double *strength, double *answe
     }
 }
 
-/* Small differences fill most of the range, the rare large ones the rest. */
+/* Maps differences so that small ones fill most of the range, and rare large ones the rest. */
 static double spread_difference(double power, double largest)
 {
     double knee = share_colour * largest;

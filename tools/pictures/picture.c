@@ -18,7 +18,7 @@
 #include "trim3r.h"
 #include "cli/files/whole_file.h"
 
-/* Both libraries report errors by longjmp. Everything that must survive one or be freed after one lives in a struct
+/* Both libraries report errors by longjmp. Everything that must survive a jump, or be freed after one, is in a struct
  * of the caller's, so that no local variable is read after a jump. */
 
 #define REASON_BYTES 160
@@ -89,7 +89,8 @@ static int png_decode(png_work *work, picture *out)
     }
     png_init_io(work->png, work->file);
     png_set_user_limits(work->png, T3R_MAX_SIDE, T3R_MAX_SIDE);
-    /* pixels alone: a text, profile or preview may unpack to megabytes; -1: nor what libpng knows of these */
+    /* read only pixels: a text, profile or preview may decompress to megabytes; -1: all such chunks, also those that
+     * libpng knows */
     png_set_keep_unknown_chunks(work->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
     png_read_info(work->png, work->info);
     png_byte colour_type = png_get_color_type(work->png, work->info);
@@ -206,7 +207,7 @@ static void jpeg_on_error(j_common_ptr jpeg)
     jpeg_fail((jpeg_work *)jpeg->err, message);
 }
 
-/* The library only warns about data cut short or damaged, and fills in grey: here that is an error. Stray bytes
+/* Treats warnings as errors: for truncated or damaged data the library only warns, and fills in grey. Stray bytes
  * before a marker, which some cameras write, are harmless. */
 static void jpeg_on_message(j_common_ptr jpeg, int level)
 {
@@ -274,7 +275,8 @@ static int read_jpeg(FILE *file, const char *path, bool header_only, picture *ou
     return 0;
 }
 
-/* ---- either ---------------------------------------------------------------------------------------------------- */
+/* ---- both
+ * ---------------------------------------------------------------------------------------------------------- */
 
 static int read_stream(FILE *file, const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
 {
@@ -315,7 +317,7 @@ static int read_either(const char *path, bool header_only, picture *out, char *e
 int picture_parse(const uint8_t *bytes, size_t count, picture *out, char *error, size_t error_bytes)
 {
     memset(out, 0, sizeof *out);
-    FILE *file = count > 0 ? fmemopen((void *)(uintptr_t)bytes, count, "rb") : NULL; /* read alone */
+    FILE *file = count > 0 ? fmemopen((void *)(uintptr_t)bytes, count, "rb") : NULL; /* only read */
     if (file == NULL) {
         return t3r_reason(error, error_bytes, count > 0 ? "out of memory" : "the picture is empty");
     }

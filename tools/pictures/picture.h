@@ -12,12 +12,12 @@ typedef struct picture {
     void *samples;     /* uint8_t or uint16_t (host order), rows without gaps; picture_free() */
 } picture;
 
-/* 0, or -1 with "what, where" in error[]. Sizes over T3R_MAX_SIDE are refused. PNG palettes and alpha become RGB;
- * a 16-bit grey PNG stays 16 bits. */
+/* Reads a picture. Returns 0, or -1 with "what, where" in error[]. Sizes over T3R_MAX_SIDE are refused. PNG palettes
+ * and alpha become RGB; a 16-bit grey PNG stays 16 bits. */
 int picture_read(const char *path, picture *out, char *error, size_t error_bytes);
-/* The same of a file's bytes in memory; "what" in error[]. */
+/* The same for a file's bytes in memory; "what" in error[]. */
 int picture_parse(const uint8_t *bytes, size_t count, picture *out, char *error, size_t error_bytes);
-/* The sides of a picture as its header gives them, nothing decoded; errors as above. */
+/* Reads the sides of a picture from its header without decoding; errors as above. */
 int picture_size(const char *path, uint32_t *width, uint32_t *height, char *error, size_t error_bytes);
 int picture_write_png(const char *path, const picture *in, char *error, size_t error_bytes);
 void picture_free(picture *p);

@@ -2,7 +2,7 @@
 
 #include <stdint.h>
 
-/* Pixels of the picture. */
+/* In pixels of the picture. */
 #define LEFT 74
 #define TOP 24
 #define COLUMN 84
@@ -10,7 +10,7 @@
 #define LEGEND_WIDTH 290
 #define LEGEND_ROW 20
 
-/* Hues a golden angle apart: neighbours in the table differ, and the lightness suits both grounds. */
+/* Returns hues a golden angle apart, so that neighbours in the table differ. */
 static int hue(uint32_t index)
 {
     return (int)((uint64_t)index * 13751 / 100 % 360);

@@ -1,4 +1,4 @@
-/* The arena as an SVG: stages across, bytes upwards, each buffer a block from its first to its last stage. */
+/* Draws the arena as an SVG: stages across, bytes upwards, each buffer a block from its first to its last stage. */
 #ifndef TRIM3R_TOOLS_PLAN_PICTURE_H
 #define TRIM3R_TOOLS_PLAN_PICTURE_H
 
@@ -6,7 +6,7 @@
 
 #include "trim3r.h"
 
-/* Reads in light and in dark surroundings. Write errors stay in the stream (ferror). */
+/* Writes the picture, readable on light and dark backgrounds. Write errors stay in the stream (ferror). */
 void plan_picture_write(FILE *file, const t3r_plan_info *plan);
 
 #endif

@@ -32,7 +32,7 @@ t3r_status bench_views_add(const bench_views *views, t3r_runtime *runtime)
             .height = views->height,
             .planes = {views->rgb[v]},
             .stride_bytes = {3 * views->width},
-            .depth = (const uint8_t *)views->depth[v], /* little-endian hosts: times are compared, not bits */
+            .depth = (const uint8_t *)views->depth[v], /* for little-endian hosts: times are compared, not bits */
             .depth_width = views->width,
             .depth_height = views->height,
             .depth_stride_bytes = 2 * views->width,

@@ -14,9 +14,9 @@ typedef struct bench_views {
     t3r_camera camera[T3R_MAX_VIEWS];
 } bench_views;
 
-/* Frames 0, 2, ... at that size. False: out of memory. bench_views_free() in any case. */
+/* Draws frames 0, 2, ... at that size. False: out of memory. bench_views_free() is due in any case. */
 bool bench_views_draw(bench_views *views, uint32_t width, uint32_t height, uint32_t count);
-/* Empties the runtime and adds them. */
+/* Empties the runtime and adds the views. */
 t3r_status bench_views_add(const bench_views *views, t3r_runtime *runtime);
 void bench_views_free(bench_views *views);
 

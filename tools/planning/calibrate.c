@@ -11,9 +11,9 @@
 #include "planning/price_fit.h"
 #include "host/threads.h"
 
-/* Configurations in which each kind of work weighs much in one and little in another. */
+/* Configurations in which each kind of work dominates in one and matters little in another. */
 static const struct {
-    uint32_t width, height, views, percent; /* of the points kept */
+    uint32_t width, height, views, percent; /* percent of the points kept */
     const char *head;
     uint32_t clusters, batches, passes;
     t3r_depth depth;
@@ -49,8 +49,8 @@ typedef struct trial {
     void *arena;
     bench_views views;
     uint8_t *picture;
-    stage_clock clock; /* with the calibration's threads */
-    stage_times least; /* of all runs */
+    stage_clock clock; /* uses the calibration's threads */
+    stage_times least; /* least times of all runs */
 } trial;
 
 static t3r_config config_of(uint32_t index, const processor_options *processor)
@@ -113,7 +113,7 @@ static void close_trial(trial *t)
     chosen_head_close(&t->head);
 }
 
-/* A build, and a view between the first two of its own. */
+/* Builds, and draws a view between the first two of its own. */
 static t3r_status build_and_draw(trial *t)
 {
     const uint32_t width = t->config.width, height = t->config.height;
@@ -144,7 +144,7 @@ static uint32_t rounded(double price)
     return price >= UINT32_MAX ? UINT32_MAX : (uint32_t)(price + 0.5);
 }
 
-/* The prices of a stage's kinds of work. Returns the largest error. */
+/* Fits the prices of a stage's kinds of work. Returns the largest error. */
 static double fit_stage(const trial *trials, t3r_stage stage, t3r_prices *prices)
 {
     price_fit fit = {0};
@@ -166,12 +166,12 @@ static double fit_stage(const trial *trials, t3r_stage stage, t3r_prices *prices
     }
     const double error = price_fit_solve(&fit, found);
     for (uint32_t k = 0; k < fit.kinds; k++) {
-        prices->milli[kinds[k]] = rounded(found[k] * 1e12); /* picoseconds */
+        prices->milli[kinds[k]] = rounded(found[k] * 1e12); /* to picoseconds */
     }
     return error;
 }
 
-/* Round after round through all trials, so that a slow moment of the machine hits none of them each time. */
+/* Runs all trials in each round, so that a slow moment of the machine does not hit all runs of one trial. */
 static int run_all(trial *trials, uint32_t rounds)
 {
     int code = CLI_OK;

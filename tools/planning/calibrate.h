@@ -1,15 +1,15 @@
-/* What a unit of each kind of work takes on this machine: builds of the built-in room are timed stage by stage, and
- * prices are fitted to the times. */
+/* Measures the time of a unit of each kind of work on this machine: times builds of the built-in room stage by stage,
+ * and fits prices to the times. */
 #ifndef TRIM3R_TOOLS_CALIBRATE_H
 #define TRIM3R_TOOLS_CALIBRATE_H
 
 #include "cli/options/processor_options.h"
 #include "trim3r.h"
 
-#define CALIBRATE_ROUNDS 5u /* runs of each trial: the least time of a stage counts */
+#define CALIBRATE_ROUNDS 5u /* runs of each trial; the least time of a stage counts */
 
-/* CLI_OK, or an exit status of cli.h after a message. `errors` gets for each stage the largest error of its fitted
- * times over the trials, as a share of the measured time; NULL = not wanted. */
+/* Returns CLI_OK, or an exit status of cli.h after a message. `errors` receives for each stage the largest error of its
+ * fitted times over the trials, relative to the measured time; NULL = not wanted. */
 int calibrate(const processor_options *processor, uint32_t rounds, t3r_prices *prices, double errors[T3R_STAGE_COUNT]);
 
 #endif

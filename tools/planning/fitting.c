@@ -11,8 +11,8 @@
 #include "reconstruction/reconstruction_error.h"
 #include "planning/calibrate.h"
 
-#define SHORT_ROUNDS 2u /* of a calibration in passing: some two seconds */
-#define SHOWN_MOST 16u  /* rows of a list as text */
+#define SHORT_ROUNDS 2u /* rounds of a short calibration: about two seconds */
+#define SHOWN_MOST 16u  /* most rows of the printed list */
 
 static const char *const every_head[] = {"small", "tiny", "analytic"};
 enum { HEADS = sizeof every_head / sizeof every_head[0] };
@@ -58,7 +58,7 @@ static const char *head_name(const fitting_choices *list, const t3r_choice *choi
     return "";
 }
 
-/* Those of every head that was opened. */
+/* Finds the choices of every head that was opened. */
 static int find(fitting_choices *list, const t3r_config *config, const t3r_limits *limits)
 {
     list->count = 0;
@@ -76,7 +76,7 @@ static int find(fitting_choices *list, const t3r_config *config, const t3r_limit
     return CLI_OK;
 }
 
-/* What would fit least and fastest. */
+/* Reports the smallest and the fastest settings when nothing fits. */
 static int refuse(fitting_choices *list, const t3r_config *config, const t3r_limits *limits)
 {
     t3r_limits any = *limits;

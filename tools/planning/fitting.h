@@ -9,13 +9,13 @@
 #include "trim3r.h"
 
 typedef struct fitting_options {
-    uint64_t bytes;       /* of the arena; 0 = any */
-    uint64_t nanoseconds; /* of a build; 0 = any */
+    uint64_t bytes;       /* limit of the arena; 0 = any */
+    uint64_t nanoseconds; /* limit of a build; 0 = any */
     const char *machine;  /* a file of machine.h; NULL = this machine */
 } fitting_options;
 
-/* The machine of that file, whose prices must be of so many threads; without a file this one, measured at once. CLI_OK,
- * or an exit status of cli.h after a message. */
+/* Reads the machine of that file, whose prices must be for so many threads; without a file, measures this machine.
+ * Returns CLI_OK, or an exit status of cli.h after a message. */
 int fitting_machine(const fitting_options *options, uint32_t threads, machine *m);
 
 /* Prints the list; what the configuration leaves open is 0 Gaussians and T3R_ANY_REFINE. head: NULL = each. An

@@ -19,7 +19,7 @@
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
-/* A whole number in [low, high] of that name. 0, or -1 with the reason. */
+/* Reads a whole number in [low, high] of that name. Returns 0, or -1 with the reason. */
 static int number_of(const cJSON *object, const char *key, double low, double high, uint32_t *value, char *error,
                      size_t error_bytes)
 {

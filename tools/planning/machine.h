@@ -1,9 +1,9 @@
-/* A machine as plans know it: what a unit of each kind of work takes there. A file of JSON, which `bench --calibrate`
- * writes and `plan --machine` reads on any machine:
+/* A machine as plans model it: the time of a unit of each kind of work. A JSON file, which `bench --calibrate` writes
+ * and `plan --machine` reads on any machine:
  *
  *     {"trim3r_machine": 1, "bits_epoch": 7, "threads": 1, "cpu_used": "avx2", "picoseconds": {"image": 9000, ...}}
  *
- * "picoseconds" has every kind of T3R_WORKS by its name and nothing else. */
+ * "picoseconds" has exactly the kinds of T3R_WORKS, by name. */
 #ifndef TRIM3R_TOOLS_MACHINE_H
 #define TRIM3R_TOOLS_MACHINE_H
 
@@ -12,17 +12,17 @@
 
 #include "trim3r.h"
 
-#define MACHINE_MAX_BYTES ((size_t)1 << 16) /* of a file */
+#define MACHINE_MAX_BYTES ((size_t)1 << 16) /* most bytes of a file */
 
 typedef struct machine {
     t3r_prices prices;
-    uint32_t threads; /* 1..T3R_MAX_WORKERS, of which the prices are */
-    char cpu[64];     /* vector extensions, as t3r_cpu_describe() names them */
+    uint32_t threads; /* 1..T3R_MAX_WORKERS; the prices are for so many */
+    char cpu[64];     /* vector extensions, named as by t3r_cpu_describe() */
 } machine;
 
-/* Of a file's text. 0, or -1 with "what, where" in error[]. */
+/* Parses a file's text. Returns 0, or -1 with "what, where" in error[]. */
 int machine_parse(machine *m, const char *text, size_t bytes, char *error, size_t error_bytes);
-/* 0, or -1 with "path: why" in error[]. */
+/* Returns 0, or -1 with "path: why" in error[]. */
 int machine_read(machine *m, const char *path, char *error, size_t error_bytes);
 int machine_write(const machine *m, const char *path, char *error, size_t error_bytes);
 

@@ -4,8 +4,8 @@
 
 #define SWEEPS 20000u
 
-/* Coordinate descent on | A x - 1 |^2, x >= 0, where row i of A has the units of time i over that time. The kinds are
- * few and the sum is convex, so that sweeps end at its least. */
+/* Minimises | A x - 1 |^2, x >= 0, by coordinate descent, where row i of A has the units of time i divided by that
+ * time. The kinds are few and the sum is convex, so the sweeps converge to the minimum. */
 double price_fit_solve(const price_fit *fit, double prices[PRICE_FIT_KINDS])
 {
     double left[PRICE_FIT_TIMES], norm[PRICE_FIT_KINDS] = {0}; /* 1 - A x; squared length of each column */

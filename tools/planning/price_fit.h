@@ -1,4 +1,4 @@
-/* Prices that explain times: each time is a sum of units times the price of their kind. */
+/* Fits prices to times: each time is the sum over all kinds of units times price. */
 #ifndef TRIM3R_TOOLS_PRICE_FIT_H
 #define TRIM3R_TOOLS_PRICE_FIT_H
 
@@ -13,7 +13,7 @@ typedef struct price_fit {
     double seconds[PRICE_FIT_TIMES];                /* above 0 */
 } price_fit;
 
-/* Prices of at least 0 with which the sum of the squared relative errors of the times is least. A kind without any unit
+/* Finds prices of at least 0 that minimise the sum of the squared relative errors of the times. A kind without any unit
  * gets 0. Returns the largest of these errors. */
 double price_fit_solve(const price_fit *fit, double prices[PRICE_FIT_KINDS]);
 

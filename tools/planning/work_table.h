@@ -1,4 +1,4 @@
-/* How much work a build is, stage by stage: operations, and with a machine's prices milliseconds. */
+/* The work of a build, stage by stage: operations, and with a machine's prices milliseconds. */
 #ifndef TRIM3R_TOOLS_WORK_TABLE_H
 #define TRIM3R_TOOLS_WORK_TABLE_H
 
@@ -6,7 +6,7 @@
 
 #include "trim3r.h"
 
-/* "operations" by stage; with prices (else NULL) also "stages_ms", "build_ms" and "render_ms". */
+/* Adds "operations" by stage; with prices (else NULL) also "stages_ms", "build_ms" and "render_ms". */
 void work_table_add_json(cJSON *object, const t3r_work_counts *work, const t3r_prices *prices);
 void work_table_print(const t3r_work_counts *work, const t3r_prices *prices);
 

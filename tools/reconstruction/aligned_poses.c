@@ -9,8 +9,8 @@
 #include "geometry/quaternion.h"
 #include "import/poses/poses_output.h"
 
-/* Of the rotation that turns one quaternion into the other. The vector part of their quotient, unlike its scalar part,
- * keeps small angles exact. */
+/* Returns the angle of the rotation from one quaternion to the other. It uses the vector part of their quotient, which,
+ * unlike the scalar part, keeps small angles exact. */
 static double degrees_between(const int32_t a_q30[4], const int32_t b_q30[4])
 {
     double back[4], b[4], quotient[4];

@@ -1,4 +1,4 @@
-/* The start of an outside optimiser: a build's context views and points as a COLMAP model. */
+/* Writes the start of an outside optimiser: a build's context views and points as a COLMAP model. */
 #ifndef TRIM3R_TOOLS_COLMAP_START_H
 #define TRIM3R_TOOLS_COLMAP_START_H
 
@@ -12,12 +12,12 @@ typedef struct colmap_start {
     const t3r_recording *recording;
     const char *path; /* of the recording, for messages */
     const t3r_scene *scene;
-    const reconstruction_account *told; /* the views, with the poses that they were built with */
+    const reconstruction_account *told; /* the views, with the poses built with */
     bool local, sourced;                /* as in colmap_model */
 } colmap_start;
 
-/* Writes the model into a folder that was begun, and commits it; `name` is the folder's, for messages. An exit status
- * of cli.h. */
+/* Writes the model into a folder that was begun, and commits it; `name` is the folder's, for messages. Returns an exit
+ * status of cli.h. */
 int colmap_start_write(const colmap_start *start, whole_folder *folder, const char *name);
 
 #endif

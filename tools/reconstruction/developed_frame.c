@@ -15,7 +15,7 @@ int developed_frame(const t3r_recording *recording, const char *path, uint32_t i
     if (code != CLI_OK) {
         return code;
     }
-    /* in an arena of its own: the one that holds a scene cannot take frames */
+    /* in an arena of its own, because one that holds a scene cannot take frames */
     t3r_config config = t3r_default_config(width, height, 1, 1);
     t3r_runtime *runtime;
     t3r_plan_info plan;

@@ -120,7 +120,7 @@ t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *
 
 /* ---- the arena -------------------------------------------------------------------------------------------- */
 
-/* Arena of the wanted size, runtime in it, hooks bound. */
+/* Allocates an arena of the requested size, initialises the runtime in it, and binds hooks. */
 static int open_arena(reconstruction *r, const reconstruction_options *options)
 {
     t3r_plan_info plan;
@@ -183,7 +183,7 @@ t3r_camera reconstruction_camera(const t3r_camera *camera, uint32_t from_width, 
     return out;
 }
 
-/* Which frames give no depth together, and why. */
+/* Reports which frames give no depth together, and why. */
 static int stereo_error(const t3r_runtime *runtime, const reconstruction *r, const char *path)
 {
     uint32_t partner;
@@ -198,7 +198,8 @@ static int build_error(const reconstruction *r, t3r_status status, const char *p
                                     : reconstruction_error(status, path, &r->config, r->arena_bytes);
 }
 
-/* By stereo only the analysis knows which points exist: one with as little as possible besides. */
+/* Counts points by stereo: only the analysis knows which points exist, so it runs one with as little else as
+ * possible. */
 static int count_matched_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path,
                                 reconstruction_points *points)
 {
@@ -228,7 +229,7 @@ static int count_matched_points(const reconstruction *r, const t3r_capture_frame
     return code;
 }
 
-/* Counts the developed depth: the runtime's own resize and undistortion decide which points exist. */
+/* Counts points in the developed depth: the runtime's own resize and undistortion decide which points exist. */
 static int count_measured_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path,
                                  reconstruction_points *points)
 {
@@ -312,7 +313,7 @@ int reconstruction_views(reconstruction *r, const t3r_recording *recording, cons
     return choose_context(r, recording, path, options, frames);
 }
 
-/* What the wanted source of depth needs. */
+/* Checks what the requested source of depth needs. */
 static int need_depth(const reconstruction *r, const char *path, const t3r_capture_frame *frames, t3r_depth depth)
 {
     if (depth == T3R_DEPTH_STEREO) {
@@ -380,7 +381,8 @@ void reconstruction_request(reconstruction *r, const reconstruction_options *opt
     r->config.max_gaussians = r->config.gaussians;
 }
 
-/* Head, settings, budget, arena; of a stream that has `keyframes` at hand, or of the context frames (0). */
+/* Prepares head, settings, budget and arena, for a stream with `keyframes` live keyframes, or for the context frames
+ * (0). */
 static int prepare(reconstruction *r, const char *path, const reconstruction_options *options,
                    const t3r_capture_frame *frames, uint32_t keyframes)
 {
@@ -418,7 +420,7 @@ static int prepare(reconstruction *r, const char *path, const reconstruction_opt
     return code == CLI_OK ? bind_head(r, options) : code;
 }
 
-/* From the chosen frames; `planes` are the importance of the allocation `given`, NULL for the others. */
+/* Builds from the chosen frames; `planes` are the importance for the allocation `given`, else NULL. */
 static int build_from(reconstruction *r, const char *path, const reconstruction_options *options,
                       const t3r_capture_frame *frames, const uint16_t *const *planes)
 {
@@ -442,7 +444,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     return status == T3R_OK ? CLI_OK : build_error(r, status, path);
 }
 
-/* The same, with what the allocation `given` goes by. */
+/* The same, after reading the importance for the allocation `given`. */
 static int build(reconstruction *r, const t3r_recording *recording, const char *path,
                  const reconstruction_options *options)
 {

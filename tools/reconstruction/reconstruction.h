@@ -1,8 +1,8 @@
 /* One run of the runtime on a recording: what build, eval, replay and bench share.
  *
- * Chosen frames go into an arena of the wanted size, the hooks are set, the scene is built; the caller then
- * renders, changes the budget or writes files through `runtime`, and closes. The same holder takes a scene that
- * comes from a file. Functions here report on stderr and return an exit status of cli.h. */
+ * Chosen frames go into an arena of the requested size, the hooks are set, the scene is built; the caller then renders,
+ * changes the budget or writes files through `runtime`, and closes. The same struct holds a scene from a file.
+ * Functions here report on stderr and return an exit status of cli.h. */
 #ifndef TRIM3R_TOOLS_RECONSTRUCTION_H
 #define TRIM3R_TOOLS_RECONSTRUCTION_H
 
@@ -21,33 +21,33 @@
 
 typedef enum arena_choice { ARENA_FULL, ARENA_MIN, ARENA_BYTES } arena_choice;
 
-#define RECONSTRUCTION_MAX_LOSS 0.5 /* dB, of --auto */
+#define RECONSTRUCTION_MAX_LOSS 0.5 /* dB, for --auto */
 
 /* Settings as the command line gives them. reconstruction_defaults() fills every field. */
 typedef struct reconstruction_options {
-    /* What the runtime is configured with: settings.h has those that a user gives. Views, head and budget are left to
-     * the build; a width of 0 is the first context frame's size, a render_width of 0 the working size. */
+    /* Configuration of the runtime: settings.h has the settings of a user. Views, head and budget are set by the build;
+     * a width of 0 is the first context frame's size, a render_width of 0 the working size. */
     t3r_config config;
     uint32_t context[T3R_MAX_VIEWS]; /* frame indices of the context views */
     uint32_t context_count;          /* 0 = the first two frames */
-    uint32_t context_views;          /* of `eval --views`: the frames of a case; 2 = the triplet's own */
-    poses_source poses;              /* for callers: where the poses of the context views come from */
+    uint32_t context_views;          /* for `eval --views`: frames of a case; 2 = the triplet's own */
+    poses_source poses;              /* set by callers: source of the context views' poses */
     uint32_t gaussians;              /* budget as a count; 0 = keep_percent decides */
     double keep_percent;             /* budget as percent of the valid points, (0, 100]; 0 = not given */
-    bool automatic;                  /* fewer than the budget where they lose less than max_loss */
-    double max_loss;                 /* dB, against all points; 0 unless automatic */
+    bool automatic;                  /* fewer than the budget if they lose less than max_loss */
+    double max_loss;                 /* dB, relative to all points; 0 unless automatic */
     const struct method *method;     /* for callers that build by several (method.h); NULL = not asked for */
     uint32_t finetune_iterations;    /* of methods that fine-tune; 0 = their own number */
     const char
-        *importance; /* of the allocation `given`: a text for importance_pictures_read(); NULL = the planes below */
-    const uint16_t *const *importance_planes; /* one a context view at the working size, rows without gaps */
-    const char *head;                         /* a text that chosen_head_is_one() */
+        *importance; /* for the allocation `given`: a text for importance_pictures_read(); NULL = the planes below */
+    const uint16_t *const *importance_planes; /* one per context view at the working size, rows without gaps */
+    const char *head;                         /* a text accepted by chosen_head_is_one() */
     const char *mask_head; /* likewise, for methods that rank a scene of another head; NULL = `head` */
-    t3r_ablation ablation; /* what is taken away from the method */
-    bool hide_mask;        /* the network is told that every pixel was retained: hidden_mask.h */
-    const char *points_of; /* a .ply whose Gaussians are the depth instead (scene_frames.h), and of which percents
-                              are; NULL = none */
-    const char *scene;     /* for callers: a scene file that is judged, where nothing is built; NULL = none */
+    t3r_ablation ablation; /* part removed from the method */
+    bool hide_mask;        /* the network sees a mask of all pixels: hidden_mask.h */
+    const char *points_of; /* a .ply whose Gaussians give the depth instead (scene_frames.h), and the points that
+                              percentages refer to; NULL = none */
+    const char *scene;     /* set by callers: a scene file to evaluate instead of a build; NULL = none */
     bool hash;             /* collect the stages' hashes */
     arena_choice arena;
     uint64_t arena_bytes; /* for ARENA_BYTES */
@@ -63,7 +63,7 @@ extern const struct argp reconstruction_settings_argp;
 extern const struct argp reconstruction_budget_argp;
 extern const struct argp reconstruction_argp; /* both */
 
-/* The value of --arena, for parsers without the children; a usage error when it is none. */
+/* Parses the value of --arena, for parsers without the children; reports a usage error if it is none. */
 void reconstruction_parse_arena(struct argp_state *state, const char *text, reconstruction_options *options);
 
 typedef struct reconstruction {
@@ -74,71 +74,70 @@ typedef struct reconstruction {
     size_t arena_bytes;
     t3r_threads *threads;
     t3r_scene scene;
-    scene_file loaded; /* what reconstruction_load() took; else all zero */
+    scene_file loaded; /* scene taken by reconstruction_load(); else all zero */
     uint32_t context[T3R_MAX_VIEWS];
     uint32_t context_count;
-    uint32_t valid_points;                /* pixels of the context views with a depth before filling, working size */
-    uint32_t pruned;                      /* Gaussians of the scene that the points are of; 0 = there is none */
-    uint32_t requested;                   /* the budget asked for, as it is without max_loss; more than valid_points
-                                             when all are used */
-    double add_views_seconds;             /* image stage */
-    double build_seconds;                 /* t3r_reconstruct() */
-    stage_times stages;                   /* of both, where hashes are collected */
-    double give_up_at;                    /* cli_now() at which what runs is cancelled; 0 = never */
-    uint64_t stage_hash[T3R_STAGE_COUNT]; /* a stage that reports several times: its reports chained */
+    uint32_t valid_points;    /* pixels of the context views with a depth before filling, working size */
+    uint32_t pruned;          /* Gaussians of the scene that gives the points; 0 = none */
+    uint32_t requested;       /* the requested budget, without max_loss; more than valid_points when all are used */
+    double add_views_seconds; /* time of the image stage */
+    double build_seconds;     /* time of t3r_reconstruct() */
+    stage_times stages;       /* of both, if hashes are collected */
+    double give_up_at;        /* cli_now() at which the run is cancelled; 0 = never */
+    uint64_t stage_hash[T3R_STAGE_COUNT]; /* the reports of a stage that reports several times are chained */
     bool stage_hashed[T3R_STAGE_COUNT];
 } reconstruction;
 
-/* What is told of a build, whatever made it. */
+/* What is reported about a build, however it was made. */
 typedef struct reconstruction_account {
     char head[16], bits[8], crc[9]; /* as in chosen_head */
     uint32_t width, height;         /* working size */
     uint32_t context[T3R_MAX_VIEWS];
     uint32_t context_count;
-    bool has_cameras;                 /* a scene that was made elsewhere has none */
-    t3r_camera camera[T3R_MAX_VIEWS]; /* of the context views, as they were built with: `align` may have moved them */
+    bool has_cameras;                 /* false for a scene made elsewhere */
+    t3r_camera camera[T3R_MAX_VIEWS]; /* of the context views, as built with: `align` may have moved them */
     uint32_t valid_points, requested;
     size_t arena_bytes;
     double seconds; /* from recorded frames to the scene */
 } reconstruction_account;
 
 reconstruction_account reconstruction_told(const reconstruction *r);
-/* A word on stderr when more Gaussians were requested than the `count` that the views give. */
+/* Warns on stderr when more Gaussians were requested than the `count` that the views give. */
 void reconstruction_warn_of_budget(const reconstruction_options *options, uint32_t requested, uint32_t count);
 
-/* The budget for a share of the points: rounded half up, at least 1. */
+/* Returns the budget for a share of the points: rounded half up, at least 1. */
 uint32_t reconstruction_budget(uint32_t valid_points, double keep_percent);
 
-/* Builds the scene. On any other status than CLI_OK nothing needs closing. */
+/* Builds the scene. Only after CLI_OK something needs closing. */
 int reconstruction_build(reconstruction *r, const t3r_recording *recording, const char *path,
                          const reconstruction_options *options);
 
-/* An arena for a stream that has `keyframes` at hand (t3r_stream_keyframe()), nothing taken yet; a budget in percent is
- * of the valid points of the context frames, which nothing else is made of. */
+/* Prepares an arena for a stream with `keyframes` live keyframes (t3r_stream_keyframe()), with no frame added yet. A
+ * budget in percent refers to the valid points of the context frames, which have no other use. */
 int reconstruction_stream(reconstruction *r, const t3r_recording *recording, const char *path,
                           const reconstruction_options *options, uint32_t keyframes);
-/* The same without a recording: frames come at that working size, and the options give the budget as a count. */
+/* The same without a recording: frames have that working size, and the options give the budget as a count. */
 int reconstruction_live_stream(reconstruction *r, uint32_t width, uint32_t height,
                                const reconstruction_options *options, uint32_t keyframes);
-/* For those who build without a recording (live_build.h). The configuration of the options for the working size in
- * r->config, r->context_count views and r->head; its budget is left to the next. */
+/* Configures a build without a recording (live_build.h): the options' configuration for the working size in r->config,
+ * r->context_count views and r->head. The next function sets the budget. */
 void reconstruction_configure(reconstruction *r, const reconstruction_options *options);
-/* The budget that the options ask for, of r->valid_points. */
+/* Sets the budget that the options request, relative to r->valid_points. */
 void reconstruction_request(reconstruction *r, const reconstruction_options *options);
-/* From the views added to r->scene; `planes` are the importance of the allocation `given`, else NULL. */
+/* Builds from the views added to r->scene; `planes` are the importance for the allocation `given`, else NULL. */
 t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes);
-/* Hooks that collect hashes into `r` and use its threads, without a progress line. */
+/* Returns hooks that collect hashes into `r` and use its threads, without a progress line. */
 t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *options);
 
-/* An arena that only renders, filled with a scene from a file; targets up to width x height. Of the options only
- * arena, threads and hash are read. The scene is `r`'s from now on, whatever is returned: *scene is left empty. */
+/* Fills an arena that only renders with a scene from a file; targets up to width x height. Only the options for arena,
+ * threads and hash are read. `r` owns the scene, whatever is returned: *scene is left empty. */
 int reconstruction_load(reconstruction *r, scene_file *scene, uint32_t width, uint32_t height,
                         const reconstruction_options *options);
-/* Gives a loaded scene the colours that its harmonics have from a camera; t3r_render() draws them from now on. Other
- * scenes, which have none, stay as they are. */
+/* Gives a loaded scene the colours of its harmonics as seen from a camera; later t3r_render() calls draw them. Scenes
+ * without harmonics are unchanged. */
 int reconstruction_look_from(reconstruction *r, const t3r_camera *camera);
 
-/* What the frames of a scene hold before one is built: valid points, and by stereo the scene's depth in world units, a
+/* What the frames of a scene hold before it is built: valid points, and by stereo the scene's depth in world units, a
  * power of two times 1.5 (0 by sensor). */
 typedef struct reconstruction_points {
     uint32_t valid;
@@ -148,19 +147,19 @@ typedef struct reconstruction_points {
 int reconstruction_count(reconstruction_points *points, const t3r_recording *recording, const char *path,
                          const reconstruction_options *options);
 
-/* Chooses and checks the context frames of a scene that came from a file: `context` and the working size in `config`.
- */
+/* Chooses and checks the context frames of a scene from a file: `context` and the working size in `config`. */
 int reconstruction_views(reconstruction *r, const t3r_recording *recording, const char *path,
                          const reconstruction_options *options);
 
 void reconstruction_close(reconstruction *r);
 
-/* Over the collected stages in their order, each as its number and its hash: one name for the whole run. */
+/* Returns a hash of the collected stages in order, each as its number and its hash: one hash for the whole run. */
 uint64_t reconstruction_hash(const reconstruction *r);
-/* Forgets the hashes collected so far (before another render, say). */
+/* Clears the hashes collected so far (before another render, for example). */
 void reconstruction_clear_hashes(reconstruction *r);
 
-/* The camera for the same view on another pixel grid, its distortion dropped: targets are pinhole. Integers only. */
+/* Returns the camera for the same view on another pixel grid, without distortion: targets are pinhole. Integers
+ * only. */
 t3r_camera reconstruction_camera(const t3r_camera *camera, uint32_t from_width, uint32_t from_height, uint32_t width,
                                  uint32_t height);
 

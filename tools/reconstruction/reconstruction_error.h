@@ -1,4 +1,4 @@
-/* What a status of the runtime means to a user. */
+/* Explains a status of the runtime to the user. */
 #ifndef TRIM3R_TOOLS_RECONSTRUCTION_ERROR_H
 #define TRIM3R_TOOLS_RECONSTRUCTION_ERROR_H
 
@@ -6,7 +6,7 @@
 
 #include "trim3r.h"
 
-/* Says what `status` means for this arena and configuration; returns the exit status that belongs to it. */
+/* Explains what `status` means for this arena and configuration; returns the corresponding exit status. */
 int reconstruction_error(t3r_status status, const char *what, const t3r_config *config, size_t arena_bytes);
 
 #endif

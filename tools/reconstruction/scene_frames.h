@@ -1,5 +1,5 @@
-/* A scene made elsewhere as context frames: the colours of the recorded views with the depth of its Gaussians, which
- * then are points like any others. */
+/* Uses a scene made elsewhere as context frames: the colours of the recorded views with the depth of its Gaussians,
+ * which then are points like any others. */
 #ifndef TRIM3R_TOOLS_SCENE_FRAMES_H
 #define TRIM3R_TOOLS_SCENE_FRAMES_H
 
@@ -8,19 +8,19 @@
 #include "recording/recording.h"
 #include "scene/scene_file.h"
 
-/* Reads a scene to be pruned, one Gaussian at least. An exit status of cli.h after a message. */
+/* Reads a scene to be pruned, at least one Gaussian. Returns an exit status of cli.h after a message. */
 int scene_to_prune(const char *path, scene_file *scene);
 
-/* What the frames point into. */
+/* Memory that the frames point into. */
 typedef struct scene_frames {
     uint8_t *rgb[T3R_MAX_VIEWS], *depth[T3R_MAX_VIEWS];
     uint32_t gaussians; /* of the file */
-    double seconds;     /* that it took */
+    double seconds;     /* time taken */
 } scene_frames;
 
-/* Replaces pictures, depth and cameras of the `count` frames, which are those of `context`, by the recording's pictures
- * at width x height, undistorted, and the depth of the scene in the file `scene` (splat_depth.h). The scene stands in
- * the recording's world. A view that sees none of it is refused. An exit status of cli.h after a message;
+/* Replaces pictures, depth and cameras of the `count` frames, whose indices are `context`, by the recording's pictures
+ * at width x height, undistorted, and the depth of the scene in the file `scene` (splat_depth.h). The scene must be in
+ * the recording's world. A view that sees none of it is refused. Returns an exit status of cli.h after a message;
  * scene_frames_free() is due either way, once the frames are no longer used. */
 int scene_frames_make(scene_frames *made, const char *scene, const t3r_recording *recording, const char *path,
                       const uint32_t *context, uint32_t count, uint32_t width, uint32_t height,

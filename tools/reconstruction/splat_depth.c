@@ -12,11 +12,11 @@
 /* What a pixel has seen so far. */
 typedef struct seen_mean {
     float nearest; /* depth of the foremost mean, scene units; 0 = none */
-    float depth;   /* of the mean that was chosen */
-    float offset;  /* of that from the centre, pixels squared */
+    float depth;   /* depth of the chosen mean */
+    float offset;  /* its squared distance from the pixel's centre, pixels squared */
 } seen_mean;
 
-/* A mean as the camera sees it. */
+/* A mean projected into the camera. */
 typedef struct projected_mean {
     size_t pixel;
     float depth, offset;
@@ -46,7 +46,8 @@ static bool project(const splat_camera *camera, double farthest, const t3r_gauss
     return out->depth > 0;
 }
 
-/* Two passes: how far the foremost mean of every pixel is, then which mean of its surface is nearest to the centre. */
+/* Finds in two passes the depth of every pixel's foremost mean, then the mean of that surface nearest to the pixel's
+ * centre. */
 static void see(seen_mean *pixels, const scene_file *scene, const splat_camera *camera, double farthest)
 {
     projected_mean m;
@@ -76,7 +77,7 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The steps' length in scene units, of a scene whose units are `world` world units. */
+/* Chooses the depth step, and returns it in scene units; a scene unit is `world` world units. */
 static double settle_unit(splat_depth *out, float *depths, double world)
 {
     if (out->seen == 0) {

@@ -7,9 +7,9 @@
 #include "room/texture.h"
 
 #define FOCAL_PER_WIDTH_Q16 56756u /* 1 / (2 tan 30 degrees): 60 degrees across the width */
-#define RADIUS ROOM_MM(2600)       /* of the arc around the middle of the room */
-#define HALF_STEP_Q14 330          /* half the tangent of half the turn between frames: 4.6 degrees, 0.21 m */
-#define SUBSAMPLES 2               /* a side */
+#define RADIUS ROOM_MM(2600)       /* of the arc around the room's centre */
+#define HALF_STEP_Q14 330          /* half the tangent of half the rotation between frames: 4.6 degrees, 0.21 m */
+#define SUBSAMPLES 2               /* per side */
 
 /* ---- camera ----------------------------------------------------------------------------------------------------- */
 
@@ -19,14 +19,14 @@ typedef struct view {
     room_vector position;
 } view;
 
-/* 0, 1 .. half, half - 1 .. 1, 0, 1 ... */
+/* Returns 0, 1 .. half, half - 1 .. 1, 0, 1 ... */
 static int32_t swing(uint32_t index, uint32_t half)
 {
     uint32_t phase = index % (2 * half);
     return (int32_t)(phase < half ? phase : 2 * half - phase);
 }
 
-/* A whole-number quaternion to Q30 components of unit norm; |q| below 2^16. */
+/* Normalises a whole-number quaternion to Q30; |q| below 2^16. */
 static void normalise(const int64_t q[4], int32_t out_q30[4])
 {
     uint64_t squared = (uint64_t)(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
@@ -48,8 +48,8 @@ static void to_matrix(const int32_t q[4], int64_t m[9])
     }
 }
 
-/* Frames swing along the arc and back and, at another period, up and down: the path repeats after 70. The camera looks
- * at the arc's middle. Yaw is about y, pitch about x; a quaternion (1, tan of half the angle) need not be unit. */
+/* Moves along the arc and back and, at another period, up and down: the path repeats after 70 frames. The camera looks
+ * at the arc's centre. Yaw is about y, pitch about x; a quaternion (1, tan of half the angle) need not be unit. */
 static void view_of(uint32_t index, view *out)
 {
     static const int64_t middle[3] = {ROOM_MM(0), ROOM_MM(260), ROOM_MM(2550)};
@@ -101,7 +101,8 @@ void room_recorded_camera(uint32_t index, uint32_t width, uint32_t height, t3r_r
 
 static const int64_t light[3] = {ROOM_MM(350), ROOM_MM(-1480), ROOM_MM(1500)};
 
-/* Light from a ceiling lamp of 0.3 x 0.3 m (each subsample looks at its own quarter of it) and from all around, Q8. */
+/* Returns the light from a ceiling lamp of 0.3 x 0.3 m (each subsample uses its own quarter of it) and ambient light,
+ * Q8. */
 static int64_t shade(const room_scene *scene, const room_hit *hit, uint32_t quarter)
 {
     room_vector origin, to_light;
@@ -139,8 +140,8 @@ typedef struct canvas {
     int64_t focal_q16;
 } canvas;
 
-/* The ray through (x, y), in quarters of a pixel from the middle of the picture; its camera z is 1, so distances along
- * it are depths. */
+/* Returns the ray through (x, y), in quarters of a pixel from the centre of the picture; its camera z is 1, so
+ * distances along it are depths. */
 static room_vector ray_through(const canvas *c, int64_t x, int64_t y)
 {
     /* Q2 / Q16 to Q24; |x| < 2^14, so the dividend is below 2^52 */
@@ -167,7 +168,7 @@ static void add_sample(const canvas *c, int64_t x, int64_t y, uint32_t quarter, 
     }
 }
 
-/* Four uniform bytes added: near normal, deviation 148; 1.15 levels after the shift. Q4 levels. */
+/* Returns the sum of four uniform bytes: nearly normal, deviation 148; 1.15 levels after the shift. Q4 levels. */
 static int64_t sensor_noise(uint32_t noise_seed, uint32_t sample)
 {
     uint32_t h = t3r_mix32(noise_seed + sample * 0x9e3779b1u);

@@ -10,13 +10,13 @@
 
 typedef struct solid_mm {
     room_material material;
-    int16_t low[3], high[3]; /* a sphere: middle, and radius in high[0] */
+    int16_t low[3], high[3]; /* for a sphere: centre, and radius in high[0] */
     bool sphere;
 } solid_mm;
 
 typedef struct group_mm {
     int16_t pivot[3];
-    int16_t cosine, sine, hypotenuse; /* a Pythagorean triple: the turn is exact */
+    int16_t cosine, sine, hypotenuse; /* a Pythagorean triple, so that the rotation is exact */
     const solid_mm *solids;
     uint32_t count;
 } group_mm;
@@ -116,7 +116,7 @@ static void build_solid(const solid_mm *mm, room_solid *solid)
     solid->reach_squared = dot(&half, &half);
 }
 
-/* The sphere around all of a group's solids: middle of their extent, farthest corner of it. */
+/* Computes the sphere around all of a group's solids: centre of their extent, radius to its farthest corner. */
 static void enclose(const room_scene *scene, room_group *group)
 {
     room_vector low = {{FAR, FAR, FAR}}, high = {{-FAR, -FAR, -FAR}};
@@ -163,7 +163,7 @@ void room_scene_build(room_scene *scene)
 
 /* ---- rays ------------------------------------------------------------------------------------------------------- */
 
-/* Components below 2^24, so each product stays below 2^55. */
+/* Rotates into a group. Components are below 2^24, so each product is below 2^55. */
 static room_vector into_group(const room_group *group, const room_vector *a)
 {
     int64_t c = group->cosine_q30, s = group->sine_q30;
@@ -171,14 +171,14 @@ static room_vector into_group(const room_group *group, const room_vector *a)
         {t3r_round_shift64(c * a->v[0] - s * a->v[2], 30), a->v[1], t3r_round_shift64(s * a->v[0] + c * a->v[2], 30)}};
 }
 
-/* (a, Q16, to the ray's Q20 multiple) a below 2^20 */
+/* Returns a Q16 length, below 2^20, as a Q20 multiple of the ray. */
 static int64_t multiple(int64_t length, int64_t component)
 {
     return length * (1 << 24) / component;
 }
 
 /* Whether the line meets the sphere around `middle`: |c x d|^2 <= reach^2 |d|^2, without a division. Components of c
- * are below 2^19 (8 m), of d below 2^23: the products fit 2^43, their squares after the shift 2^55. */
+ * are below 2^19 (8 m), of d below 2^23: the products are below 2^43, their squares after the shift below 2^55. */
 static bool near_sphere(const room_vector *middle, int64_t reach_squared, const room_vector *origin,
                         const room_vector *direction, int64_t length_squared_q20)
 {
@@ -257,7 +257,7 @@ static room_vector along(const room_vector *origin, const room_vector *direction
     return point;
 }
 
-/* The face through which a ray leaves the shell. */
+/* Finds the face through which a ray leaves the shell. */
 static void meet_shell(const room_vector *origin, const room_vector *direction, room_hit *hit)
 {
     static const room_material materials[3][2] = {
@@ -279,7 +279,7 @@ static void meet_shell(const room_vector *origin, const room_vector *direction, 
     }
 }
 
-/* Point, place on the surface and normal of the nearest hit. */
+/* Computes point, surface coordinates and normal of the nearest hit. */
 static void describe(const room_scene *scene, const room_vector *origin, const room_vector *direction,
                      const room_group *group, room_hit *hit)
 {

@@ -1,4 +1,4 @@
-/* What stands in the room, and what a ray meets. Lengths Q16 metres, directions and distances along a ray Q20. */
+/* The furniture of the room, and ray casting. Lengths Q16 metres, directions and distances along a ray Q20. */
 #ifndef TRIM3R_TOOLS_ROOM_SCENE_H
 #define TRIM3R_TOOLS_ROOM_SCENE_H
 
@@ -34,15 +34,15 @@ typedef enum room_material {
 #define ROOM_GROUPS 8
 #define ROOM_SOLIDS 64
 
-/* A box (low, high) or, where radius is not 0, a sphere around low; in the frame of its group. */
+/* A box (low, high) or, if radius is not 0, a sphere around low; in the frame of its group. */
 typedef struct room_solid {
     room_vector low, high, middle;
     int64_t radius;
-    int64_t reach_squared; /* Q32, of the sphere around `middle` that holds it */
+    int64_t reach_squared; /* Q32, of the enclosing sphere around `middle` */
     room_material material;
 } room_solid;
 
-/* Solids that share a place on the floor and a turn about the vertical. */
+/* Solids that share a place on the floor and a rotation about the vertical. */
 typedef struct room_group {
     room_vector pivot, middle;
     int64_t cosine_q30, sine_q30;
@@ -62,16 +62,18 @@ typedef struct room_hit {
     uint32_t axis;         /* of the face; 3 = sphere */
     uint32_t solid;        /* index; ROOM_SOLIDS = the shell */
     room_vector point;     /* world */
-    room_vector local;     /* in the group's frame, from the box's low corner or the sphere's middle */
-    int32_t normal_q14[3]; /* world, towards the origin of the ray */
+    room_vector local;     /* in the group's frame, from the box's low corner or the sphere's centre */
+    int32_t normal_q14[3]; /* world, towards the ray's origin */
 } room_hit;
 
 void room_scene_build(room_scene *scene);
-/* The nearest surface; the shell is closed, so there is one for every origin inside it. |direction| in [1/2, 8). */
+/* Finds the nearest surface; the shell is closed, so there is one for every origin inside it. |direction| in [1/2,
+ * 8). */
 void room_scene_trace(const room_scene *scene, const room_vector *origin, const room_vector *direction, room_hit *hit);
-/* Whether a solid stands on the way to origin + direction. */
+/* Whether a solid lies between the origin and origin + direction. */
 bool room_scene_blocked(const room_scene *scene, const room_vector *origin, const room_vector *direction);
-/* Millimetres from the point to the nearest wall, floor or ceiling other than the ones `axis` belongs to. */
+/* Returns the millimetres from the point to the nearest wall, floor or ceiling, not counting those perpendicular to
+ * `axis`. */
 int64_t room_scene_corner(const room_vector *point, uint32_t axis);
 
 #endif

@@ -9,20 +9,20 @@ static uint32_t hash3(uint32_t seed, int64_t x, int64_t y)
     return t3r_mix32(t3r_mix32(seed + (uint32_t)x * 0x9e3779b1u) + (uint32_t)y * 0x85ebca77u);
 }
 
-/* -32768..32767 at a lattice point */
+/* Returns -32768..32767 at a lattice point. */
 static int64_t lattice(uint32_t seed, int64_t x, int64_t y)
 {
     return (int64_t)(hash3(seed, x, y) >> 16) - 32768;
 }
 
-/* 3 t^2 - 2 t^3 of the 16 fraction bits, in Q12 */
+/* Returns 3 t^2 - 2 t^3 of the 16 fraction bits, in Q12. */
 static int64_t smooth_q12(int64_t x)
 {
     int64_t t = (x & 0xffff) >> 4;
     return (t * t * (3 * 4096 - 2 * t)) >> 24;
 }
 
-/* Value noise, Q15 in -1..1; u and v in cells, Q16 */
+/* Returns value noise, Q15 in -1..1; u and v in cells, Q16. */
 static int64_t noise(uint32_t seed, int64_t u, int64_t v)
 {
     int64_t x = u >> 16, y = v >> 16;
@@ -32,8 +32,8 @@ static int64_t noise(uint32_t seed, int64_t u, int64_t v)
     return (top * (4096 - t) + bottom * t) >> 24;
 }
 
-/* Octaves of noise, each half as wide and `keep` / 256 as strong as the one before, from cells of `cell` (Q16 metres)
- * on; octaves finer than the footprint fade out. Q15, roughly -1..1. */
+/* Sums octaves of noise, each half as wide and `keep` / 256 as strong as the previous one, starting with cells of
+ * `cell` (Q16 metres); octaves finer than the footprint fade out. Q15, roughly -1..1. */
 static int64_t octaves(uint32_t seed, int64_t u, int64_t v, int64_t cell, uint32_t count, int64_t keep,
                        int64_t footprint)
 {
@@ -54,7 +54,7 @@ static room_colour rgb(int32_t r, int32_t g, int32_t b)
     return (room_colour){{r * 16, g * 16, b * 16}};
 }
 
-/* colour x (1 + amount), amount in Q15 */
+/* Returns colour x (1 + amount), amount in Q15. */
 static room_colour scaled(room_colour a, int64_t amount_q15)
 {
     for (int i = 0; i < 3; i++) {
@@ -63,7 +63,7 @@ static room_colour scaled(room_colour a, int64_t amount_q15)
     return a;
 }
 
-/* a where share is 0, b where it is 256 */
+/* Returns a for a share of 0, b for 256. */
 static room_colour mixed(room_colour a, room_colour b, int64_t share)
 {
     share = t3r_clamp64(share, 0, 256);
@@ -73,7 +73,8 @@ static room_colour mixed(room_colour a, room_colour b, int64_t share)
     return a;
 }
 
-/* How much of a footprint at `offset` from the middle of a line of that half width the line covers, 0..256 */
+/* Returns how much of a footprint, at `offset` from the centre of a line of that half width, the line covers,
+ * 0..256. */
 static int64_t line(int64_t offset, int64_t half_width, int64_t footprint)
 {
     int64_t low = T3R_MAX(-half_width, t3r_abs64(offset) - footprint / 2);
@@ -81,7 +82,7 @@ static int64_t line(int64_t offset, int64_t half_width, int64_t footprint)
     return high <= low ? 0 : T3R_MIN(256, (high - low) * 256 / T3R_MAX(footprint, 1));
 }
 
-/* offset from the nearest multiple of `pitch` */
+/* Returns the offset from the nearest multiple of `pitch`. */
 static int64_t from_multiple(int64_t x, int64_t pitch)
 {
     int64_t rest = x % pitch;
@@ -108,7 +109,7 @@ static room_colour rug(uint32_t seed, int64_t u, int64_t v, int64_t footprint)
 
 static room_colour floor_boards(uint32_t seed, int64_t u, int64_t v, int64_t footprint)
 {
-    /* the rug lies before the table */
+    /* the rug lies in front of the table */
     int64_t x = u - ROOM_MM(1050), z = v - ROOM_MM(2200);
     if (x >= 0 && x < ROOM_MM(2000) && z >= 0 && z < ROOM_MM(1500)) {
         bool border = x < ROOM_MM(60) || x >= ROOM_MM(1940) || z < ROOM_MM(60) || z >= ROOM_MM(1440);
@@ -148,7 +149,7 @@ static room_colour plaster(uint32_t seed, int64_t u, int64_t v, int64_t footprin
     return mixed(colour, rgb(228, 224, 214), v > ROOM_MM(2880) ? 256 : 0);
 }
 
-/* A landscape of 1/f noise under a sky of the same. */
+/* Draws a landscape of 1/f noise under a sky of the same. */
 static room_colour canvas(uint32_t seed, int64_t u, int64_t v, int64_t footprint)
 {
     int64_t ridge = ROOM_MM(300) + (octaves(seed, u, 0, ROOM_MM(260), 6, 140, footprint) * ROOM_MM(150) >> 15);
@@ -190,7 +191,7 @@ static room_colour crate(uint32_t seed, int64_t u, int64_t v, int64_t side, int6
     return mixed(colour, rgb(56, 38, 24), gap);
 }
 
-/* Rows of books between boards; other faces are plain wood. */
+/* Draws rows of books between boards; other faces are plain wood. */
 static room_colour shelf(uint32_t seed, const room_hit *hit, int64_t u, int64_t v, int64_t footprint)
 {
     static const uint8_t spines[8][3] = {{134, 40, 38}, {38, 70, 108},   {52, 92, 62}, {196, 170, 110},
@@ -242,7 +243,7 @@ static room_colour cloth(uint32_t seed, int64_t u, int64_t v, int64_t footprint)
 
 room_colour room_texture(const room_hit *hit, uint32_t seed, int64_t footprint)
 {
-    /* in-face coordinates, both at least 0 for boxes and the shell; a sphere does not use them */
+    /* surface coordinates, both at least 0 for boxes and the shell; unused for spheres */
     uint32_t own = t3r_mix32(seed * 0x01000193u + hit->solid * 16 + (uint32_t)hit->material);
     int64_t u = hit->local.v[hit->axis == 0 ? 2 : 0], v = hit->local.v[hit->axis == 1 ? 2 : 1];
     u = T3R_MAX(u, 0);

@@ -10,8 +10,8 @@ typedef struct room_colour {
     int32_t c[3];
 } room_colour;
 
-/* The surface's own colour at a hit. footprint: the side of the patch that one sample stands for; what is finer fades
- * into its mean. */
+/* Returns the surface's own colour at a hit. footprint: the side of the patch that one sample covers; finer detail
+ * fades into its mean. */
 room_colour room_texture(const room_hit *hit, uint32_t seed, int64_t footprint);
 
 #endif

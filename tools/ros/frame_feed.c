@@ -13,7 +13,7 @@
 #include "ros/throttle.h"
 
 #define POSES_MOST 256u
-#define JUMP_NS INT64_C(1000000000) /* stamps that go back so far are those of a clock that was set */
+#define JUMP_NS INT64_C(1000000000) /* stamps that go back so far mean that the clock was set */
 #define WHAT_BYTES 160u
 
 typedef struct image_slot {
@@ -21,7 +21,7 @@ typedef struct image_slot {
     t3r_ros_image image;
     char frame[FRAME_FEED_NAME_BYTES];
     void *owner;
-    uint8_t *copy; /* of an image that was decoded */
+    uint8_t *copy; /* a decoded image */
 } image_slot;
 
 typedef struct stamped_pose {
@@ -32,8 +32,8 @@ typedef struct stamped_pose {
 struct frame_feed {
     frame_feed_settings settings;
     t3r_pairing pairing;
-    image_slot slots[2][T3R_PAIRING_MOST + 1]; /* of colour and depth: one more than wait, the pair at hand */
-    bool has_pair;                             /* the pair that waits for its pose */
+    image_slot slots[2][T3R_PAIRING_MOST + 1]; /* for colour and depth: one more than may wait, for the current pair */
+    bool has_pair;                             /* a pair waits for its pose */
     uint32_t pair[2];
     int64_t pair_since_ns;
     stamped_pose poses[POSES_MOST]; /* oldest first */
@@ -42,22 +42,22 @@ struct frame_feed {
     bool has_info;
     t3r_ros_camera_info info; /* without its texts */
     char info_model[32], info_frame[FRAME_FEED_NAME_BYTES];
-    int64_t last_ns[FRAME_FEED_TOPICS]; /* stamps; INT64_MIN: there was none */
+    int64_t last_ns[FRAME_FEED_TOPICS]; /* stamps; INT64_MIN: none yet */
     throttle warnings[FRAME_FEED_TOPICS];
     bag_pictures pictures;
-    uint8_t *z16; /* depth that had to be converted */
+    uint8_t *z16; /* converted depth */
     size_t z16_bytes;
     frame_feed_counts counts;
 };
 
-/* 0, or -1 with what is wrong as the reason. */
+/* Returns 0, or -1 with what is wrong as the reason. */
 static int verdict(const char *wrong, char *reason)
 {
     return wrong == NULL ? 0 : t3r_reason(reason, FRAME_FEED_REASON_BYTES, "%s", wrong);
 }
 
-/* ---- opening and closing ------------------------------------------------------------------------------------------
- */
+/* ---- opening and closing
+ * -------------------------------------------------------------------------------------------- */
 
 frame_feed_settings frame_feed_defaults(void)
 {
@@ -136,8 +136,8 @@ frame_feed_counts frame_feed_counts_of(const frame_feed *feed)
     return feed->counts;
 }
 
-/* ---- what is told --------------------------------------------------------------------------------------------------
- */
+/* ---- warnings
+ * -------------------------------------------------------------------------------------------------------- */
 
 void frame_feed_warn(frame_feed *feed, frame_feed_topic topic, const char *reason, int64_t now_ns)
 {
@@ -160,7 +160,7 @@ static void refuse_colour(frame_feed *feed, frame_feed_topic topic, int64_t now_
     frame_feed_warn(feed, topic, reason, now_ns);
 }
 
-/* Stamps of a topic ascend. A clock that was set back empties the queues. */
+/* Checks that stamps of a topic ascend. A clock that was set back empties the queues. */
 static bool is_in_order(frame_feed *feed, frame_feed_topic topic, int64_t stamp_ns, int64_t now_ns)
 {
     const int64_t last_ns = feed->last_ns[topic];
@@ -176,15 +176,15 @@ static bool is_in_order(frame_feed *feed, frame_feed_topic topic, int64_t stamp_
     return true;
 }
 
-/* ---- poses ---------------------------------------------------------------------------------------------------------
- */
+/* ---- poses
+ * ----------------------------------------------------------------------------------------------------------- */
 
 static int64_t apart(int64_t a, int64_t b)
 {
     return a < b ? b - a : a - b;
 }
 
-/* That of the same time, else the nearest once a later one is there. */
+/* Finds the pose of the same time, else the nearest once a later one has arrived. */
 static frame_feed_found find_pose(const frame_feed *feed, int64_t stamp_ns, const stamped_pose **found)
 {
     *found = NULL;
@@ -200,7 +200,7 @@ static frame_feed_found find_pose(const frame_feed *feed, int64_t stamp_ns, cons
     return !later ? FRAME_FEED_NOT_YET : *found == NULL ? FRAME_FEED_NEVER : FRAME_FEED_FOUND;
 }
 
-/* The world is that of the settings, else that of the first pose. */
+/* Whether a pose is in the world of the settings, else of the first pose. */
 static bool is_of_world(frame_feed *feed, t3r_text frame, int64_t now_ns)
 {
     char name[FRAME_FEED_NAME_BYTES], reason[FRAME_FEED_REASON_BYTES];
@@ -228,7 +228,7 @@ static void keep_pose(frame_feed *feed, const t3r_ros_pose *pose)
     kept->pose.header.frame_id = kept->pose.child_frame_id = (t3r_text){0};
 }
 
-/* The camera's pose at the colour image's time, into `camera`. */
+/* Finds the camera's pose at the colour image's time. */
 static frame_feed_found locate(frame_feed *feed, const image_slot *colour, t3r_camera *camera, char *reason)
 {
     const int64_t stamp_ns = colour->image.header.stamp_ns;
@@ -254,8 +254,8 @@ static frame_feed_found locate(frame_feed *feed, const image_slot *colour, t3r_c
     return verdict(t3r_message_pose(pose, camera), reason) == 0 ? FRAME_FEED_FOUND : FRAME_FEED_NEVER;
 }
 
-/* ---- a pair to a frame ---------------------------------------------------------------------------------------------
- */
+/* ---- a pair to a frame
+ * --------------------------------------------------------------------------------------------- */
 
 static int take_depth(frame_feed *feed, const image_slot *slot, t3r_frame *frame, char *reason)
 {
@@ -280,7 +280,7 @@ static int take_depth(frame_feed *feed, const image_slot *slot, t3r_frame *frame
     return 0;
 }
 
-/* What is registered to the colour image names its frame, or none. */
+/* Checks that a message registered to the colour image names its frame, or none. */
 static int check_frame(const image_slot *colour, const char *frame, char *reason)
 {
     if (frame[0] == '\0' || strcmp(frame, colour->frame) == 0) {
@@ -315,7 +315,7 @@ static void drop_pair(frame_feed *feed)
     feed->has_pair = false;
 }
 
-/* Whether what is not there yet may still come: messages of several topics arrive in any order. */
+/* Whether something missing may still arrive: messages of several topics come in any order. */
 static bool may_wait(const frame_feed *feed, int64_t now_ns)
 {
     const t3r_pairing *pairing = &feed->pairing;
@@ -323,7 +323,7 @@ static bool may_wait(const frame_feed *feed, int64_t now_ns)
     return !full && now_ns - feed->pair_since_ns < feed->settings.patience_ns;
 }
 
-/* False: the pair still waits for its pose, or for the first intrinsics. */
+/* Finishes the pair; false: it still waits for its pose, or for the first intrinsics. */
 static bool finish_pair(frame_feed *feed, int64_t now_ns)
 {
     const image_slot *colour = &feed->slots[FRAME_FEED_COLOUR][feed->pair[FRAME_FEED_COLOUR]];
@@ -355,13 +355,13 @@ static bool finish_pair(frame_feed *feed, int64_t now_ns)
     return true;
 }
 
-/* ---- the queues -----------------------------------------------------------------------------------------------------
- */
+/* ---- the queues
+ * ------------------------------------------------------------------------------------------------------ */
 
 void frame_feed_tick(frame_feed *feed, int64_t now_ns)
 {
     t3r_pairing *pairing = &feed->pairing;
-    for (;;) { /* each turn ends, or takes an image from a queue */
+    for (;;) { /* each round ends, or takes an image from a queue */
         if (feed->has_pair && !finish_pair(feed, now_ns)) {
             return;
         }
@@ -387,7 +387,7 @@ void frame_feed_tick(frame_feed *feed, int64_t now_ns)
     }
 }
 
-/* Queues hold one image less than there are slots, and a pair at hand is in no queue. */
+/* Returns a free slot: queues hold one image less than there are slots, and the current pair is in no queue. */
 static uint32_t free_place(const image_slot *slots)
 {
     uint32_t place = 0;
@@ -430,7 +430,7 @@ void frame_feed_image(frame_feed *feed, frame_feed_topic topic, const t3r_ros_im
     add_image(feed, topic, &slot, now_ns);
 }
 
-/* Decoded rows as the image that a driver would have sent. */
+/* Stores decoded rows as the image that a driver would have sent. */
 static int copy_decoded(const t3r_decoded_image *decoded, bool depth, image_slot *slot)
 {
     const uint32_t step = depth ? decoded->width * 2 : t3r_pixel_row_bytes(decoded->format, decoded->width);

@@ -1,5 +1,5 @@
-/* Messages of a camera's topics, in the order in which they come, to frames for the map: checked, paired by time, in
- * bounded queues. Nothing here knows a version of ROS.
+/* Turns messages of a camera's topics, in the order of arrival, into frames for the map: checked, paired by time, in
+ * bounded queues. It depends on no version of ROS.
  *
  * Times now_ns are of any steady clock of the caller's. Stamps are the messages' own. */
 #ifndef TRIM3R_TOOLS_FRAME_FEED_H
@@ -16,7 +16,7 @@ extern "C" {
 #include "messages/ros_messages.h"
 #include "trim3r.h"
 
-#define FRAME_FEED_NAME_BYTES 128 /* of a frame id, its end included */
+#define FRAME_FEED_NAME_BYTES 128 /* of a frame id, with its end */
 #define FRAME_FEED_REASON_BYTES 320
 
 typedef enum frame_feed_topic {
@@ -30,23 +30,23 @@ typedef enum frame_feed_topic {
 typedef enum frame_feed_found { FRAME_FEED_NEVER = -1, FRAME_FEED_NOT_YET, FRAME_FEED_FOUND } frame_feed_found;
 
 typedef struct frame_feed_settings {
-    uint32_t queue;      /* images of either kind that may wait, 2..32 [8] */
-    int64_t pair_ns;     /* what is of one instant lies at most so far apart [20 ms] */
-    int64_t patience_ns; /* so long a colour image waits for its depth, and a pair for its pose and the first intrinsics
-                            [500 ms] */
+    uint32_t queue;          /* most waiting images of either kind, 2..32 [8] */
+    int64_t pair_ns;         /* largest gap within one instant [20 ms] */
+    int64_t patience_ns;     /* longest wait of a colour image for its depth, and of a pair for its pose and the first
+                                intrinsics [500 ms] */
     uint64_t depth_unit_q40; /* of 16-bit depth in metres, above 0 [0.001] */
-    const char *world;       /* the frame of poses; copied. "" = that of the first pose [""] */
+    const char *world;       /* the frame of poses; copied. "" = the first pose's [""] */
 
-    void *user; /* of the calls below */
-    /* A frame with colour, depth, intrinsics and pose; valid during the call, as is the world's name. */
+    void *user; /* for the calls below */
+    /* Receives a frame with colour, depth, intrinsics and pose; valid during the call, as is the world's name. */
     void (*frame)(void *user, int64_t stamp_ns, const char *world, const t3r_frame *frame, const t3r_camera *camera,
                   int64_t now_ns);
-    /* Why something of the topic is not used. One line a topic and reason in five seconds at most; it says how many
-     * more there were. */
+    /* Receives the reason why a message of the topic is not used. At most one line per topic and reason in five
+     * seconds, with the number of suppressed ones. */
     void (*warn)(void *user, frame_feed_topic topic, const char *reason);
-    /* The owner of an image that is not needed any more. */
+    /* Releases the owner of an image that is no longer needed. */
     void (*release)(void *user, void *owner);
-    /* The pose of the camera's frame at that time, from elsewhere; *pose then has the world's name. NULL = poses come
+    /* Finds the pose of the camera's frame at that time elsewhere; *pose then has the world's name. NULL = poses come
      * by frame_feed_pose(). */
     frame_feed_found (*locate)(void *user, int64_t stamp_ns, const char *camera, t3r_ros_pose *pose);
 } frame_feed_settings;
@@ -55,25 +55,25 @@ frame_feed_settings frame_feed_defaults(void);
 
 typedef struct frame_feed frame_feed;
 
-/* NULL with the reason in error[] on failure. */
+/* Returns NULL with the reason in error[] on failure. */
 frame_feed *frame_feed_open(const frame_feed_settings *settings, char *error, size_t error_bytes);
 void frame_feed_close(frame_feed *feed);
 
-/* An image of FRAME_FEED_COLOUR or FRAME_FEED_DEPTH; `owner` keeps its bytes until it is released, at once for one that
- * is refused. Compressed images are decoded during the call and released. */
+/* Adds an image of FRAME_FEED_COLOUR or FRAME_FEED_DEPTH. `owner` keeps its bytes until it is released, immediately if
+ * the image is refused. Compressed images are decoded during the call and released. */
 void frame_feed_image(frame_feed *feed, frame_feed_topic topic, const t3r_ros_image *image, void *owner,
                       int64_t now_ns);
 void frame_feed_compressed(frame_feed *feed, frame_feed_topic topic, const t3r_ros_compressed *image, void *owner,
                            int64_t now_ns);
 void frame_feed_camera_info(frame_feed *feed, const t3r_ros_camera_info *info, int64_t now_ns);
-/* The pose of the camera's optical frame in header.frame_id, which is the world. */
+/* Adds the pose of the camera's optical frame in header.frame_id, which is the world. */
 void frame_feed_pose(frame_feed *feed, const t3r_ros_pose *pose, int64_t now_ns);
-/* A warning of the caller's, held back as those of the feed are. */
+/* Issues a warning of the caller's, throttled like the feed's own. */
 void frame_feed_warn(frame_feed *feed, frame_feed_topic topic, const char *reason, int64_t now_ns);
-/* Time has passed, or `locate` may know more. Now and then at least. */
+/* Notes that time has passed, or that `locate` may find more. To be called regularly. */
 void frame_feed_tick(frame_feed *feed, int64_t now_ns);
 
-/* What became of the colour images. */
+/* Counts of the colour images. */
 typedef struct frame_feed_counts {
     uint64_t images, frames, refused; /* refused: without depth, intrinsics or pose, or malformed */
 } frame_feed_counts;

@@ -10,7 +10,7 @@
 struct keyframe_map {
     reconstruction r;
     uint32_t every, overlap_q8;
-    uint32_t since; /* frames since the last keyframe, it being 0 */
+    uint32_t since; /* frames since the last keyframe, which counts as 0 */
     bool begun;
 };
 
@@ -31,7 +31,7 @@ keyframe_map_settings keyframe_map_defaults(void)
     };
 }
 
-/* NULL, or the setting that no later check would find. */
+/* Returns NULL, or the setting that no later check would find. */
 static const char *settings_error(const keyframe_map_settings *s)
 {
     return s->every == 0                                     ? "every is 0"
@@ -52,7 +52,7 @@ static int open_stream(keyframe_map *map, const keyframe_map_settings *settings)
     options.config.half_life = settings->half_life;
     options.config.remember = settings->remember;
     options.config.refine = settings->refine;
-    options.config.fit_passes = 0; /* exactly so many */
+    options.config.fit_passes = 0; /* exactly as many as set */
     options.config.warm = settings->warm;
     int code = reconstruction_live_stream(&map->r, settings->width, settings->height, &options, settings->at_hand);
     if (code == CLI_OK) {
@@ -95,7 +95,7 @@ size_t keyframe_map_arena_bytes(const keyframe_map *map)
     return map->r.arena_bytes;
 }
 
-/* Every so many frames, and where there is little in common with the last keyframe. */
+/* Whether a keyframe is due: every so many frames, and when the overlap with the last keyframe is small. */
 static t3r_status is_due(const keyframe_map *map, const t3r_frame *frame, const t3r_camera *camera, bool *due)
 {
     *due = !map->begun || map->since >= map->every;

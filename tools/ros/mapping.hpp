@@ -1,6 +1,6 @@
-// ROS messages to and from the structures of platform/messages/ros_messages.h. The templates take the messages of ROS 1
-// and of ROS 2, whose fields differ in three names: nsec and nanosec, K and k, D and d. Nothing is copied but numbers:
-// texts and images stay in the message.
+// Converts ROS messages to and from the structures of platform/messages/ros_messages.h. The templates take the messages
+// of ROS 1 and of ROS 2, whose fields differ in three names: nsec and nanosec, K and k, D and d. Only numbers are
+// copied: texts and images stay in the message.
 #ifndef TRIM3R_TOOLS_ROS_MAPPING_HPP
 #define TRIM3R_TOOLS_ROS_MAPPING_HPP
 
@@ -50,7 +50,7 @@ template <class Header> t3r_ros_header header_of(const Header &header)
     return {stamp_of(header.stamp), text_of(header.frame_id)};
 }
 
-// Counts of bytes are 32 bits wide: what is longer counts as that long, which no image is.
+// Clamps a count of bytes to 32 bits, which no image reaches.
 inline uint32_t count_of(size_t bytes)
 {
     constexpr size_t most = std::numeric_limits<uint32_t>::max();
@@ -121,7 +121,7 @@ template <class Info> t3r_ros_camera_info camera_info_of(const Info &message)
     }
     info.d_count = static_cast<uint32_t>(std::min<size_t>(distortion.size(), T3R_ROS_MAX_D));
     for (size_t i = 0; i < distortion.size(); i++) {
-        // more coefficients than any model has: the last place is not 0 unless all of them are
+        // with more coefficients than any model has, the last one is 0 only if all the others are
         if (i < T3R_ROS_MAX_D || distortion[i] != 0) {
             info.d_f64[std::min<size_t>(i, T3R_ROS_MAX_D - 1)] = bits_of(distortion[i]);
         }
@@ -129,7 +129,7 @@ template <class Info> t3r_ros_camera_info camera_info_of(const Info &message)
     return info;
 }
 
-// position and rotation: of the names x y z and x y z w.
+// Position and rotation have the fields x y z and x y z w.
 template <class Header, class Position, class Rotation>
 t3r_ros_pose pose_from(const Header &header, const Position &position, const Rotation &rotation)
 {
@@ -165,7 +165,7 @@ template <class TransformStamped> t3r_ros_pose transform_pose_of(const Transform
     return pose;
 }
 
-// The scene as points; the caller sets the header.
+// Fills a cloud with the scene's points; the caller sets the header.
 template <class PointCloud2> void cloud_from(const t3r_scene &scene, PointCloud2 &cloud)
 {
     cloud.height = 1;

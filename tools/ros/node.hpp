@@ -1,5 +1,5 @@
-// The node without ROS: messages of a camera in, the map and its clouds out. A shell for a version of ROS feeds it from
-// one thread and says what is done with clouds and lines.
+// The node without ROS: messages of a camera in, the map and its clouds out. A wrapper for a version of ROS calls it
+// from one thread and handles clouds and lines.
 #ifndef TRIM3R_TOOLS_ROS_NODE_HPP
 #define TRIM3R_TOOLS_ROS_NODE_HPP
 
@@ -16,22 +16,22 @@
 namespace trim3r_ros
 {
 
-// What a user sets. The first value is the default.
+// Parameters of a user, with their defaults.
 struct parameters {
     int width = 256, height = 256; // the working size
-    int gaussians = 10000;         // the most in the map
+    int gaussians = 10000;         // most Gaussians in the map
     int at_hand = 4, every = 3, overlap = 0, half_life = 32, remember = 0, refine = T3R_STREAM_REFINE, threads = 1;
     bool warm = false;
     std::string head = "small";
     int queue = 8;
     double pair_ms = 20, patience_ms = 500;
-    double depth_unit = 0.001; // of 16-bit depth
-    std::string pose = "pose"; // or odometry, transform, tf: the type of message that poses come by
-    std::string world;         // the frame of poses; empty: that of the first pose, which tf does not have
-    std::string scene;         // where the scene is saved at the end and by the service; empty: nowhere
+    double depth_unit = 0.001; // step of 16-bit depth
+    std::string pose = "pose"; // or odometry, transform, tf: the message type of poses
+    std::string world;         // the frame of poses; empty: the first pose's, which tf does not have
+    std::string scene;         // file for the scene at the end and for the service; empty: none
 };
 
-// Calls `visit(name, field)` for each, so that every shell has the same parameters.
+// Calls `visit(name, field)` for each, so that all wrappers have the same parameters.
 template <class Visit> void visit_parameters(parameters &p, Visit visit)
 {
     visit("width", p.width);
@@ -55,7 +55,7 @@ template <class Visit> void visit_parameters(parameters &p, Visit visit)
     visit("scene", p.scene);
 }
 
-// What the shell does for the node.
+// What the wrapper does for the node.
 class outlet
 {
   public:
@@ -63,7 +63,7 @@ class outlet
     virtual void cloud(const t3r_scene &scene, int64_t stamp_ns, const char *world) = 0;
     virtual void info(const std::string &line) = 0;
     virtual void warn(const std::string &line) = 0;
-    // With poses by tf alone: the pose of `camera` in the world at that time.
+    // With poses by tf only: finds the pose of `camera` in the world at that time.
     virtual frame_feed_found locate(int64_t stamp_ns, const std::string &world, const char *camera,
                                     t3r_ros_pose &pose) = 0;
 };
@@ -71,7 +71,7 @@ class outlet
 class node
 {
   public:
-    // Throws std::runtime_error with the reason where parameters cannot be used.
+    // Throws std::runtime_error with the reason if parameters are unusable.
     node(const parameters &given, outlet &out);
     ~node();
     node(const node &) = delete;
@@ -102,7 +102,7 @@ class node
         frame_feed_tick(feed_, now_ns);
     }
 
-    // Writes the scene to the parameter's file; false, and `told` says why not.
+    // Writes the scene to the parameter's file; returns false with the reason in `told`.
     bool save(std::string &told) const;
     std::string summary() const;
 

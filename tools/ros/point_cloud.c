@@ -16,7 +16,7 @@ static uint8_t *put_float(uint8_t *at, double value)
     return at + sizeof(float);
 }
 
-/* 0..32640 in 1/128 of a level; rounded, so that it is what a picture of the Gaussian alone would show. */
+/* Returns 0..32640 in 1/128 of a level, rounded as in a picture of the Gaussian alone. */
 static uint32_t level(uint16_t colour_q7)
 {
     return (colour_q7 + 64u) >> 7;

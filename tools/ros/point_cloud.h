@@ -1,4 +1,4 @@
-/* Gaussians as the points of a sensor_msgs/PointCloud2: little-endian floats, in the world's frame. */
+/* Converts Gaussians to the points of a sensor_msgs/PointCloud2: little-endian floats, in the world's frame. */
 #ifndef TRIM3R_TOOLS_POINT_CLOUD_H
 #define TRIM3R_TOOLS_POINT_CLOUD_H
 
@@ -18,7 +18,7 @@ extern "C" {
 
 enum {
     POINT_CLOUD_FIELD_COUNT = 12,
-    POINT_CLOUD_FLOAT32 = 7, /* PointField's number of the type */
+    POINT_CLOUD_FLOAT32 = 7, /* the type's number in PointField */
     POINT_CLOUD_STEP = POINT_CLOUD_FIELD_COUNT * 4
 };
 

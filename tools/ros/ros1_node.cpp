@@ -1,4 +1,4 @@
-// The node for ROS 1: topics, parameters and services of roscpp. docs/ros.md tells them.
+// The node for ROS 1: topics, parameters and services of roscpp. docs/ros.md describes them.
 #include <cstdio>
 #include <memory>
 
@@ -130,7 +130,7 @@ class shell : public trim3r_ros::outlet
         trim3r_ros::cloud_from(scene, message);
         clouds_.publish(message);
     }
-    // roscpp says nothing once it is told to end, but what is saved then is worth a line.
+    // roscpp prints nothing while it shuts down, but the scene saved then is worth a line.
     void info(const std::string &line) override
     {
         if (ros::ok()) {

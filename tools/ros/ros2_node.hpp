@@ -1,4 +1,4 @@
-// The node for ROS 2: topics, parameters and services of rclcpp. docs/ros.md tells them.
+// The node for ROS 2: topics, parameters and services of rclcpp. docs/ros.md describes them.
 #ifndef TRIM3R_TOOLS_ROS2_NODE_HPP
 #define TRIM3R_TOOLS_ROS2_NODE_HPP
 
@@ -43,7 +43,7 @@ class ros2_node : public rclcpp::Node, public outlet
     frame_feed_found locate(int64_t stamp_ns, const std::string &world, const char *camera,
                             t3r_ros_pose &pose) override;
 
-    // Keeps a subscription; its callback gets the message's shared pointer.
+    // Keeps a subscription; its callback receives the message's shared pointer.
     template <class Message, class Callback>
     void subscribe(const std::string &topic, const rclcpp::QoS &qos, Callback callback)
     {

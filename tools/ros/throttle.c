@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Numbers in a line change from one to the next: what counts as the same line are its other characters. */
+/* Whether two lines are the same except for their numbers, which change from line to line. */
 static bool is_alike(const char *a, const char *b)
 {
     static const char digits[] = "0123456789";

@@ -1,4 +1,4 @@
-/* The same line again and again is told once in a while, with how many there were. */
+/* Prints a repeated line only now and then, with the number of suppressed ones. */
 #ifndef TRIM3R_TOOLS_THROTTLE_H
 #define TRIM3R_TOOLS_THROTTLE_H
 
@@ -8,14 +8,14 @@
 #define THROTTLE_TEXT_BYTES 320
 #define THROTTLE_INTERVAL_NS INT64_C(5000000000)
 
-/* Starts with zeros. */
+/* Initialise with zeros. */
 typedef struct throttle {
     char last[THROTTLE_TEXT_BYTES];
     int64_t told_ns;
-    uint64_t held_back; /* since then */
+    uint64_t held_back; /* lines suppressed since then */
 } throttle;
 
-/* Whether this line is told at that time; then *more is how many lines were held back since the last one. */
+/* Whether to print this line at that time; *more is the number of lines suppressed since the last one. */
 bool throttle_tells(throttle *t, const char *text, int64_t now_ns, uint64_t *more);
 
 #endif

@@ -14,7 +14,7 @@
 #define NOWHERE UINT32_MAX
 
 typedef struct observation {
-    uint32_t index; /* within its view's; NOWHERE = the point is not observed */
+    uint32_t index; /* among its view's observations; NOWHERE = the point is not observed */
     double x, y;    /* pixels, the top-left pixel's centre at (0.5, 0.5) */
 } observation;
 
@@ -36,7 +36,7 @@ typedef struct writer {
 
 /* ---- geometry ---------------------------------------------------------------------------------------------------- */
 
-/* From the world's origin, or the scene frame's. */
+/* Returns the point relative to the world's origin, or to the scene frame's. */
 static void point_of(const writer *w, uint32_t index, double point[3])
 {
     const t3r_scene_frame *frame = &w->model->scene->frame;
@@ -51,7 +51,7 @@ static pose pose_of(const writer *w, const t3r_camera *camera)
     pose p;
     const int sign = camera->rotation_q30[0] < 0 ? -1 : 1;
     double centre[3];
-    for (int i = 0; i < 4; i++) { /* the conjugate turns back */
+    for (int i = 0; i < 4; i++) { /* the conjugate is the inverse */
         p.quaternion[i] = (i == 0 ? sign : -sign) * (double)camera->rotation_q30[i];
     }
     quaternion_normalise(p.quaternion);
@@ -64,7 +64,7 @@ static pose pose_of(const writer *w, const t3r_camera *camera)
     return p;
 }
 
-/* Where Gaussian `index` stands in view v; false behind or beside it. */
+/* Projects Gaussian `index` into view v; false behind the camera or outside the picture. */
 static bool project(const writer *w, uint32_t index, uint32_t v, observation *at)
 {
     const colmap_view *view = &w->model->views[v];

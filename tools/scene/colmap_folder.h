@@ -1,4 +1,4 @@
-/* A scene's points and context views as a COLMAP model in text, the start of an outside optimiser: DIR/images/, and
+/* Writes a scene's points and context views as a COLMAP model in text, a start for other optimisers: DIR/images/, and
  * cameras.txt, images.txt and points3D.txt in DIR/sparse/0/, where 3D Gaussian Splatting and gsplat look for them.
  *
  * COLMAP's conventions (colmap.github.io/format.html): poses are world-to-camera, quaternion w x y z first; cameras
@@ -13,9 +13,9 @@
 #include "cli/files/whole_folder.h"
 #include "trim3r.h"
 
-/* A context view as the scene was built from it. */
+/* A context view that the scene was built from. */
 typedef struct colmap_view {
-    uint32_t frame;    /* index within the recording: names the picture */
+    uint32_t frame;    /* index within the recording; gives the picture's name */
     t3r_camera camera; /* undistorted */
     uint32_t width, height;
     uint8_t *rgb; /* width x height x 3 */
@@ -25,13 +25,13 @@ typedef struct colmap_model {
     const colmap_view *views;
     uint32_t view_count;
     const t3r_scene *scene;
-    bool local;   /* positions from the scene frame's origin instead of the world's */
-    bool sourced; /* a Gaussian's source view is one of `views`: it is observed there, else nowhere */
+    bool local;   /* positions relative to the scene frame's origin, not the world's */
+    bool sourced; /* each Gaussian is observed in its source view, one of `views`; else nowhere */
 } colmap_model;
 
-/* Pictures, cameras, poses, and a point for the mean of each Gaussian, with its colour. A point has one observation:
- * where its mean stands in its source view; error 0 then, -1 without one. Into a folder that was begun, and is not
- * committed here; 0, or -1 with "path: why" in error[]. */
+/* Writes pictures, cameras, poses, and a point for the mean of each Gaussian, with its colour. A point has one
+ * observation, the projection of the mean in its source view, with error 0; or none, with error -1. The folder must
+ * have been begun, and is not committed here. Returns 0, or -1 with "path: why" in error[]. */
 int colmap_folder_write(whole_folder *folder, const colmap_model *model, char *error, size_t error_bytes);
 
 #endif

@@ -1,4 +1,4 @@
-/* One-sided Jacobi on F's rows: exact to the last bits for thin Gaussians too, where an eigen-decomposition of the
+/* One-sided Jacobi on the rows of F: exact to the last bits even for thin Gaussians, where an eigendecomposition of the
  * covariance would lose all scales below 1e-8 of the largest. */
 #include "scene/gaussian_shape.h"
 
@@ -26,7 +26,7 @@ gaussian_shape gaussian_shape_of(const t3r_gaussian *gaussian)
     for (int i = 0; i < 9; i++) {
         row[i / 3][i % 3] = gaussian->factor[i];
     }
-    /* three pairs a sweep; 3x3 converges in 5 or 6 */
+    /* three pairs per sweep; 3x3 converges in 5 or 6 sweeps */
     for (int sweep = 0; sweep < 20; sweep++) {
         int turned = 0;
         for (int p = 0; p < 2; p++) {
@@ -84,7 +84,7 @@ int gaussian_shape_set(t3r_gaussian *gaussian, const double scale[3], const doub
     int exponent = -60;
     if (largest > 0) {
         (void)frexp(largest, &exponent);
-        exponent -= 15; /* the largest mantissa in [2^14, 2^15] */
+        exponent -= 15; /* brings the largest mantissa to [2^14, 2^15] */
         if (nearbyint(ldexp(largest, -exponent)) > INT16_MAX) {
             exponent++;
         }
@@ -104,7 +104,7 @@ void gaussian_covariance(const t3r_gaussian *gaussian, double covariance[9])
 {
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
-            double sum = 0; /* products below 2^30: exact */
+            double sum = 0; /* exact: products are below 2^30 */
             for (int k = 0; k < 3; k++) {
                 sum += (double)gaussian->factor[3 * i + k] * gaussian->factor[3 * j + k];
             }

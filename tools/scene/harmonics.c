@@ -5,7 +5,7 @@
 
 #include "geometry/quaternion.h"
 
-#define SIDE_MOST 7u /* harmonics of degree 3 */
+#define SIDE_MOST 7u /* number of harmonics of degree 3 */
 
 void harmonics_of(const double direction[3], double values[HARMONICS_REST_MOST])
 {
@@ -31,7 +31,7 @@ void harmonics_of(const double direction[3], double values[HARMONICS_REST_MOST])
     values[14] = -0.5900435899266435 * x * (xx - 3 * yy);
 }
 
-/* Solves A X = B for matrices of `side` rows by elimination with pivots; B becomes X. */
+/* Solves A X = B for matrices of `side` rows by elimination with pivoting; B becomes X. */
 static void solve(double a[SIDE_MOST][SIDE_MOST], double b[SIDE_MOST][SIDE_MOST], uint32_t side)
 {
     for (uint32_t column = 0; column < side; column++) {
@@ -62,8 +62,8 @@ static void solve(double a[SIDE_MOST][SIDE_MOST], double b[SIDE_MOST][SIDE_MOST]
     }
 }
 
-/* A colour seen from d before the turn R is seen from R d behind it. As many directions as there are harmonics of the
- * degree determine the coefficients. */
+/* Finds the matrix by which a rotation R changes coefficients: the colour seen from d before is seen from R d
+ * afterwards. As many directions as the degree has harmonics determine it. */
 static void turn_degree(const double rotation[9], uint32_t degree, double *matrix)
 {
     static const double directions[SIDE_MOST][3] = {{0.36, 0.48, 0.8}, {-0.6, 0.64, 0.48},  {0.8, -0.6, 0},

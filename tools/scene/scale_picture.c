@@ -5,7 +5,7 @@
 
 #include "cli/help/markup.h"
 
-/* Pixels of the picture. */
+/* In pixels of the picture. */
 #define LEFT 52
 #define TOP 34
 #define WIDTH 620
@@ -15,8 +15,8 @@
 #define RIGHT 20
 
 typedef struct layout {
-    double low, high; /* logarithms to base 2 of the ends of the axis */
-    double most;      /* share of Gaussians that is a panel high */
+    double low, high; /* base-2 logarithms of the axis limits */
+    double most;      /* share of Gaussians at full panel height */
 } layout;
 
 static double across(const layout *l, double scale)
@@ -37,8 +37,8 @@ static double largest_share(const scale_panel *panels, uint32_t count, const sca
     return most;
 }
 
-/* 1, 2, 5 times powers of ten along one edge; over more than three decades powers alone. unit: of the axis, of a world
- * unit. */
+/* Writes ticks at 1, 2, 5 times powers of ten along one edge; above three decades only at powers of ten. unit: a world
+ * unit in units of the axis. */
 static void write_ticks(FILE *file, const layout *l, double unit, double y, double name_y)
 {
     static const double times[] = {1, 2, 5};

@@ -9,7 +9,7 @@
 #include "host/reason.h"
 #include "scene/scene_format.h"
 
-/* Every format. Of two with one suffix the first is written; `ply` is that of files which none of them knows. */
+/* All formats. Of two with one suffix the first is written; `ply` is used for files that no format recognises. */
 #ifdef T3R_WEBP
 #define FORMATS_OF_WEBP FORMAT(sog)
 #else
@@ -28,7 +28,7 @@ static const scene_format *const formats[] = {
 };
 enum { FORMATS_COUNT = sizeof formats / sizeof formats[0] };
 
-/* That of the longest suffix. */
+/* Returns the format with the longest matching suffix. */
 static const scene_format *format_of_path(const char *path)
 {
     const scene_format *found = NULL;
@@ -87,7 +87,7 @@ static int parse_as(const scene_format *format, const uint8_t *bytes, size_t cou
                                  : format->parse(bytes, count, out, error, error_bytes);
 }
 
-/* By the first bytes, else by the name. */
+/* Finds the format by the first bytes, else by the name. */
 static const scene_format *format_of(const char *name, const uint8_t *bytes, size_t count)
 {
     const scene_format *format = format_of_bytes(bytes, count);
@@ -101,7 +101,7 @@ int scene_file_parse(const char *name, const uint8_t *bytes, size_t count, scene
     return parse_as(format_of(name, bytes, count), bytes, count, out, error, error_bytes);
 }
 
-/* Before the whole of a file is read. */
+/* Checks the first bytes before the whole file is read. */
 static const char *check_first(const uint8_t *first, size_t count)
 {
     return format_of_bytes(first, count) != NULL ? NULL : scene_format_ply.foreign;
@@ -161,7 +161,7 @@ static int write_file(const char *path, const scene_file *scene, int flags, cons
 int scene_file_write(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
                      size_t error_bytes)
 {
-    /* it is only read */
+    /* read only */
     const scene_file made = {
         .frame = scene->frame, .gaussians = (t3r_gaussian *)(uintptr_t)scene->gaussians, .count = scene->count};
     return write_file(path, &made, flags, note, error, error_bytes);

@@ -1,4 +1,4 @@
-/* Scenes on disk. Read and written in double; SPEC's fixed point begins behind. */
+/* Scenes on disk, read and written in double; SPEC's fixed point begins after reading. */
 #ifndef TRIM3R_TOOLS_SCENE_FILE_H
 #define TRIM3R_TOOLS_SCENE_FILE_H
 
@@ -10,52 +10,53 @@
 
 #define SCENE_FILE_SUFFIXES_BYTES 96
 
-/* A scene outside any arena. */
+/* A scene outside the arena. */
 typedef struct scene_file {
     t3r_scene_frame frame;
     t3r_gaussian *gaussians; /* heap; scene_file_free() */
     uint32_t count;
-    uint32_t degree;        /* of the harmonics of its colours, 0..3 */
-    int16_t *harmonics_q12; /* heap; NULL: degree 0. As t3r_harmonics_colour() takes them, a Gaussian after the other */
+    uint32_t degree;        /* of its harmonics, 0..3 */
+    int16_t *harmonics_q12; /* heap; NULL: degree 0. In the layout of t3r_harmonics_colour(), Gaussian by Gaussian */
 } scene_file;
 
-/* Numbers of harmonics_q12 a Gaussian. */
+/* Returns the numbers in harmonics_q12 per Gaussian. */
 static inline size_t scene_file_harmonics_count(const scene_file *scene)
 {
     return 3 * (size_t)(scene->degree + 1) * (scene->degree + 1);
 }
 
-/* Those of one Gaussian; degree above 0. */
+/* Returns the harmonics of one Gaussian; the degree must be above 0. */
 static inline int16_t *scene_file_harmonics(const scene_file *scene, uint32_t index)
 {
     return scene->harmonics_q12 + index * scene_file_harmonics_count(scene);
 }
 
-/* Whether a path ends as scene files do: those that are read, or written. */
+/* Whether a path has the suffix of a scene file that can be read, or written. */
 bool scene_file_is_read(const char *path);
 bool scene_file_is_written(const char *path);
-/* ".ply, .splat": how files end that are written. */
+/* Writes the suffixes of files that can be written: ".ply, .splat". */
 const char *scene_file_suffixes(char text[SCENE_FILE_SUFFIXES_BYTES]);
 
-/* Reads a scene of the format that its first bytes name, else its suffix: 0, or -1 with "what, where" in error[]. The
- * scene frame (origin, exponent) is the one that SCENE_FILE_COMMENTS named, else chosen from the positions. */
+/* Reads a scene in the format that its first bytes identify, else its suffix. Returns 0, or -1 with "what, where" in
+ * error[]. The scene frame (origin, exponent) is the one in the file's SCENE_FILE_COMMENTS, else chosen from the
+ * positions. */
 int scene_file_read(const char *path, scene_file *out, char *error, size_t error_bytes);
-/* The same of bytes in memory; `name` ends with the suffix. */
+/* The same for bytes in memory; `name` ends with the suffix. */
 int scene_file_parse(const char *name, const uint8_t *bytes, size_t count, scene_file *out, char *error,
                      size_t error_bytes);
 
-/* Writes in the recording's world frame, in the format of the path's suffix; flags: 0, or of these. `note` (NULL:
- * none), one line, becomes another comment. 0, or -1 with the reason in error[]. */
+/* Writes in the recording's world frame, in the format of the path's suffix; flags: 0, or a sum of these. `note` (NULL:
+ * none), one line, becomes another comment. Returns 0, or -1 with the reason in error[]. */
 enum {
-    SCENE_FILE_LOCAL = 1,    /* without the frame's origin: metres from the first context camera, say */
-    SCENE_FILE_COMMENTS = 2, /* header comments that name bits epoch and scene frame; some readers choke on comments */
-    SCENE_FILE_UP = 16,      /* times a scene_up of scene_turn.h: this axis becomes y, and y points up */
+    SCENE_FILE_LOCAL = 1,    /* relative to the frame's origin: metres from the first context camera, for example */
+    SCENE_FILE_COMMENTS = 2, /* header comments with bits epoch and scene frame; some readers reject comments */
+    SCENE_FILE_UP = 16,      /* multiplied by a scene_up of scene_turn.h: turns this axis to y, pointing up */
 };
 int scene_file_write(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
                      size_t error_bytes);
-/* The same of a scene from a file, with harmonics up to the degree that the format holds. */
+/* The same for a scene from a file, with harmonics up to the format's highest degree. */
 int scene_file_rewrite(const char *path, const scene_file *scene, int flags, char *error, size_t error_bytes);
-/* The degree of harmonics that files of the path's suffix hold, 0..3. */
+/* Returns the highest degree of harmonics in the format of the path's suffix, 0..3. */
 uint32_t scene_file_degree_most(const char *path);
 void scene_file_free(scene_file *scene);
 

@@ -1,4 +1,5 @@
-/* A format of scene files. A new one is a source file in formats/ with its row, and the row's name in scene_file.c. */
+/* A format of scene files. A new one needs a source file in formats/ with its row, and the row's name in
+ * scene_file.c. */
 #ifndef TRIM3R_TOOLS_SCENE_FORMAT_H
 #define TRIM3R_TOOLS_SCENE_FORMAT_H
 
@@ -8,14 +9,15 @@
 #include "scene/scene_rows.h"
 
 typedef struct scene_format {
-    const char *suffix;  /* of its files: ".ply" */
-    const char *magic;   /* their first bytes; NULL: they begin with anything, or as those of another row */
-    const char *foreign; /* the reason for those that begin otherwise; NULL: as magic */
-    scene_axes axes;     /* of the files that are written; the reader tells its own */
-    uint32_t degree;     /* of the harmonics that are written at most, 0..3 */
+    const char *suffix;  /* suffix of its files: ".ply" */
+    const char *magic;   /* first bytes of its files; NULL: any, or the same as another row's */
+    const char *foreign; /* error for files with other first bytes; NULL: as magic */
+    scene_axes axes;     /* of written files; the reader knows its own */
+    uint32_t degree;     /* highest degree of harmonics that is written, 0..3 */
     /* As scene_file_parse(); NULL: not read. */
     int (*parse)(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
-    /* To a stream whose errors the caller looks at: 0, or -1 with the reason in error[]; NULL: not written. */
+    /* Writes to a stream whose errors the caller checks. Returns 0, or -1 with the reason in error[]; NULL: not
+     * written. */
     int (*write)(FILE *file, const scene_source *source, char *error, size_t error_bytes);
 } scene_format;
 

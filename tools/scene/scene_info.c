@@ -17,22 +17,22 @@
 
 #define ERROR_BYTES 512
 #define QUANTILES 5
-#define PANEL_NAME_BYTES 80 /* as much as a panel is wide */
+#define PANEL_NAME_BYTES 80 /* as wide as a panel */
 
 static const double quantile_share[QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
 static const char *const quantile_name[QUANTILES] = {"p5", "p25", "median", "p75", "p95"};
 
 typedef struct scene_told {
     uint32_t count;
-    double low[3], high[3]; /* of the means, world units */
+    double low[3], high[3]; /* bounds of the means, world units */
     double opacity;         /* mean */
 } scene_told;
 
 typedef struct all_told {
     scene_told scene[SCENE_INFO_MOST];
     splat_scales scales[SCENE_INFO_MOST];
-    double depth;  /* median of the first scene's means before the camera, world units; 0 = not known */
-    double pixels; /* of a world unit at that depth; 0 = not known */
+    double depth;  /* median depth of the first scene's means from the camera, world units; 0 = unknown */
+    double pixels; /* size of a world unit at that depth; 0 = unknown */
     scale_bins bins;
 } all_told;
 
@@ -60,7 +60,7 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Distance along the axis of view of each mean that lies within the picture; how many. */
+/* Computes the depth of each mean that lies within the picture; returns their number. */
 static uint32_t depths_seen(const scene_file *scene, const t3r_capture_frame *frame, double *depths)
 {
     const t3r_camera *camera = &frame->camera;
@@ -74,7 +74,8 @@ static uint32_t depths_seen(const scene_file *scene, const t3r_capture_frame *fr
                          ldexp((double)camera->position_q32[axis], -32) +
                          ldexp(scene->gaussians[i].position_q20[axis], scene->frame.exponent - 20);
         }
-        for (int axis = 0; axis < 3; axis++) { /* the rotation is camera to world: its columns are the camera's axes */
+        for (int axis = 0; axis < 3;
+             axis++) { /* the rotation is camera to world, so its columns are the camera's axes */
             in[axis] =
                 ldexp(from[0] * rotation[axis] + from[1] * rotation[3 + axis] + from[2] * rotation[6 + axis], -30);
         }

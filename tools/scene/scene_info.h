@@ -1,4 +1,4 @@
-/* `trim3r info SCENE.ply...`: what scene files hold, and how wide their Gaussians are. */
+/* `trim3r info SCENE.ply...`: the contents of scene files, and the widths of their Gaussians. */
 #ifndef TRIM3R_TOOLS_SCENE_INFO_H
 #define TRIM3R_TOOLS_SCENE_INFO_H
 
@@ -10,13 +10,13 @@
 typedef struct scene_info_request {
     const char *const *scenes; /* 1..SCENE_INFO_MOST paths */
     uint32_t scene_count;
-    const char *recording; /* NULL: scales are not told in pixels */
-    uint32_t view;         /* the frame of it whose pixels are meant */
+    const char *recording; /* NULL: no scales in pixels */
+    uint32_t view;         /* the frame whose pixels are used */
     const char *svg;       /* NULL: no picture */
     bool json;
 } scene_info_request;
 
-/* An exit status of cli.h. */
+/* Returns an exit status of cli.h. */
 int scene_info(const scene_info_request *request);
 
 #endif

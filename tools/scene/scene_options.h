@@ -4,9 +4,10 @@
 
 #include <argp.h>
 
-/* A usage error where the path (NULL: none) that `option` ("-o") names does not end as scene files that are written. */
+/* Reports a usage error if the path (NULL: none) of `option` ("-o") has no suffix of a scene file that can be
+ * written. */
 void scene_output_option(struct argp_state *state, const char *option, const char *path);
-/* --up: the flags of scene_file_write() for the named axis; a usage error for a name that is none. */
+/* Parses --up: returns the flags of scene_file_write() for the named axis; a usage error for other names. */
 int scene_up_option(struct argp_state *state, const char *name);
 
 #endif

@@ -16,7 +16,7 @@ static int compare_codes(const void *a, const void *b)
                               : (x->index > y->index) - (x->index < y->index);
 }
 
-/* Bit i of each goes to bit 3 i and the two above. */
+/* Moves bit i of each coordinate to bit 3 i, 3 i + 1 or 3 i + 2. */
 static uint32_t interleave(const uint32_t cell[3])
 {
     uint32_t code = 0;

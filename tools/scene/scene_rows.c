@@ -8,7 +8,7 @@
 #include "host/reason.h"
 #include "scene/gaussian_shape.h"
 
-/* Positions the runtime takes, scene units; a little is left for the rounding of the origin. */
+/* Farthest position for the runtime, in scene units; leaves a margin for the rounding of the origin. */
 #define FARTHEST 1023
 
 static int compare_doubles(const void *a, const void *b)
@@ -17,13 +17,13 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Q32 of a world coordinate; |value| < 2^30 */
+/* Converts a world coordinate to Q32; |value| < 2^30. */
 static int64_t to_q32(double value)
 {
     return (int64_t)nearbyint(ldexp(value, 32));
 }
 
-/* A row with the axes of the scene. */
+/* Reads a row and turns it to the axes of the scene. */
 static int read_row(const scene_rows *rows, const scene_turn *turn, uint32_t index, scene_row *row, char *error,
                     size_t error_bytes)
 {
@@ -34,9 +34,9 @@ static int read_row(const scene_rows *rows, const scene_turn *turn, uint32_t ind
     return 0;
 }
 
-/* A frame for positions that name none: origin at their mean, the median distance from it in [1, 2) scene units.
- * Where the runtime's range of 2^10 does not hold the farthest, the exponent rises by up to 6: positions then still
- * keep 2^-14 of the median distance. */
+/* Chooses a frame for a file without one: origin at the mean position, median distance from it in [1, 2) scene units.
+ * If the farthest is beyond the runtime's range of 2^10, the exponent rises by up to 6: positions then still resolve
+ * 2^-14 of the median distance. */
 static int choose_frame(const scene_rows *rows, const scene_turn *turn, t3r_scene_frame *frame, char *error,
                         size_t error_bytes)
 {
@@ -65,7 +65,7 @@ static int choose_frame(const scene_rows *rows, const scene_turn *turn, t3r_scen
     qsort(distance, rows->count, sizeof *distance, compare_doubles);
     double median = distance[rows->count / 2], farthest = distance[rows->count - 1];
     free(distance);
-    /* a pile of Gaussians at one place is as large as they are */
+    /* Gaussians that share one place are as large as their scales */
     double size = median > 0 ? median : farthest > 0 ? farthest : exp(fmin(fmax(largest_scale, -30), 30));
     double span = fmax(fmax(fabs(mean[0]), fabs(mean[1])), fmax(fabs(mean[2]), farthest));
     int exponent;
@@ -94,7 +94,7 @@ static int check_frame(const t3r_scene_frame *frame, char *error, size_t error_b
                           frame->exponent, T3R_EXPONENT_LEAST, T3R_EXPONENT_MOST);
     }
     for (int axis = 0; axis < 3; axis++) {
-        /* 2^30 world units, so that differences of two origins fit */
+        /* 2^30 world units, so that the difference of two origins fits */
         if (frame->origin_q32[axis] <= -(INT64_C(1) << 62) || frame->origin_q32[axis] >= INT64_C(1) << 62) {
             return t3r_reason(error, error_bytes, "the header names an origin beyond 2^30");
         }
@@ -107,7 +107,7 @@ static uint16_t clamp_to(double value, int most)
     return (uint16_t)(value <= 0 ? 0 : value >= most ? most : nearbyint(value));
 }
 
-/* Coefficients beyond 8 become 8: colours need no more than 2. */
+/* Converts harmonics. Coefficients beyond 8 are clamped to 8: colours need no more than 2. */
 static void convert_harmonics(const scene_row *row, uint32_t degree, int16_t *harmonics_q12)
 {
     for (uint32_t i = 0; i < 3 * (harmonics_rest(degree) + 1); i++) {

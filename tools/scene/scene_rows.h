@@ -1,4 +1,4 @@
-/* Gaussians as scene files have them, in double, to a scene in the runtime's fixed point, and back. */
+/* Converts Gaussians in double, as scene files have them, to a scene in the runtime's fixed point, and back. */
 #ifndef TRIM3R_TOOLS_SCENE_ROWS_H
 #define TRIM3R_TOOLS_SCENE_ROWS_H
 
@@ -10,14 +10,14 @@
 #include "scene/scene_file.h"
 #include "scene/scene_turn.h"
 
-/* A Gaussian as 3DGS stores it. All is finite, but that the logit may be either infinity and a log_scale the negative
- * one. */
+/* A Gaussian as 3DGS stores it. All numbers are finite, except that the logit may be either infinity and a log_scale
+ * the negative one. */
 typedef struct scene_row {
     double position[3];
     double harmonic[3]; /* of degree 0: red, green, blue */
     double rest[HARMONICS_REST_MOST][3];
     double opacity_logit;
-    double log_scale[3]; /* natural */
+    double log_scale[3]; /* natural logarithm */
     double rotation[4];  /* w, x, y, z; of any length */
 } scene_row;
 
@@ -25,36 +25,36 @@ typedef struct scene_row {
 
 typedef struct scene_rows {
     uint32_t count; /* at least 1 */
-    bool has_frame; /* the file names its frame; else one is chosen from the positions */
-    bool local;     /* positions are from the named frame's origin */
+    bool has_frame; /* the file has a frame; else one is chosen from the positions */
+    bool local;     /* positions are relative to the given frame's origin */
     t3r_scene_frame frame;
-    uint32_t degree; /* of the harmonics that rows have, 0..3 */
+    uint32_t degree; /* of the rows' harmonics, 0..3 */
     scene_axes axes; /* of the file */
-    /* Row `index`: 0, or -1 with the reason in error[]. It may be asked for any number of times. */
+    /* Reads row `index`, any number of times. Returns 0, or -1 with the reason in error[]. */
     int (*read)(void *user, uint32_t index, scene_row *row, char *error, size_t error_bytes);
     void *user;
 } scene_rows;
 
-/* 0, and scene_file_free() is due; or -1 with the reason in error[]. */
+/* Returns 0, after which scene_file_free() is due; or -1 with the reason in error[]. */
 int scene_file_from_rows(const scene_rows *rows, scene_file *out, char *error, size_t error_bytes);
 
 /* ---- writing ---- */
 
-/* Gaussian `index` of a scene as a file of these axes has it. Rotations are of unit length. */
+/* Gaussian `index` of a scene in the axes of a file. Rotations have unit length. */
 typedef struct scene_source {
     const scene_file *scene;
-    int flags; /* as scene_file_write() has them */
+    int flags; /* as for scene_file_write() */
     const char *note;
     scene_turn turn;
     uint32_t degree; /* of the harmonics to write */
 } scene_source;
 
 void scene_source_row(const scene_source *source, uint32_t index, scene_row *row);
-/* The position alone. */
+/* Returns only the position. */
 void scene_source_position(const scene_source *source, uint32_t index, double position[3]);
-/* The opacity of a row, 0..1. */
+/* Returns the opacity of a row, 0..1. */
 double scene_row_opacity(const scene_row *row);
-/* The colour of degree 0, 0..1 for what a screen can show; `channel` 0..2. */
+/* Returns the colour of degree 0, 0..1 if a screen can show it; `channel` 0..2. */
 double scene_row_colour(const scene_row *row, int channel);
 
 #endif

@@ -1,10 +1,10 @@
-/* From the runtime's fixed point to the numbers of scene files. */
+/* Converts the runtime's fixed point to the numbers of scene files. */
 #include <math.h>
 
 #include "scene/gaussian_shape.h"
 #include "scene/scene_rows.h"
 
-/* Opacities of 0 would have no logit: they are written as an eighth of a step, which reads as 0 again. */
+/* Returns the logit of an opacity. 0 has no logit, so it is written as an eighth of a step, which reads as 0 again. */
 static double opacity_logit(uint16_t opacity_q15)
 {
     double opacity = opacity_q15 == 0 ? 0.125 / 32768 : opacity_q15 / 32768.0;
@@ -20,7 +20,7 @@ static void put_harmonics(const scene_source *source, uint32_t index, scene_row 
     }
 }
 
-/* Without the turn. */
+/* Writes the position before the turn. */
 static void put_position(const scene_source *source, uint32_t index, double position[3])
 {
     const t3r_scene_frame *frame = &source->scene->frame;

@@ -10,7 +10,7 @@ static const double stays[4] = {1, 0, 0, 0};
 static const double half_about_x[4] = {0, 1, 0, 0}; /* x, -y, -z */
 static const double half_about_z[4] = {0, 0, 0, 1}; /* -x, -y, z */
 
-/* What turns each axis to -y, which is up where y points down. */
+/* Rotations that turn each axis to -y, which points up in scenes whose y points down. */
 static const struct {
     const char *name;
     double rotation[4];
@@ -33,7 +33,7 @@ static scene_turn turn_of(const double q[4], const double matrix[9])
     return turn;
 }
 
-/* Between axes: entries of the matrix are whole. */
+/* Returns a turn between axes: the entries of its matrix are whole numbers. */
 static scene_turn axes_turn(const double q[4])
 {
     double matrix[9];
@@ -66,7 +66,7 @@ scene_turn scene_turn_to(scene_axes axes, scene_up up)
 
 scene_turn scene_turn_from(scene_axes axes)
 {
-    return axes_turn(from_scene(axes)); /* half a turn is its own inverse */
+    return axes_turn(from_scene(axes)); /* a half turn is its own inverse */
 }
 
 void scene_turn_apply(const scene_turn *turn, double position[3], double rotation[4], uint32_t degree,

@@ -1,5 +1,5 @@
-/* Turns between the axes of files and those of a scene. A scene in memory has the axes of its recording, or of a .ply:
- * where formats have axes of their own, x points right in it, y down and z forward. */
+/* Turns between the axes of files and of a scene. A scene in memory has the axes of its recording, or of a .ply: for
+ * formats with axes of their own, x points right in it, y down and z forward. */
 #ifndef TRIM3R_TOOLS_SCENE_TURN_H
 #define TRIM3R_TOOLS_SCENE_TURN_H
 
@@ -10,7 +10,7 @@
 
 /* The axes of a format's files. */
 typedef enum scene_axes {
-    SCENE_AXES_AS_THEY_ARE, /* those of the scene, whatever they are */
+    SCENE_AXES_AS_THEY_ARE, /* the scene's axes, whatever they are */
     SCENE_AXES_RUB,         /* x right, y up, z backward */
     SCENE_AXES_LUF,         /* x left, y up, z forward */
 } scene_axes;
@@ -28,24 +28,25 @@ typedef enum scene_up {
 #define SCENE_UP_NAMES "x, -x, y, -y, z, -z"
 
 typedef struct scene_turn {
-    bool none;          /* what follows need not be applied */
+    bool none;          /* identity: need not be applied */
     double rotation[4]; /* unit quaternion, w x y z */
-    double matrix[9];   /* the same, row-major; of axes: entries are -1, 0 and 1 */
+    double matrix[9];   /* the same, row-major; between axes the entries are -1, 0 and 1 */
     harmonics_turn harmonics;
 } scene_turn;
 
-/* From a scene to a file with these axes. Where `up` is known, y points up in the file, whatever its format. */
+/* Returns the turn from a scene to a file with these axes. If `up` is known, y points up in the file, whatever its
+ * format. */
 scene_turn scene_turn_to(scene_axes axes, scene_up up);
-/* From a file with these axes to a scene. */
+/* Returns the turn from a file with these axes to a scene. */
 scene_turn scene_turn_from(scene_axes axes);
-/* By a unit quaternion w x y z. */
+/* Returns the turn by a unit quaternion w x y z. */
 scene_turn scene_turn_of(const double rotation[4]);
-/* Turns a Gaussian with harmonics of 0..3 degrees. */
+/* Turns a Gaussian with harmonics up to a degree of 0..3. */
 void scene_turn_apply(const scene_turn *turn, double position[3], double rotation[4], uint32_t degree,
                       double rest[HARMONICS_REST_MOST][3]);
 /* Turns the origin of a scene's frame. */
 void scene_turn_origin(const scene_turn *turn, const int64_t origin_q32[3], int64_t turned_q32[3]);
-/* The axis of a name, as SCENE_UP_NAMES lists them; SCENE_UP_UNKNOWN: there is none. */
+/* Returns the axis of a name from SCENE_UP_NAMES; SCENE_UP_UNKNOWN: there is none. */
 scene_up scene_up_named(const char *name);
 
 #endif

@@ -21,7 +21,7 @@ splat_camera splat_camera_of(const t3r_camera *camera, const t3r_scene_frame *fr
     quaternion_normalise(q);
     quaternion_matrix(q, c.rotation);
     for (int i = 0; i < 3; i++) {
-        /* in integers: doubles would lose bits far from the world's origin; both below 2^62 */
+        /* subtracts in integers, because doubles would lose bits far from the world's origin; both below 2^62 */
         c.position[i] = ldexp((double)(camera->position_q32[i] - frame->origin_q32[i]), -32 - frame->exponent);
     }
     return c;

@@ -1,4 +1,4 @@
-/* Cameras in floats, for what the host does with scenes. */
+/* Cameras in floats, for the host's work on scenes. */
 #ifndef TRIM3R_TOOLS_SCENE_SPLAT_CAMERA_H
 #define TRIM3R_TOOLS_SCENE_SPLAT_CAMERA_H
 
@@ -13,7 +13,7 @@ typedef struct splat_camera {
     double position[3];    /* scene units */
 } splat_camera;
 
-/* The pinhole camera of a t3r_camera for a scene in this frame. */
+/* Returns the pinhole camera of a t3r_camera for a scene in this frame. */
 splat_camera splat_camera_of(const t3r_camera *camera, const t3r_scene_frame *frame, uint32_t width, uint32_t height);
 
 #endif

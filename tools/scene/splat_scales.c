@@ -7,7 +7,7 @@
 
 #include "scene/gaussian_shape.h"
 
-#define OUTLIERS 0.001 /* share at either end that does not widen the bins */
+#define OUTLIERS 0.001 /* share at either end that does not extend the bins */
 
 static int ascending(const void *a, const void *b)
 {
@@ -19,7 +19,7 @@ static double scale_of(const t3r_gaussian *gaussian)
 {
     gaussian_shape shape = gaussian_shape_of(gaussian);
     double thinnest = fmin(shape.scale[0], fmin(shape.scale[1], shape.scale[2]));
-    return sqrt(shape.scale[0] * shape.scale[1] * shape.scale[2] / thinnest); /* at least 2^-80: never 0 */
+    return sqrt(shape.scale[0] * shape.scale[1] * shape.scale[2] / thinnest); /* at least 2^-80, so never 0 */
 }
 
 bool splat_scales_of(splat_scales *scales, const scene_file *scene)

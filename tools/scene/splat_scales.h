@@ -1,6 +1,6 @@
-/* How wide the Gaussians of a scene are: order statistics and bins of a logarithm (a histogram as in GaussianTrim3R's
- * Figure 6). The scale of a Gaussian is here the root of the product of its two largest standard deviations: the radius
- * of the disc that covers as much of a surface, whatever its thickness along the normal. */
+/* Widths of the Gaussians of a scene: order statistics and bins of a logarithm (a histogram as in GaussianTrim3R's
+ * Figure 6). Scale here means the root of the product of a Gaussian's two largest standard deviations: the radius of a
+ * disc that covers as much of a surface, whatever the thickness along the normal. */
 #ifndef TRIM3R_TOOLS_SPLAT_SCALES_H
 #define TRIM3R_TOOLS_SPLAT_SCALES_H
 
@@ -17,22 +17,22 @@ typedef struct splat_scales {
     uint32_t count; /* at least 1 */
 } splat_scales;
 
-/* Of a scene that is not empty. False without memory; splat_scales_free() in any case. */
+/* Computes the scales of a non-empty scene. False without memory; splat_scales_free() is due in any case. */
 bool splat_scales_of(splat_scales *scales, const scene_file *scene);
 void splat_scales_free(splat_scales *scales);
 
-/* At share 0..1 of the order, linear between neighbours. */
+/* Returns the quantile at share 0..1, linear between neighbours. */
 double splat_scales_quantile(const splat_scales *scales, double share);
 
-/* Bin i holds scales from 2^((first + i) / 4) up to, without, 2^((first + i + 1) / 4) world units; the first also what
- * is less, the last what is more. */
+/* Bin i holds scales from 2^((first + i) / 4) to below 2^((first + i + 1) / 4) world units; the first also holds
+ * smaller ones, the last larger ones. */
 typedef struct scale_bins {
     int first;
     uint32_t count; /* 1..SCALE_BINS_MOST */
 } scale_bins;
 
-/* Bins for all of `list` (count at least 1): from the least of their quantiles at 0.001 to the largest at 0.999, the
- * upper 24 octaves. */
+/* Returns bins for all of `list` (count at least 1): from the least of their quantiles at 0.001 to the largest at
+ * 0.999, limited to the upper 24 octaves. */
 scale_bins scale_bins_of(const splat_scales *list, uint32_t count);
 double scale_bins_edge(const scale_bins *bins, uint32_t index);
 void scale_bins_fill(const scale_bins *bins, const splat_scales *scales, uint32_t counts[SCALE_BINS_MOST]);

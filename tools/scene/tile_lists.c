@@ -5,11 +5,11 @@
 #include "kernels/project.h"
 #include "raster/raster_splat.h"
 
-/* Splats of each tile as differences: a corner of each splat's rectangle takes or gives one. Sums over rows and columns
- * are the counts; a column and a row more hold the far corners. */
+/* Splats per tile as differences: the corners of each splat's rectangle add or subtract one. Sums over rows and columns
+ * are the counts; one more column and row hold the far corners. */
 typedef struct tile_counts {
     int64_t *change;
-    uint32_t across, down; /* with the one more */
+    uint32_t across, down; /* with the extra one */
 } tile_counts;
 
 static void add_splat(tile_counts *counts, const t3r_splat *splat, tile_lists *lists)

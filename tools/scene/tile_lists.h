@@ -1,6 +1,6 @@
-/* How many splats the tiles of a view list: what drawing it costs. A scene of surfaces lists a few tiles for each
- * Gaussian. A weight file or a scene from elsewhere can make Gaussians faint and as wide as the picture: then every
- * tile lists them all, nothing ends early, and a view takes hundreds of times as long. */
+/* Counts the splats that the tiles of a view list, which is the cost of drawing it. A scene of surfaces lists a few
+ * tiles per Gaussian. A weight file or a foreign scene can have faint Gaussians as wide as the picture: then every tile
+ * lists them all, no pixel ends early, and a view takes hundreds of times as long. */
 #ifndef TRIM3R_TOOLS_TILE_LISTS_H
 #define TRIM3R_TOOLS_TILE_LISTS_H
 
@@ -10,13 +10,13 @@
 #include "trim3r.h"
 
 typedef struct tile_lists {
-    uint64_t entries; /* splats of all tiles, no more of each than are drawn */
-    uint64_t usual;   /* what an arena for full speed has room for: four tiles a Gaussian, and one entry a pixel */
+    uint64_t entries; /* splats of all tiles, at most as many per tile as are drawn */
+    uint64_t usual;   /* entries that an arena for full speed holds: four tiles per Gaussian, and one entry per pixel */
     uint32_t widest;  /* tiles of the widest splat */
 } tile_lists;
 
-/* Of a view of width x height, of which a tile is drawn from its `tile_splats` nearest alone (0: from all); the
- * camera's distortion is ignored. All 0 where it cannot be drawn. False: out of memory. */
+/* Counts for a view of width x height whose tiles draw only the `tile_splats` nearest (0: all); the camera's distortion
+ * is ignored. All 0 if it cannot be drawn. False: out of memory. */
 bool tile_lists_of(const t3r_scene *scene, const t3r_camera *camera, uint32_t width, uint32_t height,
                    uint32_t tile_splats, tile_lists *lists);
 

@@ -1,4 +1,4 @@
-/* A bundle in memory: what a page of `trim3r view` is given (bundle_layout.h). */
+/* A bundle in memory: the input of a page of `trim3r view` (bundle_layout.h). */
 #ifndef TRIM3R_TOOLS_BUNDLE_H
 #define TRIM3R_TOOLS_BUNDLE_H
 
@@ -13,11 +13,11 @@ typedef struct bundle_frame {
     t3r_camera camera;
     uint8_t *rgb;            /* 3 bytes a pixel */
     uint16_t *depth;         /* steps; NULL = none */
-    uint64_t depth_unit_q40; /* of a step */
+    uint64_t depth_unit_q40; /* world units per step */
 } bundle_frame;
 
 typedef struct bundle {
-    t3r_config config; /* `views` context views, which are the first frames */
+    t3r_config config; /* `views` context views, the first of the frames */
     const void *weights;
     size_t weight_bytes;
     const bundle_frame *frames;
@@ -25,7 +25,7 @@ typedef struct bundle {
     const scene_file *scene; /* NULL = the page builds its own */
 } bundle;
 
-/* The bytes, on the heap; NULL when memory is out, or where they are more than 1 GiB. */
+/* Returns the bytes, on the heap; NULL when memory is out or they exceed 1 GiB. */
 uint8_t *bundle_bytes(const bundle *b, size_t *count);
 
 #endif

@@ -1,23 +1,23 @@
-/* The bundle: all that a viewer's page computes from, as bytes. bundle.c writes it, module/module.c reads it.
+/* The bundle: all input of a viewer's page, as bytes. bundle.c writes it, module/module.c reads it.
  *
  * Little-endian, in this order:
  *   u32    BUNDLE_MAGIC
  *   u32    words of the configuration, and as many u32: the fields of t3r_config in their order
  *   u32    context views, and frames: the context views come first
- *   u32    bytes of the head's weights; 0 = a head without any
- *   u32    Gaussians of a scene from a file; 0 = there is none
+ *   u32    bytes of the head's weights; 0 = a head without weights
+ *   u32    Gaussians of a scene from a file; 0 = none
  *   i32    the exponent of that scene's frame, then 3 x i64: its origin
  *   frames BUNDLE_FRAME_BYTES each: i32 fx, fy, cx, cy (Q16); 3 x i64 position (Q32); 4 x i32 rotation (Q30); u64 unit
  *          of depth (Q40), 0 = the frame has no depth
- *   then, each at the next multiple of BUNDLE_ALIGN from the start: the weights; of each frame RGB, 3 bytes a pixel,
- * and where it has depth 2 bytes a pixel; the Gaussians, BUNDLE_GAUSSIAN_BYTES each. Frames have the working size. */
+ *   then, each at the next multiple of BUNDLE_ALIGN from the start: the weights; for each frame RGB, 3 bytes a pixel,
+ * and, if it has depth, 2 bytes a pixel; the Gaussians, BUNDLE_GAUSSIAN_BYTES each. Frames have the working size. */
 #ifndef TRIM3R_TOOLS_BUNDLE_LAYOUT_H
 #define TRIM3R_TOOLS_BUNDLE_LAYOUT_H
 
 #include "trim3r.h"
 
 #define BUNDLE_MAGIC 0x31763374u /* "t3v1" */
-#define BUNDLE_ALIGN 16u         /* what weights are aligned to */
+#define BUNDLE_ALIGN 16u         /* alignment of weights */
 #define BUNDLE_FRAME_BYTES 64u
 /* Position, mantissas, exponent, view, colour, opacity, confidence, in the order of t3r_gaussian, without `reserved`.
  */

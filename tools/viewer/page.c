@@ -8,8 +8,8 @@
 #include "cli/tables/json_output.h"
 #include "cli/help/markup.h"
 
-/* What is embedded by the build: page/view.html with marks for the others, as <!--style-->. The module is empty where
- * there was no compiler for it. */
+/* Embedded by the build: page/view.html with marks for the others, such as <!--style-->. The module is empty if there
+ * was no compiler for it. */
 extern const char viewer_html[], viewer_css[], viewer_js[], viewer_worker_js[], viewer_wasm[];
 extern const unsigned viewer_wasm_bytes;
 
@@ -45,7 +45,7 @@ static cJSON *frame_json(const viewer_page *page, uint32_t index)
     return frame;
 }
 
-/* The text of the JSON, on the heap, or NULL. */
+/* Returns the text of the JSON, on the heap, or NULL. */
 static char *json_of(const viewer_page *page)
 {
     cJSON *root = cJSON_CreateObject();
@@ -74,7 +74,7 @@ static char *json_of(const viewer_page *page)
     return text;
 }
 
-/* '<' only as an escape: no end of the script element. */
+/* Writes JSON with '<' escaped, so that it cannot end the script element. */
 static void write_json(FILE *out, const char *text)
 {
     for (; *text != '\0'; text++) {

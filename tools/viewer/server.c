@@ -34,7 +34,7 @@ int server_open(uint16_t *port, char *error, size_t error_bytes)
     return listener;
 }
 
-/* The head of a request as a string; false: it is too long, or does not come. */
+/* Reads the head of a request as a string; false: it is too long, or does not arrive. */
 static bool read_request(int client, char request[REQUEST_BYTES])
 {
     size_t count = 0;
@@ -96,7 +96,7 @@ static void answer(int client, const char *status, const char *body, size_t coun
 static void serve(int client, uint16_t port, const char *page, size_t page_bytes)
 {
     char request[REQUEST_BYTES];
-    const struct timeval most = {.tv_sec = SECONDS}; /* for each part: a client that stalls holds up the others */
+    const struct timeval most = {.tv_sec = SECONDS}; /* for each part: a client that stalls delays the others */
     (void)setsockopt(client, SOL_SOCKET, SO_RCVTIMEO, &most, sizeof most);
     (void)setsockopt(client, SOL_SOCKET, SO_SNDTIMEO, &most, sizeof most);
     if (!read_request(client, request)) {

@@ -10,7 +10,7 @@
 #include "import/poses/viewpoint.h"
 #include "reconstruction/developed_frame.h"
 
-#define DEGREES 60 /* across a scene that came without frames */
+#define DEGREES 60 /* horizontal angle for a scene without frames */
 
 int viewpoints_add(viewpoints *v, const t3r_recording *recording, const char *path, uint32_t index, uint32_t width,
                    uint32_t height, bool with_depth)
@@ -48,7 +48,7 @@ void viewpoints_add_before(viewpoints *v, const scene_file *scene, uint32_t widt
         }
     }
     for (uint32_t i = 0; i < scene->count; i++) {
-        for (int axis = 0; axis < 2; axis++) { /* across the view */
+        for (int axis = 0; axis < 2; axis++) { /* the axes across the view */
             spread += fabs(scene->gaussians[i].position_q20[axis] / 1048576.0 - centre[axis]) / scene->count;
         }
     }

@@ -1,4 +1,4 @@
-/* Where a page looks from: recorded frames, or a place before a scene that came without any. */
+/* Viewpoints of a page: recorded frames, or a place in front of a scene without frames. */
 #ifndef TRIM3R_TOOLS_VIEWER_VIEWPOINTS_H
 #define TRIM3R_TOOLS_VIEWER_VIEWPOINTS_H
 
@@ -15,12 +15,12 @@ typedef struct viewpoints {
     uint32_t count;
 } viewpoints;
 
-/* Adds a recorded frame of this size. with_depth: its depth as well, where it has one. An exit status of cli.h after a
- * message; viewpoints_free() is due either way. */
+/* Adds a recorded frame of this size. with_depth: also its depth, if it has one. Returns an exit status of cli.h after
+ * a message; viewpoints_free() is due either way. */
 int viewpoints_add(viewpoints *v, const t3r_recording *recording, const char *path, uint32_t index, uint32_t width,
                    uint32_t height, bool with_depth);
 
-/* Adds a place from which most of the scene is seen, along the world's z with y down. */
+/* Adds a viewpoint from which most of the scene is visible, along the world's z with y down. */
 void viewpoints_add_before(viewpoints *v, const scene_file *scene, uint32_t width, uint32_t height);
 
 void viewpoints_free(viewpoints *v);

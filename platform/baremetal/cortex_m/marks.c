@@ -1,6 +1,6 @@
 #include "marks.h"
 
-/* No two functions may share a place, so each has a statement that the compiler cannot merge. */
+/* Each function has a statement that the compiler cannot merge, so that no two share an address. */
 #define MARK(name)                                                                                                     \
     void mark_##name(void);                                                                                            \
     __attribute__((noinline)) void mark_##name(void)                                                                   \

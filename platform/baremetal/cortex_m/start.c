@@ -1,5 +1,5 @@
-/* From reset to main() on a Cortex-M: the vector table, initialised data, the painted stack. Symbols that end in
- * _at are places that sections.ld names. */
+/* From reset to main() on a Cortex-M: the vector table, initialised data, the painted stack. Symbols that end in _at
+ * are addresses from sections.ld. */
 #include <stdint.h>
 
 #include "semihost.h"
@@ -19,7 +19,7 @@ _Noreturn void fault(void)
 }
 
 #if defined(__ARM_FP) || defined(__ARM_FEATURE_MVE)
-/* Vectors lie in the registers of the floating-point unit, which is off after a reset. */
+/* Vectors use the registers of the floating-point unit, which is off after a reset. */
 static void enable_vectors(void)
 {
     volatile uint32_t *const access_control = (volatile uint32_t *)0xe000ed88; /* CPACR */

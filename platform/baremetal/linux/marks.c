@@ -1,6 +1,6 @@
 #include "marks.h"
 
-/* Nobody counts instructions here. */
+/* No instructions are counted here. */
 
 void mark_stage(t3r_stage stage)
 {

@@ -2,7 +2,7 @@
 
 #include "trim3r.h"
 
-/* As much as the largest picture of tools/everywhere needs. */
+/* Enough for the largest picture of tools/everywhere. */
 static _Alignas(T3R_ARENA_ALIGN) uint8_t memory[16 << 20];
 
 ram_part ram_free(void)
@@ -10,7 +10,7 @@ ram_part ram_free(void)
     return (ram_part){memory, memory + sizeof memory};
 }
 
-/* The operating system's, which nobody measures here. */
+/* The operating system's stack and data are not measured here. */
 
 ram_part ram_data(void)
 {

@@ -1,4 +1,4 @@
-/* What a debugger does for a board, by the calls of an operating system: the firmware runs as a program. */
+/* Does with an operating system's calls what a debugger does for a board, so that the firmware runs as a program. */
 #include "semihost_call.h"
 
 #include <fcntl.h>
@@ -24,7 +24,7 @@ static int32_t open_file(const char *path, uintptr_t mode)
     return file < 0 ? -1 : file + 1;
 }
 
-/* How many bytes did not come. */
+/* Returns the number of bytes that were not read. */
 static int32_t read_file(int file, uint8_t *bytes, size_t count)
 {
     ssize_t came = 1;
@@ -36,7 +36,7 @@ static int32_t read_file(int file, uint8_t *bytes, size_t count)
     return (int32_t)count;
 }
 
-/* How many bytes did not go. */
+/* Returns the number of bytes that were not written. */
 static int32_t write_file(int file, const uint8_t *bytes, size_t count)
 {
     ssize_t went = 1;
@@ -54,7 +54,7 @@ static int32_t length_of(int file)
     return fstat(file, &told) == 0 ? (int32_t)told.st_size : -1;
 }
 
-/* The words that the program was started with, a space between two. */
+/* Copies the words that the program was started with, separated by spaces. */
 static int32_t command_line(char *text, size_t room)
 {
     const int file = open("/proc/self/cmdline", O_RDONLY);

@@ -1,9 +1,9 @@
-// The machine of the module that platform/baremetal/wasm makes, under Node.js:
+// Runs the module of platform/baremetal/wasm under Node.js:
 //
 //     node host.mjs MODULE RUNS WORD...
 //
-// It runs the module with these words of a command line. Files, the console and the end come by Arm's semihosting, as
-// on a board. What the last run prints is printed; then "ms_0" and the least milliseconds of all runs for stage 0, and so on.
+// Runs the module with these words as its command line. Files, the console and the exit use Arm's semihosting, as on a
+// board. Prints the output of the last run; then "ms_0" and the least milliseconds of all runs for stage 0, and so on.
 import fs from "node:fs";
 
 const OPEN = 0x01, CLOSE = 0x02, WRITE = 0x05, READ = 0x06, SEEK = 0x0a, LENGTH = 0x0c, COMMAND_LINE = 0x15, EXIT = 0x20;
@@ -18,7 +18,7 @@ class Ended extends Error {
   }
 }
 
-// What one run sees of the world.
+// The environment of one run.
 class Host {
   constructor(words) {
     this.line = ["trim3r", ...words].join(" ");
@@ -50,7 +50,7 @@ class Host {
     }
   }
 
-  // How many of the bytes are left to write.
+  // Returns the number of bytes that were not written.
   write(handle, at, count) {
     if (handle === CONSOLE) {
       this.printed.push(this.text(at, count));
@@ -59,7 +59,7 @@ class Host {
     return count - fs.writeSync(this.files.get(handle).descriptor, this.bytes(at, count));
   }
 
-  // How many of the bytes are left to read.
+  // Returns the number of bytes that were not read.
   read(handle, at, count) {
     const file = this.files.get(handle);
     const got = fs.readSync(file.descriptor, this.bytes(at, count), 0, count, file.position);
@@ -117,7 +117,7 @@ class Host {
     this.since = now;
   }
 
-  // The module's exit status.
+  // Returns the module's exit status.
   run(module) {
     const imports = {
       semihost: (operation, block) => this.semihost(operation, block),
@@ -133,7 +133,7 @@ class Host {
       }
       throw ended;
     }
-    return 2; // it came back without an end
+    return 2; // it returned without an exit call
   }
 }
 

@@ -1,5 +1,5 @@
-/* From the call of the module to main(): the painted stack. It holds what has an address; other variables lie where the
- * engine keeps them. */
+/* From the call of the module to main(): the painted stack. It holds variables whose address is taken; the engine keeps
+ * the others. */
 #include "semihost.h"
 #include "stack.h"
 

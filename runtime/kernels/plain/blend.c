@@ -5,8 +5,8 @@
 #include "core/memory.h"
 #include "kernels/lanes/lanes.h"
 
-/* exp(-q / 8) by the polynomial about q = 6, squared three times. Nothing is negative, so one unsigned multiplication
- * serves throughout; it rounds down, and only what is summed over many splats is rounded to the nearest. */
+/* Computes alphas from exp(-q / 8), by the polynomial around q = 6, squared three times. Nothing is negative, so one
+ * unsigned multiplication is enough. It rounds down; only sums over many splats are rounded to the nearest. */
 static inline __attribute__((always_inline)) t3r_lanes alphas_of(const int32_t q_q17[T3R_C_LANES], uint16_t opacity_q16)
 {
     t3r_lanes s;
@@ -42,7 +42,7 @@ uint16_t t3r_alpha_q16(int32_t q_q17, uint16_t opacity_q16)
     return alphas_of(q, opacity_q16).x[0];
 }
 
-/* Lanes of a row, as they are blended. */
+/* A row's lanes as blended. */
 typedef struct blended {
     t3r_lanes weight, alpha;
 } blended;
@@ -77,7 +77,8 @@ static inline void keep(blended b, uint16_t *weight_q16, int16_t *alpha_q15)
     }
 }
 
-/* rows: where what is blended is kept, or NULL; known where this is inlined. Returns all bits of the weights kept. */
+/* Blends a group of columns. rows: where the blended rows are stored, or NULL; a constant once inlined. Returns the
+ * bitwise or of the weights stored. */
 static inline __attribute__((always_inline)) uint16_t blend_group(t3r_tile *restrict tile, const t3r_tile_splat *splat,
                                                                   uint32_t group, t3r_blended_row *restrict rows)
 {

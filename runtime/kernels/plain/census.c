@@ -2,8 +2,8 @@
 
 #include "core/fixed.h"
 
-/* Which places are compared, columns and rows from the pixel: 17 opposite pairs of 7 x 5, which noise moves least, and
- * the pixel itself with seven others, which shows where edges are. */
+/* The places compared, columns and rows from the pixel: 17 opposite pairs of 7 x 5, which noise changes least, and the
+ * pixel itself with seven others, which separates edges. */
 static const struct {
     int8_t ax, ay, bx, by;
 } pairs[T3R_CENSUS_PAIRS] = {
@@ -26,7 +26,8 @@ static void compare_ends(const uint8_t *a, const uint8_t *b, int32_t ax, int32_t
     }
 }
 
-/* The bits of eight pairs in the middle of a row, where nothing is held; a, b: where each pair's first pixel is. */
+/* Computes the bits of eight pairs in the middle of a row, where no column is clamped. a, b: the places of the first
+ * pixel's pairs. */
 static void compare_eight(const uint8_t *const a[8], const uint8_t *const b[8], uint32_t count, uint8_t *restrict bits)
 {
     const uint8_t *a0 = a[0], *a1 = a[1], *a2 = a[2], *a3 = a[3], *a4 = a[4], *a5 = a[5], *a6 = a[6], *a7 = a[7];

@@ -1,6 +1,6 @@
 #include "kernels/census.h"
 
-/* Set bits of each nibble of x: 0..4 each */
+/* Returns the set bits of each nibble of x: 0..4 each. */
 static inline uint8_t nibble_counts(uint8_t x)
 {
     x = (uint8_t)(x - ((x >> 1) & 0x55));
@@ -22,7 +22,7 @@ static void cost_of(const uint8_t own[T3R_CENSUS_BYTES], const uint8_t *others, 
 
 void t3r_census_costs_c(const t3r_census_costs *row)
 {
-    const size_t width = row->width, count = row->disparities & ~15u; /* as it is; this says so to compilers */
+    const size_t width = row->width, count = row->disparities & ~15u; /* unchanged; shows compilers a multiple of 16 */
     const size_t right = T3R_MATCH_RIGHT(width, count);
     t3r_census_mirror(row);
     for (size_t x = 0; x < width; x++) {

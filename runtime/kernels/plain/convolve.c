@@ -7,9 +7,9 @@
 #include "core/little_endian.h"
 #include "kernels/requantize.h"
 
-#define CHUNK 256u /* products of 16-bit activations that are summed in 32 bits */
+#define CHUNK 256u /* products of 16-bit activations summed in 32 bits */
 
-/* Four sums over one run of weights: 16-bit factors, 32-bit sums, which compilers know as one instruction (SSE2
+/* Four sums over one run of weights: 16-bit factors and 32-bit sums, which compilers turn into one instruction (SSE2
  * pmaddwd, NEON smlal). */
 #define DOT(WEIGHT)                                                                                                    \
     const int16_t *x0 = x[0], *x1 = x[1], *x2 = x[2], *x3 = x[3];                                                      \
@@ -75,8 +75,8 @@ static void dot_w16_wide(four_columns x, const t3r_le16 *weights, uint32_t count
     }
 }
 
-/* Sums without the bias of one output's weights over four columns. Columns go on with zeros, so the loop may as well,
- * as long as there are bytes to read: what they hold does not matter. */
+/* Computes an output's sums over four columns, without the bias. Columns are padded with zeros, so the loop may run
+ * over the padding as long as weights may be read there: their values don't matter. */
 static void dot(const t3r_convolution *layer, four_columns x, uint32_t output, int64_t sum[T3R_BLOCK_PIXELS])
 {
     const uint32_t taps = layer->taps, whole = (taps + T3R_COLUMN_TAPS - 1) / T3R_COLUMN_TAPS * T3R_COLUMN_TAPS;
@@ -134,7 +134,7 @@ static void finish(const t3r_convolution *layer, uint32_t output, const t3r_requ
 void t3r_convolve_c(const t3r_convolution *layer, const t3r_block *block, void *out, uint32_t out_pitch)
 {
     const int16_t *first = block->x;
-    const uint32_t last = block->pixels - 1; /* behind the last pixel, the last again */
+    const uint32_t last = block->pixels - 1; /* pads by repeating the last pixel */
     four_columns x = {first, first + (size_t)T3R_MIN(1, last) * block->step,
                       first + (size_t)T3R_MIN(2, last) * block->step, first + (size_t)T3R_MIN(3, last) * block->step};
     for (uint32_t output = 0; output < layer->outputs; output++) {
@@ -147,10 +147,10 @@ void t3r_convolve_c(const t3r_convolution *layer, const t3r_block *block, void *
     }
 }
 
-/* --- depthwise: an output sums its own channel alone ------------------------------------------------------------ */
+/* --- depthwise: an output sums only its own channel -------------------------------------------------------------- */
 
-/* sum[c] = sum over taps of column[t][c] x weights[t][c]. 32-bit sums: with 8-bit activations t3r_weights_check() has
- * bounded them; with 8-bit weights 25 x 2^15 x 2^7. */
+/* sum[c] = sum over taps of column[t][c] x weights[t][c]. 32-bit sums: t3r_weights_check() has bounded them with 8-bit
+ * activations; with 8-bit weights they are at most 25 x 2^15 x 2^7. */
 #define DEPTHWISE(WEIGHT)                                                                                              \
     for (uint32_t c = 0; c < channels; c++) {                                                                          \
         sum[c] = 0;                                                                                                    \

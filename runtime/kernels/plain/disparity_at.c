@@ -4,12 +4,12 @@
 
 #include "core/fixed.h"
 
-/* A pixel's disparity, and how far it can be trusted; false: none. */
+/* A pixel's disparity and its confidence. */
 typedef struct disparity {
     int32_t k_q7, confidence;
 } disparity;
 
-/* At most a pixel apart; T3R_NO_DISPARITY is farther from any disparity. */
+/* Whether two disparities are at most a pixel apart; T3R_NO_DISPARITY is farther from any. */
 static inline bool beside(int32_t k, int32_t own)
 {
     return (uint32_t)(k - own + (1 << T3R_DISPARITY_BITS)) <= 2u << T3R_DISPARITY_BITS;
@@ -50,7 +50,7 @@ static inline bool look_up(const t3r_disparity_plane *plane, int32_t x_q16, int3
 void t3r_disparity_at_c(const t3r_disparity_plane *given, const t3r_ray_places *places, uint32_t count,
                         t3r_disparities *out)
 {
-    const t3r_disparity_plane all = *given, *plane = &all; /* a copy: writing changes none of what it holds */
+    const t3r_disparity_plane all = *given, *plane = &all; /* a copy, which the writes below cannot change */
     for (uint32_t i = 0; i < count; i++) {
         disparity found;
         const int32_t x_q16 = places->x_q16[i];

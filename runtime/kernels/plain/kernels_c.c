@@ -1,6 +1,6 @@
 #include "kernels/kernels.h"
 
-/* Entries of a feature that is left out are NULL, and nothing calls them. */
+/* Entries of a feature that is left out are NULL and never called. */
 const t3r_kernels t3r_kernels_c = {
     .packed_row = t3r_packed_row_c,
     .nv12_row = t3r_nv12_row_c,

@@ -18,9 +18,9 @@ static inline uint8_t between(const t3r_luma_picture *picture, int32_t u_q16, in
 
 void t3r_luma_at_c(const t3r_luma_picture *given, const t3r_ray_places *places, uint32_t count, uint8_t *out)
 {
-    const t3r_luma_picture all = *given, *picture = &all; /* a copy: writing bytes changes none of what it holds */
+    const t3r_luma_picture all = *given, *picture = &all; /* a copy, which the writes below cannot change */
     for (uint32_t i = 0; i < count; i++) {
-        /* positions far outside are held to 32 bits, and as far outside */
+        /* positions far outside are clamped to 32 bits, which is still outside */
         const int32_t u = places->x_q16[i], v = places->y_q16[i];
         const uint32_t x = (uint32_t)(((u >> 15) + 1) >> 1), y = (uint32_t)(((v >> 15) + 1) >> 1);
         const bool seen = places->z_q24[i] != 0 && x < picture->width && y < picture->height &&

@@ -11,7 +11,7 @@ static int32_t score_of(const t3r_centres *centres, const int16_t *p, uint32_t k
     return centres->half_norm[k] - dot;
 }
 
-/* |c_a - c_b|^2: at most 6 x 30000^2 < 2^33 */
+/* Returns |c_a - c_b|^2: at most 6 x 30000^2 < 2^33. */
 static int64_t square_between(const t3r_centres *centres, uint32_t a, uint32_t b)
 {
     int64_t sum = 0;
@@ -47,7 +47,7 @@ void t3r_nearest_begin_c(const t3r_centres *centres, uint32_t first, uint32_t en
     }
 }
 
-/* The nearest by looking at all: scores, their least, the first that has it; three loops without branches. */
+/* Finds the nearest of all centres in three loops without branches: scores, their least, and the first that has it. */
 static uint16_t nearest_of_all(const t3r_centres *centres, const int16_t *p)
 {
     int32_t score[T3R_MAX_CLUSTERS];
@@ -69,15 +69,15 @@ static uint16_t nearest_of_all(const t3r_centres *centres, const int16_t *p)
     return (uint16_t)first;
 }
 
-/* Among the neighbours of centre g, as long as one of them can still be nearer. With d = |p - c_g|, a centre c with
- * |c - c_g|^2 > 4 d^2 + 4 has |p - c|^2 > d^2 + 1, so its score, rounding down included, is not below g's. False = the
- * list ended before that was sure. */
+/* Searches the neighbours of centre g as long as one of them can still be nearer. With d = |p - c_g|, a centre c with
+ * c - c_g|^2 > 4 d^2 + 4 has |p - c|^2 > d^2 + 1, so its score, even rounded down, is not below g's. Returns false if
+ * the list ended before that. */
 static bool nearest_near(const t3r_centres *centres, const t3r_neighbours *neighbours, const int16_t *p, int32_t norm,
                          uint32_t g, uint16_t *nearest)
 {
     uint32_t listed = centres->count - 1 < T3R_NEIGHBOURS ? centres->count - 1 : T3R_NEIGHBOURS;
     int32_t least = score_of(centres, p, g);
-    /* d^2 = |p|^2 + 2 score, and 1 for the half that half_norm may lack */
+    /* d^2 = |p|^2 + 2 score, and 1 for the half that half_norm may have lost */
     int64_t bound = 4 * (norm + 2 * (int64_t)least + 1) + 4;
     uint32_t best = g;
     for (uint32_t i = 0; i < listed; i++) {

@@ -5,15 +5,15 @@ static inline uint8_t minimum(uint8_t a, uint8_t b)
     return a < b ? a : b;
 }
 
-/* What a path adds to the cost: the values of the pixel before at k - 1, k and k + 1. */
+/* Returns what a path adds to the cost, from the previous pixel's values at k - 1, k and k + 1. */
 static inline uint8_t relaxed(uint8_t below, uint8_t same, uint8_t above, uint8_t least, uint8_t p1, uint8_t p2)
 {
     uint8_t beside = (uint8_t)(minimum(below, above) + p1);
     return minimum((uint8_t)(minimum(same, beside) - least), p2);
 }
 
-/* The three pointers are into one slot; a compiler that saw it would carry values from step to step, and then not
- * vectorize. */
+/* Not inlined: the three pointers are into one slot, and a compiler that sees this carries values from step to step
+ * instead of vectorizing. */
 static __attribute__((noinline)) uint8_t follow(const uint8_t *cost, const uint8_t *below, const uint8_t *same,
                                                 const uint8_t *above, uint8_t from_least, uint8_t p1, uint8_t p2,
                                                 size_t count, uint8_t *restrict to)
@@ -27,7 +27,7 @@ static __attribute__((noinline)) uint8_t follow(const uint8_t *cost, const uint8
     return least;
 }
 
-/* Two paths, or all four. */
+/* Sum the values of two paths, and of all four. */
 static void sum_two(const uint8_t *a, const uint8_t *b, size_t count, bool add, int16_t *restrict sums)
 {
     for (size_t k = 0; k < count; k++) {
@@ -47,11 +47,11 @@ static void sum_four(const uint8_t *a, const uint8_t *b, const uint8_t *c, const
 void t3r_path_row_c(const t3r_path_row *row)
 {
     const uint32_t width = row->width, paths = row->diagonals ? 3 : 1;
-    const uint32_t count = row->disparities & ~(T3R_PATH_LANES - 1); /* as it is; this says so to compilers */
+    const uint32_t count = row->disparities & ~(T3R_PATH_LANES - 1); /* unchanged; shows compilers a multiple */
     const size_t pitch = (size_t)count + 1, state = T3R_PATH_STATE_BYTES(width, count);
     const size_t leasts = t3r_path_leasts(width, count);
     const uint8_t p1 = row->costs->p1;
-    uint8_t beside[2][T3R_PATH_MOST + 2]; /* the path along the row: this pixel and the one before it */
+    uint8_t beside[2][T3R_PATH_MOST + 2]; /* the path along the row: this pixel and the previous one */
     uint8_t least = 0;
     for (uint32_t k = 0; k < count + 2; k++) {
         beside[0][k] = beside[1][k] = k == 0 || k == count + 1 ? row->costs->guard : 0;

@@ -7,7 +7,7 @@
 /* A quadratic that is nowhere below this draws nothing: 255 exp(-6) < 1. */
 #define LEVEL_MOST 6
 
-/* The least of q + 2 h t + a t^2 for t in [0, length], all Q18 but the length in pixels. */
+/* Returns the least of q + 2 h t + a t^2 for t in [0, length], all Q18 except the length in pixels. */
 static int64_t least_along(int64_t q, int64_t h, int64_t a, int64_t length)
 {
     int64_t t_q8 = h >= 0 ? 0 : length << 8;
@@ -17,9 +17,9 @@ static int64_t least_along(int64_t q, int64_t h, int64_t a, int64_t length)
     return q + ((h * t_q8) >> 7) + ((a * t_q8 * t_q8) >> 16);
 }
 
-/* Whether the quadratic of a splat whose centre lies elsewhere falls below LEVEL_MOST anywhere on eight columns of a
- * tile (pixel centres). It is convex, so its least value there is on an edge. Within its box a splat is at most
- * 2^14.6 px away: half-gradients below 2^16 and products below 2^61 in Q18 x Q12. */
+/* Whether the quadratic of a splat centred elsewhere falls below LEVEL_MOST on any of eight columns of a tile (pixel
+ * centres). It is convex, so its least value there is on an edge. Within its box a splat is at most 2^14.6 px away:
+ * half-gradients below 2^16 and products below 2^61 in Q18 x Q12. */
 static bool touches(const t3r_splat *s, uint32_t x, uint32_t y)
 {
     const int64_t width = T3R_LANES - 1, height = T3R_TILE_SIDE - 1;
@@ -38,9 +38,9 @@ static bool touches(const t3r_splat *s, uint32_t x, uint32_t y)
     return least < (int64_t)LEVEL_MOST << 18;
 }
 
-/* The quadratic about the group's first pixel. With the columns touched it is below 885 there (the root of 6 and the
- * group's diagonal in the steepest metric, squared), so half-gradients are below 2^5.3; the centre is less than 2^14.6
- * px away: the two products of q sum to less than 2^62.8. */
+/* Computes the quadratic from the group's first pixel. If the columns are touched it is below 885 there (the root of 6
+ * plus the group's diagonal in the steepest metric, squared), so half-gradients are below 2^5.3. The centre is less
+ * than 2^14.6 px away: the two products of q sum to less than 2^62.8. */
 static void place_group(const t3r_splat *s, uint32_t x, uint32_t y, uint32_t group, t3r_tile_splat *out)
 {
     int64_t dx = ((int64_t)x << 12) - s->x_q12, dy = ((int64_t)y << 12) - s->y_q12;

@@ -17,14 +17,14 @@ void t3r_unproject_c(const t3r_unprojection *restrict from, t3r_points *restrict
     }
 }
 
-/* The pixel coordinate f x / z + c, to the nearest: |x| <= 16 z, z < 2^31. */
+/* Returns the pixel coordinate f x / z + c, rounded to the nearest: |x| <= 16 z, z < 2^31. */
 static int64_t place(int64_t x, int64_t z, int32_t focal_q16, int32_t centre_q16)
 {
     const int64_t ratio_q24 = t3r_round_div64(x * (1 << 24), z);
     return t3r_round_shift64(t3r_round_shift64(ratio_q24 * focal_q16, 24) + centre_q16, 16); /* 2^28 x 2^30 */
 }
 
-/* The same by a reciprocal of z, which is z 2^shift = 2^62 / rn: x 2^shift is at most 2^36, a 32nd of it below 2^31. */
+/* As place(), by a reciprocal of z, z 2^shift = 2^62 / rn: x 2^shift is at most 2^36, 1/32 of it below 2^31. */
 static int64_t place_by(int64_t x, int64_t z, uint32_t shift, int64_t rn, int32_t focal_q16, int32_t centre_q16)
 {
     const int64_t ratio_q25 = ((x * ((int64_t)1 << shift) >> 5) * rn) >> 32;

@@ -1,11 +1,11 @@
-/* EWA projection of 3-D covariances (Zwicker et al. 2001, "EWA volume splatting"; the Jacobian held at 1.3 half
- * fields of view and the 0.3 px^2 dilation as 3D Gaussian Splatting, Kerbl et al. 2023). */
+/* EWA projection of 3-D covariances (Zwicker et al. 2001, "EWA volume splatting"), with the Jacobian clamped at 1.3
+ * half fields of view and the 0.3 px^2 dilation of 3D Gaussian Splatting (Kerbl et al. 2023). */
 #include "kernels/project.h"
 
 #include "core/fixed.h"
 #include "kernels/project_parts.h"
 
-/* One row of T = J W F in pixels, Q12: (f / z) (w - tangent w2) F, with tangent = x / z or y / z. */
+/* Computes one row of T = J W F in pixels, Q12: (f / z) (w - tangent w2) F, with tangent = x / z or y / z. */
 static void footprint_row(const int32_t *w, const int32_t *w2, int32_t tangent_q24, int32_t f_q16,
                           t3r_reciprocal inverse, const t3r_gaussian *g, int32_t row_q12[3])
 {
@@ -29,13 +29,13 @@ static void footprint_row(const int32_t *w, const int32_t *w2, int32_t tangent_q
     }
 }
 
-/* value / 2^n for the recorded power n of either sign, held within int32 */
+/* Returns value / 2^n, for n of either sign, clamped to int32. */
 static int32_t to_q30(int64_t value, int32_t right)
 {
     return (int32_t)t3r_clamp64(t3r_scale64(value, -right), -INT32_MAX, INT32_MAX);
 }
 
-/* The conic of the 2 x 2 covariance T T^T + 0.3 I. The determinant is summed from squares (Cauchy-Binet), so that
+/* Computes the conic of the 2 x 2 covariance T T^T + 0.3 I. The determinant is a sum of squares (Cauchy-Binet), so that
  * needles lose nothing to cancellation:
  *   det = sum of squared 2 x 2 minors of T + 0.3 trace(T T^T) + 0.09 */
 static void conic_of(const int32_t a_q12[3], const int32_t b_q12[3], t3r_splat *splat)
@@ -80,7 +80,7 @@ static int64_t half_width_q8(const int32_t row_q12[3], int32_t log_level_q16)
     return t3r_half_width_q8((uint64_t)variance_q24, log_level_q16);
 }
 
-/* The inclusive pixels within centre -+ half, clipped to 0..size - 1; false = none */
+/* Computes the inclusive pixels within centre -+ half, clipped to 0..size - 1. Returns false if there are none. */
 static bool clip_range(int32_t centre_q12, int64_t half_q8, uint32_t size, uint16_t *low, uint16_t *high)
 {
     int64_t half_q12 = half_q8 << 4;
@@ -96,14 +96,14 @@ static bool clip_range(int32_t centre_q12, int64_t half_q8, uint32_t size, uint1
     return true;
 }
 
-/* A Gaussian's mean before a camera. */
+/* A Gaussian's mean in camera coordinates. */
 typedef struct seen_mean {
     int64_t z_q20; /* in (T3R_NEAR_Q20, 2^31) */
     t3r_reciprocal inverse;
     int64_t u_q24, v_q24; /* x / z and y / z, at most 16 and 2^-23 */
 } seen_mean;
 
-/* false = culled */
+/* Computes the mean in camera coordinates. Returns false when it is culled. */
 static bool see(const t3r_projection *p, const t3r_gaussian *g, seen_mean *seen)
 {
     int64_t d[3]; /* positions and centres are within 2^30: below 2^31 */
@@ -127,7 +127,7 @@ static bool see(const t3r_projection *p, const t3r_gaussian *g, seen_mean *seen)
     return true;
 }
 
-/* Both rows of T, pixels, Q12. */
+/* Computes both rows of T, pixels, Q12. */
 static void footprint(const t3r_projection *p, const t3r_gaussian *g, const seen_mean *seen, int32_t a_q12[3],
                       int32_t b_q12[3])
 {

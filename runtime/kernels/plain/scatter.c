@@ -3,16 +3,17 @@
 #include "core/fixed.h"
 #include "kernels/scatter_bits.h"
 
-/* What every pixel of a splat adds, before it is brought to 16 bits; rows of all groups, one behind the other. */
+/* Terms of each pixel of a splat before they are reduced to 16 bits; rows of all groups, the second after the first. */
 typedef struct pixel_terms {
     uint32_t square[T3R_BLENDED_ROWS_MOST][T3R_LANES]; /* |g|^2, levels^2 Q(14 + 2 scale), below 3 x 2^30 */
     int32_t product[T3R_BLENDED_ROWS_MOST][T3R_LANES]; /* g . r, levels^2 Q(11 + scale), below 3 x 2^27 */
-    uint32_t squares, products;                        /* all bits of their sizes */
-    uint32_t squares_sum, products_sum;                /* of their sizes, each less its last 8 bits: below 2^32 */
+    uint32_t squares, products;                        /* bitwise or of their sizes */
+    uint32_t squares_sum, products_sum;                /* sums of their sizes, each without its last 8 bits: below
+                                                        * 2^32 */
 } pixel_terms;
 
-/* The colours behind become those behind the splat's own layer. Weights are scaled so that the largest takes 15 bits;
- * w r is summed with as many bits less as counting the pixels takes: below 2^31. */
+/* Computes the terms, and replaces the colours behind the splat by those behind the previous one. Weights are scaled so
+ * that the largest takes 15 bits. In sums of w r, w has as many bits less as counting the pixels takes: below 2^31. */
 static void terms_of(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, uint32_t less,
                      pixel_terms *restrict terms, int32_t colour[3], int32_t *weight)
 {
@@ -75,7 +76,7 @@ static void terms_of(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, 
     }
 }
 
-/* Factors of a group's pixels, row by row: half a tile's rows at a time, which keeps the stack below its bound. */
+/* Factors of a group's pixels, row by row. Half a tile's rows at a time, which keeps the stack below its bound. */
 #define ROWS_AT_ONCE ((uint32_t)T3R_TILE_SIDE / 2)
 typedef int16_t group_plane[ROWS_AT_ONCE][T3R_LANES];
 typedef struct factors {
@@ -83,7 +84,7 @@ typedef struct factors {
     group_plane product, square, square_x, square_y, square_xx, square_xy, square_yy;
 } factors;
 
-/* Of `rows` rows below the first `above` ones of the splat; in `terms` they begin at `at`. */
+/* Computes the factors of `rows` rows below the first `above` ones of the splat; in `terms` they begin at `at`. */
 static void factors_of(const pixel_terms *terms, const t3r_scatter_splat *splat, uint32_t group, uint32_t above,
                        uint32_t at, uint32_t rows, uint32_t square_shift, uint32_t product_shift, factors *restrict f)
 {
@@ -121,7 +122,7 @@ static void factors_of(const pixel_terms *terms, const t3r_scatter_splat *splat,
     }
 }
 
-/* Modulo 2^32, over whole rows. */
+/* Returns the dot product over whole rows, modulo 2^32. */
 static uint32_t dot(const group_plane plane, const group_plane other, uint32_t rows)
 {
     const int16_t *a = plane[0], *b = other[0];

@@ -2,14 +2,14 @@
 
 #include "core/fixed.h"
 
-/* floor((p - c)^2 / 4). The difference has 16 bits, so that a vector multiplies 16 bits to 32. */
+/* Returns floor((p - c)^2 / 4). The difference has 16 bits, so that a vector multiplies 16 bits to 32. */
 static inline int32_t quarter_square(int16_t p, int16_t c)
 {
     const int16_t e = (int16_t)(p - c);
     return (e * e) >> 2;
 }
 
-/* The distance of point i with this centre more. */
+/* Returns the distance of point i with this centre added. */
 static inline int32_t distance_with(const t3r_sample *sample, uint32_t i, const int16_t c[T3R_DIMENSIONS])
 {
     int16_t *const *p = sample->feature_q11;

@@ -4,16 +4,16 @@
 #include "core/memory.h"
 #include "kernels/solve_parts.h"
 
-/* The normal equations in phi = (1, x, y, xx - 1/2, 2 xy, yy - 1/2), both sides 4 times, and each side brought to 32
- * bits by a power of two of its own: a 2^a_up, b 2^b_up. */
+/* The normal equations in phi = (1, x, y, xx - 1/2, 2 xy, yy - 1/2), with both sides times 4 and then scaled to 32
+ * bits, each by its own power of two: a 2^a_up, b 2^b_up. */
 typedef struct equations {
-    int32_t a[T3R_REFINE_PARAMETERS][T3R_REFINE_PARAMETERS]; /* below 2^31; the lower triangle alone */
+    int32_t a[T3R_REFINE_PARAMETERS][T3R_REFINE_PARAMETERS]; /* below 2^31; only the lower triangle */
     int32_t b[T3R_REFINE_PARAMETERS];                        /* below 2^30 */
     int32_t damping;
     int32_t a_up, b_up;
 } equations;
 
-/* How far these shift left, or right below 0, for the largest to take `bits`. */
+/* Returns the left shift, negative for right, after which the largest takes `bits` bits. */
 static int32_t room_of(const int32_t *x, uint32_t count, int32_t bits)
 {
     uint32_t all = 0;
@@ -55,14 +55,14 @@ static equations normal_equations(const t3r_refine_sums *s)
     return e;
 }
 
-/* 1 / sqrt(d) as root 2^(up - 31), root in 2^15..2^16 - 1, and sqrt(d) as straight 2^-up, likewise. */
+/* 1 / sqrt(d) = root 2^(up - 31), root in 2^15..2^16 - 1, and sqrt(d) = straight 2^-up, straight in the same range. */
 typedef struct inverse_root {
     uint32_t root, straight;
     int32_t up; /* 0..15 */
 } inverse_root;
 
-/* f = d 4^up / 2^32 is in [1/4, 1): 1 / sqrt f from a parabola, then two steps of Newton's y (3 - f y^2) / 2.
- */
+/* Computes the inverse root. f = d 4^up / 2^32 is in [1/4, 1): 1 / sqrt f from a parabola, then two Newton steps y (3 -
+ * f y^2) / 2. */
 static inverse_root inverse_root_of(uint32_t d)
 {
     const uint32_t up = (uint32_t)__builtin_clz(d) / 2, f_q16 = (d << (2 * up)) >> 16;
@@ -76,7 +76,7 @@ static inverse_root inverse_root_of(uint32_t d)
     return (inverse_root){root, (f_q16 * root) >> 15, (int32_t)up};
 }
 
-/* a / sqrt(d_i d_j) in Q15: |a| 2^(ups) is below 2^32, taken to 15 bits first. */
+/* Returns a / sqrt(d_i d_j) in Q15: |a| 2^(ups) is below 2^32 and reduced to 15 bits first. */
 static int16_t correlation_of(int32_t a, inverse_root i, inverse_root j)
 {
     const int32_t a_q15 = t3r_clamp32(t3r_scale32(a, i.up + j.up - 17), -INT16_MAX, INT16_MAX);
@@ -85,15 +85,15 @@ static int16_t correlation_of(int32_t a, inverse_root i, inverse_root j)
 }
 
 /* Solves (A + 3/16 diag A + damping) x = b in the unknowns x sqrt(diagonal), in which the diagonal is 1: Gauss-Seidel,
- * a fixed number of sweeps, without a division. The matrix is positive and its diagonal raised by 3/16, so they close
- * in, and no unknown exceeds 16 times the largest right side. */
+ * a fixed number of sweeps, without a division. The matrix is positive and its diagonal raised by 3/16, so it
+ * converges, and no unknown exceeds 16 times the largest right side. */
 static void solve(const equations *e, int32_t x_q16[T3R_REFINE_PARAMETERS])
 {
     inverse_root root[T3R_REFINE_PARAMETERS];
     int16_t a_q15[T3R_REFINE_PARAMETERS][T3R_REFINE_PARAMETERS];
     int32_t top = 0; /* the highest bit of the largest right side, scaled */
     for (int i = 0; i < T3R_REFINE_PARAMETERS; i++) {
-        const uint32_t square = (uint32_t)T3R_MAX(e->a[i][i], 0); /* roundings may leave it a little below 0 */
+        const uint32_t square = (uint32_t)T3R_MAX(e->a[i][i], 0); /* rounding may leave it a little below 0 */
         const uint32_t diagonal = square + ((square >> 4) * RELATIVE_DAMPING_Q4) + (uint32_t)e->damping;
         root[i] = inverse_root_of(T3R_MAX(diagonal, 1u));
         const uint32_t size = (uint32_t)t3r_abs32(e->b[i]);
@@ -104,7 +104,7 @@ static void solve(const equations *e, int32_t x_q16[T3R_REFINE_PARAMETERS])
         }
     }
     int16_t b[T3R_REFINE_PARAMETERS], y[T3R_REFINE_PARAMETERS] = {0};
-    int32_t most[T3R_REFINE_PARAMETERS]; /* of y: 8 of x, as far as 16 bits hold it */
+    int32_t most[T3R_REFINE_PARAMETERS]; /* bound of y: that of 8 for x, as far as it fits 16 bits */
     for (int i = 0; i < T3R_REFINE_PARAMETERS; i++) {
         const int32_t side = t3r_scale32(e->b[i], root[i].up + 14 - top); /* to 15 bits; at most 2^15 */
         b[i] = (int16_t)((side * (int32_t)(root[i].root >> 1)) >> 19);
@@ -121,7 +121,7 @@ static void solve(const equations *e, int32_t x_q16[T3R_REFINE_PARAMETERS])
         }
     }
     for (int i = 0; i < T3R_REFINE_PARAMETERS; i++) {
-        /* y is 2^(25 - top) of what it stands for, a root 2^(31 - up) times the true one, x in Q16 */
+        /* y is 2^(25 - top) times its value, a root 2^(31 - up) times its value, x in Q16 */
         const int32_t up = top + root[i].up + e->a_up - e->b_up - 40;
         const int64_t x = t3r_scale64((int64_t)y[i] * root[i].root, T3R_MIN(up, UP_MOST));
         x_q16[i] = (int32_t)t3r_clamp64(x, -SOLUTION_MOST_Q16, SOLUTION_MOST_Q16);

@@ -1,4 +1,4 @@
-/* The first and the last rows of a db2 transform: once a plane, so no variant is worth its code. */
+/* The first and last rows of a db2 transform. They come once a plane, so variants are not worth it. */
 #include "core/fixed.h"
 #include "kernels/wavelet_rows.h"
 

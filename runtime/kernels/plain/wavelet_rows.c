@@ -1,4 +1,4 @@
-/* Wavelet rows in plain C. No sum leaves 16 bits for the ranges that wavelet_level.h proves. */
+/* Wavelet rows in plain C. Every sum fits 16 bits for the ranges that wavelet_level.h proves. */
 #include "kernels/wavelet_rows.h"
 
 #include "core/fixed.h"

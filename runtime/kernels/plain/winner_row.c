@@ -3,7 +3,7 @@
 const int16_t t3r_winner_beside[2 * T3R_PATH_MOST] = {
     [T3R_PATH_MOST - 1] = INT16_MAX, [T3R_PATH_MOST] = INT16_MAX, [T3R_PATH_MOST + 1] = INT16_MAX};
 
-/* 0, 1, 2...: loops that compare k in 16 bits read it here. */
+/* 0, 1, 2...: k as 16-bit values for the loops below. */
 typedef struct counting {
     int16_t k[T3R_PATH_MOST];
 } counting;
@@ -17,7 +17,7 @@ static int16_t least_of(const int16_t *sums, size_t count)
     return least;
 }
 
-/* The first k whose sum is `least`. */
+/* Returns the first k whose sum is `least`. */
 static int16_t first_of(const int16_t *sums, const int16_t *restrict k, size_t count, int16_t least)
 {
     int16_t first = INT16_MAX;
@@ -29,7 +29,7 @@ static int16_t first_of(const int16_t *sums, const int16_t *restrict k, size_t c
     return first;
 }
 
-/* The least of the sums where `beside` is 0. */
+/* Returns the least of the sums where `beside` is 0. */
 static int16_t second_of(const int16_t *sums, const int16_t *beside, size_t count)
 {
     int16_t second = INT16_MAX;
@@ -40,8 +40,8 @@ static int16_t second_of(const int16_t *sums, const int16_t *beside, size_t coun
     return second;
 }
 
-/* Every candidate of a left pixel is one of some right pixel: these keep the least they have seen, the first of equals.
- * best, at: those of the right pixels from the one of k = 0 on. */
+/* Offers all candidates of a left pixel to the right pixels, each of which keeps its least sum, the first among equals.
+ * best, at: start at the right pixel of k = 0. */
 static void offer(const int16_t *sums, const int16_t *k, size_t count, int16_t *restrict best, int16_t *restrict at)
 {
     for (size_t i = 0; i < count; i++) {

@@ -1,4 +1,4 @@
-/* The state here is the process's own: the files of its command line. */
+/* The state here is per process: the files of its command line. */
 #include "cli/files/file_guard.h"
 
 #include <errno.h>
@@ -13,13 +13,13 @@
 #include "host/reason.h"
 
 #define STANDARD_OUTPUT "standard output"
-/* What is found in a folder: pictures, and what has no kind of its own (JSON, lists, pointmaps). No command reads
- * recordings, scenes, pages or tables there. */
+/* The kinds that commands read in a folder: pictures, and files without a kind of their own (JSON, lists, pointmaps).
+ * No command reads recordings, scenes, pages or tables there. */
 #define READ_IN_FOLDERS (FILE_PICTURE | FILE_OTHER)
 
 static struct {
     named_file *files;
-    file_place *places; /* of each */
+    file_place *places; /* of each file */
     uint32_t count;
     bool force;
 } guard;
@@ -29,16 +29,16 @@ static bool writes(const named_file *file)
     return (file->flags & OPTION_WRITES_BIT) != 0;
 }
 
-/* /dev/null and /dev/full lose nothing. */
+/* Whether a file is /dev/null or /dev/full, which lose nothing. */
 static bool is_sink(const file_place *place)
 {
     return S_ISCHR(place->mode) && major(place->special) == 1 &&
            (minor(place->special) == 3 || minor(place->special) == 7);
 }
 
-/* ---- each by itself ---------------------------------------------------------------------------------------------- */
+/* ---- each file by itself ----------------------------------------------------------------------------------------- */
 
-/* A folder on the way that is not there, by its name; words and devices are no paths. */
+/* Reports a missing folder on the path by its name; words and devices are no paths. */
 static int check_way(const named_file *file)
 {
     int error;
@@ -77,7 +77,7 @@ static int check_output(const named_file *file, const file_place *place)
     return cli_error(CLI_BAD_INPUT, "%s: not a %s", file->path, folder ? "folder" : "regular file");
 }
 
-/* The folder that is read and that holds the file, of a kind that may be read there; NULL = none. */
+/* Returns the input folder that holds the file, if files of that kind may be read there; NULL = none. */
 static const named_file *folder_of(const char *path, file_kind found)
 {
     for (uint32_t i = 0; i < guard.count && (found & READ_IN_FOLDERS) != 0; i++) {
@@ -88,7 +88,7 @@ static const named_file *folder_of(const char *path, file_kind found)
     return NULL;
 }
 
-/* Against what is there, when the output is a regular file of kind `found`. */
+/* Checks an output against the regular file of kind `found` that is there. */
 static int check_kind(const named_file *file, file_kind found)
 {
     const named_file *folder = folder_of(file->path, found);
@@ -105,7 +105,7 @@ static int check_kind(const named_file *file, file_kind found)
                      file_kind_name(found), file_kind_name(one));
 }
 
-/* ---- one with another -------------------------------------------------------------------------------------------- */
+/* ---- pairs of files ---------------------------------------------------------------------------------------------- */
 
 static int check_pair(const named_file *output, const named_file *other)
 {
@@ -179,9 +179,9 @@ int file_guard_begin(named_file *files, uint32_t count, bool force)
     return code;
 }
 
-/* ---- as files are written ---------------------------------------------------------------------------------------- */
+/* ---- while files are written ------------------------------------------------------------------------------------- */
 
-/* The output that the path is the value of; NULL = the path was made of one. */
+/* Returns the output with exactly this path; NULL = the path was derived from an output. */
 static const named_file *output_of(const char *path)
 {
     for (uint32_t i = 0; i < guard.count; i++) {
@@ -198,7 +198,7 @@ int file_guard_write(const char *path, char *error, size_t error_bytes)
     const named_file *named = output_of(path);
     for (uint32_t i = 0; i < guard.count && !is_sink(&place); i++) {
         const named_file *other = &guard.files[i];
-        /* places of then: what was not there may be by now */
+        /* looked up now: a file that was missing at the start may exist by now */
         file_place now = file_place_of(other->path);
         if (other != named && file_place_same(&place, &now)) {
             return t3r_reason(error, error_bytes, "%s: is %s %s, too: it is not overwritten", path, other->option,

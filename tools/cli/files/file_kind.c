@@ -12,8 +12,8 @@
 
 static const struct {
     file_kind kind;
-    const char *name, *ending, *begins; /* begins: with these bytes, letters of either case; NULL = see below */
-    bool by_name;                       /* other kinds begin so, too: the name has the ending as well */
+    const char *name, *ending, *begins; /* first bytes, in either case of letters; NULL = see below */
+    bool by_name;                       /* other kinds begin the same way: the name must also have the suffix */
 } kinds[] = {
     {FILE_RECORDING, "a recording", ".mcap", "\x89MCAP0\r\n", false},
     {FILE_SCENE, "a scene", ".ply", "ply", false},
@@ -33,7 +33,7 @@ static const struct {
 };
 enum { ROWS = sizeof kinds / sizeof kinds[0] };
 
-/* The dot of the ending, or NULL. */
+/* Returns the dot of the suffix, or NULL. */
 static const char *ending_of(const char *path)
 {
     const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
@@ -46,7 +46,7 @@ static bool is_named(int row, const char *path)
     return kinds[row].ending != NULL && ending != NULL && strcmp(ending, kinds[row].ending) == 0;
 }
 
-/* Names of columns with commas between, up to the end of a line: what the tables of eval and stress begin with. */
+/* Whether a text begins with a line of column names separated by commas, as the tables of eval and stress do. */
 static bool is_heading(const char *text)
 {
     size_t length = strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789_,");

@@ -25,7 +25,7 @@ static void *must(void *memory)
     return memory;
 }
 
-/* ---- what the command line names --------------------------------------------------------------------------------- */
+/* ---- files on the command line ----------------------------------------------------------------------------------- */
 
 typedef struct file_list {
     named_file *items;
@@ -48,7 +48,7 @@ static void add_value(file_list *files, const struct argp_option *o, const char 
     option_name(o, named.option);
     const char *colon = strchr(value, ':');
     if ((o->flags & OPTION_WRITES_BIT) != 0) {
-        /* of the same option twice the last one counts */
+        /* if an option is repeated, the last one counts */
         for (uint32_t i = 0; i < files->count; i++) {
             if (strcmp(files->items[i].option, named.option) == 0) {
                 files->items[i].path = value;
@@ -76,7 +76,7 @@ static const struct argp_option *arguments_of(const option_list *list)
     return NULL;
 }
 
-/* The letters of short options as getopt() wants them. */
+/* Returns the letters of short options for getopt(). */
 static char *short_options(const option_list *list)
 {
     char *letters = must(calloc(list->count + 1, 3)), *end = letters;
@@ -95,7 +95,7 @@ static char *short_options(const option_list *list)
 static const char *const of_argp[] = {"help", "usage", "HANG", "program-name"};
 enum { OF_ARGP = sizeof of_argp / sizeof of_argp[0] };
 
-/* `val` of an option is LONG_OPTION and its place in the list. */
+/* Returns the long options for getopt(); `val` is LONG_OPTION plus the index in the list. */
 static struct option *long_options(const option_list *list)
 {
     struct option *all = must(calloc(list->count + OF_ARGP + 1, sizeof *all)), *next = all;
@@ -125,8 +125,8 @@ static const struct argp_option *option_of(const option_list *list, int got)
     return NULL;
 }
 
-/* A long option that is none, or that lacks its value: says so, names the one that may be meant, and ends the process.
- * Of anything else argp says what is wrong. */
+/* Refuses an unknown long option, or one without its value: says so, suggests a similar one, and ends the process. argp
+ * reports all other errors. */
 static void refuse_option(const option_list *list, const char *word)
 {
     char name[64];
@@ -151,7 +151,7 @@ static void refuse_option(const option_list *list, const char *word)
             if (strcmp(o->name, name) == 0 && o->arg != NULL && word[length] == '\0') {
                 exit(cli_error(CLI_BAD_USAGE, "option '--%s' requires an argument: %s", name, o->arg));
             }
-            return; /* an abbreviation, of one or of several */
+            return; /* an abbreviation, perhaps of several */
         }
         if (edit_distance(o->name, name) < least) {
             least = edit_distance(o->name, name);
@@ -164,7 +164,7 @@ static void refuse_option(const option_list *list, const char *word)
     exit(cli_error(CLI_BAD_USAGE, "unrecognized option '--%s'; trim3r %s --help lists them", name, cli_command()));
 }
 
-/* As argp will read the line; false: it will refuse it, or print help. */
+/* Reads the line as argp will; false: argp will refuse it, or print help. */
 static bool read_line(const option_list *list, int argc, char **argv, file_list *files)
 {
     char **line = must(calloc((size_t)argc + 1, sizeof *line)), *letters = short_options(list);
@@ -196,9 +196,9 @@ static bool read_line(const option_list *list, int argc, char **argv, file_list 
     return got == -1;
 }
 
-/* ---- our own options --------------------------------------------------------------------------------------------- */
+/* ---- options common to all commands ------------------------------------------------------------------------------ */
 
-/* The rows that name files, for the tests. */
+/* Prints the rows that name files, for the tests. */
 static void print_listing(const option_list *list)
 {
     cJSON *rows = cJSON_CreateArray();
@@ -263,13 +263,13 @@ static error_t parse_listing(int key, char *argument, struct argp_state *state)
         return 0;
     }
     if (key == KEY_COLOR) {
-        return 0; /* read_line() has it */
+        return 0; /* read_line() has handled it */
     }
     if (key != KEY_LISTING && key != KEY_COMPLETE && key != KEY_MAN_PAGE) {
         return ARGP_ERR_UNKNOWN;
     }
     if (key == KEY_MAN_PAGE) {
-        /* argp puts its own options beside ours */
+        /* argp puts its own options next to ours */
         man_page_of_command(cli_command(), cli_command_summary(), state->root_argp->children[0].argp);
         exit(CLI_OK);
     }
@@ -285,7 +285,7 @@ static error_t parse_listing(int key, char *argument, struct argp_state *state)
 static error_t parse_force(int key, char *argument, struct argp_state *state)
 {
     (void)argument, (void)state;
-    return key == KEY_FORCE ? 0 : ARGP_ERR_UNKNOWN; /* read_line() has it */
+    return key == KEY_FORCE ? 0 : ARGP_ERR_UNKNOWN; /* read_line() has handled it */
 }
 
 static const struct argp_option listing_options[] = {
@@ -313,7 +313,7 @@ static bool any_is_written(const struct argp *argp)
     return written;
 }
 
-/* The command's children and our own: from malloc(). */
+/* Returns the command's children and our own, from malloc(). */
 static struct argp_child *all_children(const struct argp *argp)
 {
     uint32_t count = 0;
@@ -337,7 +337,7 @@ void file_options_parse(const struct argp *argp, int argc, char **argv, void *in
     option_list list = option_list_of(&whole);
     file_list files = {0};
     if (read_line(&list, argc, argv, &files)) {
-        int code = file_guard_begin(files.items, files.count, files.force); /* keeps them */
+        int code = file_guard_begin(files.items, files.count, files.force); /* keeps the items */
         if (code != CLI_OK) {
             exit(code);
         }

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* The path without its last part: "a" of "a/b", "/" of "/b", "." of "b". Returns the last part. */
+/* Splits off the path's last part: "a" of "a/b", "/" of "/b", "." of "b". Returns the last part. */
 static const char *parent_of(const char *path, size_t length, char folder[PATH_MAX])
 {
     size_t start = length;
@@ -42,7 +42,7 @@ file_place file_place_of(const char *path)
         }
         length = last == path ? 0 : strlen(folder);
     }
-    return place; /* nothing of it is there */
+    return place; /* nothing on the path exists */
 }
 
 bool file_place_same(const file_place *a, const file_place *b)
@@ -61,7 +61,7 @@ size_t file_place_ends(const char *path, int *error)
         memcpy(folder, path, end);
         folder[end] = '\0';
         if (path[next] == '\0') {
-            return 0; /* slashes behind the last part */
+            return 0; /* slashes after the last part */
         }
         if (end > 0 && stat(folder, &there) != 0) {
             *error = errno;

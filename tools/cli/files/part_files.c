@@ -1,4 +1,4 @@
-/* The state here is the process's own: its parts. A handler of signals reads it, so it consists of atomic pointers. */
+/* The state here is per process: its unfinished files. A signal handler reads it, so it consists of atomic pointers. */
 #include "cli/files/part_files.h"
 
 #include <signal.h>
@@ -8,12 +8,13 @@
 #include <unistd.h>
 
 static _Atomic(char *) parts[PART_FILES_MOST];
-static pid_t owner; /* a worker, forked since, has no parts of its own */
+static pid_t owner; /* a worker forked since then has no parts of its own */
 
 static const int deadly[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE};
 enum { DEADLY = sizeof deadly / sizeof deadly[0] };
 
-/* Async-signal-safe: unlink(), rmdir(), sigaction(), raise(). Backwards: a folder comes before what is in it. */
+/* Removes the parts in a signal handler. Async-signal-safe: unlink(), rmdir(), sigaction(), raise(). Goes backwards,
+ * since a folder was added before its contents. */
 void part_files_end(int signal_number)
 {
     for (int i = PART_FILES_MOST - 1; i >= 0 && getpid() == owner; i--) {
@@ -29,10 +30,10 @@ void part_files_end(int signal_number)
     sigemptyset(&blocked);
     sigaddset(&blocked, signal_number);
     raise(signal_number);
-    pthread_sigmask(SIG_UNBLOCK, &blocked, NULL); /* ends here */
+    pthread_sigmask(SIG_UNBLOCK, &blocked, NULL); /* the process ends here */
 }
 
-/* Signals that are ignored, or caught by others, stay theirs. */
+/* Catches the signals that are neither ignored nor caught by others. */
 static void catch_signals(void)
 {
     struct sigaction action = {.sa_handler = part_files_end}, before;
@@ -48,12 +49,12 @@ bool part_files_add(char *path)
 {
     if (owner != getpid()) {
         for (int i = 0; i < PART_FILES_MOST; i++) {
-            atomic_store(&parts[i], NULL); /* the parts of the process that this one was forked from */
+            atomic_store(&parts[i], NULL); /* parts of the parent process */
         }
         owner = getpid();
         catch_signals();
     }
-    /* behind all others, so that the order holds */
+    /* after all others, to keep the order */
     int free_place = 0;
     for (int i = 0; i < PART_FILES_MOST; i++) {
         free_place = atomic_load(&parts[i]) != NULL ? i + 1 : free_place;

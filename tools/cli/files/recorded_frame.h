@@ -6,9 +6,10 @@
 
 #include "recording/recording.h"
 
-/* Whether frames can be read as they stand: CLI_BAD_INPUT with the command that is needed otherwise. */
+/* Checks whether frames can be read without import; else returns CLI_BAD_INPUT after a message with the command that is
+ * needed. */
 int recorded_frames_check(const t3r_recording *recording, const char *path);
-/* Frame `index` of a recording with its pose and intrinsics; CLI_BAD_INPUT with a message otherwise. */
+/* Reads frame `index` of a recording with its pose and intrinsics; CLI_BAD_INPUT with a message otherwise. */
 int recorded_frame_read(const t3r_recording *recording, const char *path, uint32_t index, t3r_capture_frame *frame);
 
 #endif

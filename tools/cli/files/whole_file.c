@@ -17,7 +17,7 @@ static int fail(const whole_file *file, char *error, size_t error_bytes)
     return t3r_reason(error, error_bytes, "%s: %s", file->path, strerror(errno));
 }
 
-/* The part is no more: it was renamed or removed. */
+/* Forgets the part, which was renamed or removed. */
 static void drop_name(whole_file *file)
 {
     part_files_forget(file->temporary);
@@ -32,13 +32,13 @@ int whole_file_begin(whole_file *file, const char *path, char *error, size_t err
     bool exists = stat(path, &there) == 0;
     bool device = exists && S_ISCHR(there.st_mode);
     if (exists && !device && !S_ISREG(there.st_mode)) {
-        /* the rename would put a file in place of a pipe */
+        /* the rename would replace a pipe by a file */
         return t3r_reason(error, error_bytes, "%s: not a regular file", path);
     }
     if (file_guard_write(path, error, error_bytes) != 0) {
         return -1;
     }
-    int flags = (device ? O_WRONLY : O_RDWR) | O_CLOEXEC; /* a recording's index is made of what was written */
+    int flags = (device ? O_WRONLY : O_RDWR) | O_CLOEXEC; /* a recording's index is read back from the file */
     if (!device) {
         size_t bytes = strlen(path) + 32;
         file->temporary = malloc(bytes);
@@ -51,7 +51,8 @@ int whole_file_begin(whole_file *file, const char *path, char *error, size_t err
             file->temporary = NULL;
             return t3r_reason(error, error_bytes, "%s: too many files at a time", path);
         }
-        /* one left by an earlier process of this number may be a link to another file: it goes, its target stays */
+        /* a link left by an earlier process of this number may lead to another file: the link is removed, its target
+         * stays */
         unlink(file->temporary);
         flags |= O_CREAT | O_EXCL | O_NOFOLLOW;
     }

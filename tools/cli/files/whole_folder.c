@@ -20,7 +20,7 @@ static int fail(const whole_folder *folder, char *error, size_t error_bytes)
     return t3r_reason(error, error_bytes, "%s: %s", folder->path, strerror(errno));
 }
 
-/* ".", "..", and the hidden folder of a process that was killed. */
+/* Whether an entry is ".", "..", or the hidden folder of a killed process. */
 static bool is_nothing(const char *name)
 {
     size_t length = strlen(name);
@@ -54,7 +54,7 @@ static char *keep(whole_folder *folder, char *path, char *error, size_t error_by
     return path;
 }
 
-/* "folder/name", from malloc(). */
+/* Returns "folder/name", from malloc(). */
 static char *path_in(const char *folder, const char *name)
 {
     size_t bytes = strlen(folder) + strlen(name) + 2;
@@ -65,7 +65,7 @@ static char *path_in(const char *folder, const char *name)
     return path;
 }
 
-/* Where all is made first, from malloc(); another for each `attempt`. */
+/* Returns the temporary path, from malloc(); another one for each `attempt`. */
 static char *part_path(const whole_folder *folder, int attempt)
 {
     size_t length = strlen(folder->path), bytes = length + 64;
@@ -101,7 +101,7 @@ int whole_folder_begin(whole_folder *folder, const char *path, char *error, size
     if (!is_empty(path)) {
         return t3r_reason(error, error_bytes, "%s: the folder is not empty", path);
     }
-    /* a killed process of this number may have left one */
+    /* a killed process of the same number may have left one */
     for (int attempt = 0; attempt < 100; attempt++) {
         errno = 0;
         if (make(folder, part_path(folder, attempt), error, error_bytes) == 0) {
@@ -131,7 +131,7 @@ static void forget(whole_folder *folder)
     }
 }
 
-/* What stands at the top of the folder into the one that was there, or back again. */
+/* Moves the top entries into the existing folder, or back again. */
 static bool move_all(const whole_folder *folder, bool back)
 {
     bool moved = true;
@@ -149,7 +149,7 @@ static bool move_all(const whole_folder *folder, bool back)
 
 int whole_folder_commit(whole_folder *folder, char *error, size_t error_bytes)
 {
-    /* all or nothing: no signal comes between */
+    /* all or nothing: signals are blocked meanwhile */
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_BLOCK, &all, &before);
@@ -158,7 +158,7 @@ int whole_folder_commit(whole_folder *folder, char *error, size_t error_bytes)
     if (!moved && folder->within) {
         (void)move_all(folder, true);
     }
-    forget(folder); /* what was moved is not under these names any more */
+    forget(folder); /* the moved entries no longer have these names */
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return status;
 }

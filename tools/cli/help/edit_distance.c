@@ -10,7 +10,7 @@ static uint32_t least(uint32_t a, uint32_t b, uint32_t c)
     return ab < c ? ab : c;
 }
 
-/* A row of the table of prefixes at a time (Wagner and Fischer). */
+/* Computes the table of prefixes row by row (Wagner and Fischer). */
 uint32_t edit_distance(const char *a, const char *b)
 {
     uint32_t row[LONGEST + 1];

@@ -13,7 +13,7 @@
 
 /* ---- roff -------------------------------------------------------------------------------------------------------- */
 
-/* Signs that roff would take for its own. */
+/* Prints text; escapes the characters special to roff. */
 static void put(const char *text, size_t bytes)
 {
     if (bytes > 0 && (text[0] == '.' || text[0] == '\'')) {
@@ -108,7 +108,7 @@ void man_page_end(void)
 
 /* ---- options ----------------------------------------------------------------------------------------------------- */
 
-/* The text as help shows it, from malloc() where a filter made it. */
+/* Returns the text as help shows it, from malloc() if a filter made it. */
 static char *filtered(const struct argp *owner, int key, const char *text)
 {
     char *shown = owner->help_filter != NULL ? owner->help_filter(key, text, NULL) : (char *)(uintptr_t)text;
@@ -144,7 +144,7 @@ static void print_option(const option_row *row)
     release(text, o->doc);
 }
 
-/* "What is compared" of "What is compared:" */
+/* Prints "What is compared" for "What is compared:". */
 static void print_heading(const char *text)
 {
     const size_t bytes = strlen(text);
@@ -167,7 +167,7 @@ static void print_group(const option_list *list, int group)
     }
 }
 
-/* In the order of argp: from 0 up, then the negative ones. */
+/* Prints groups in argp's order: from 0 up, then the negative ones. */
 static void print_options(const struct argp *argp)
 {
     option_list list = option_list_of(argp);
@@ -185,7 +185,8 @@ static void print_options(const struct argp *argp)
 
 /* ---- a command --------------------------------------------------------------------------------------------------- */
 
-/* The lines under "Examples:", up to the first that does not begin with a blank; *bytes is 0 where there are none. */
+/* Finds the lines under "Examples:", up to the first that does not begin with a blank; *bytes is 0 if there are
+ * none. */
 static const char *examples_in(const char *text, size_t *bytes)
 {
     *bytes = 0;

@@ -1,4 +1,4 @@
-/* What SVG and HTML written by hand have in common. */
+/* Common parts of writing SVG and HTML. */
 #ifndef TRIM3R_TOOLS_MARKUP_H
 #define TRIM3R_TOOLS_MARKUP_H
 
@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* A text as content or as an attribute's value in either kind of quotes. */
+/* Writes a text as content or as an attribute's value in either kind of quotes. */
 void markup_text(FILE *out, const char *text);
 void markup_base64(FILE *out, const uint8_t *bytes, size_t count);
 

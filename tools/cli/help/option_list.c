@@ -17,7 +17,7 @@ static bool is_heading(const struct argp_option *o)
     return o->name == NULL && o->key == 0;
 }
 
-/* Counts the rows; writes them, too, where there is room for them. */
+/* Counts the rows, and writes them if there is room. */
 static void add_rows(const struct argp *argp, option_list *list)
 {
     int group = 0;

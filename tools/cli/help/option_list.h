@@ -1,4 +1,4 @@
-/* All rows of a command's option tables, those of its children's too, in their order. */
+/* All rows of a command's option tables, including its children's, in order. */
 #ifndef TRIM3R_TOOLS_OPTION_LIST_H
 #define TRIM3R_TOOLS_OPTION_LIST_H
 
@@ -8,8 +8,8 @@
 
 typedef struct option_row {
     const struct argp_option *option;
-    const struct argp *owner; /* whose table it stands in */
-    int group;                /* as argp has it: a row without one is in that of the row before */
+    const struct argp *owner; /* the parser whose table holds it */
+    int group;                /* as in argp: a row without a group belongs to the previous row's */
 } option_row;
 
 typedef struct option_list {
@@ -17,14 +17,14 @@ typedef struct option_list {
     uint32_t count;
 } option_list;
 
-/* Ends the process where memory is out. */
+/* Ends the process when memory is out. */
 option_list option_list_of(const struct argp *argp);
 void option_list_free(option_list *list);
 
-/* A row that help shows: an option with a name, no heading. */
+/* Whether help shows a row: an option with a name, no heading. */
 bool option_is_shown(const struct argp_option *o);
 bool option_has_short(const struct argp_option *o);
-/* "-o", or "--csv". */
+/* Writes "-o", or "--csv". */
 void option_name(const struct argp_option *o, char name[32]);
 
 #endif

@@ -41,7 +41,7 @@ const char *style_end(FILE *out)
     return style_is_on(out) ? "\033[0m" : "";
 }
 
-/* ---- what argp says ---------------------------------------------------------------------------------------------- */
+/* ---- argp's output ----------------------------------------------------------------------------------------------- */
 
 static struct {
     char *text; /* heap; NULL: argp writes to the stream itself */
@@ -49,7 +49,7 @@ static struct {
     FILE *memory;
 } error_text, help_text;
 
-/* "trim3r plan: message", and lines of another kind as they are */
+/* Prints lines "trim3r plan: message" with style, other lines unchanged. */
 static void print_errors(const char *text)
 {
     const char *colon = strstr(text, ": ");
@@ -61,7 +61,7 @@ static void print_errors(const char *text)
     fprintf(stderr, "%s%.*s%s%s", style_begin(stderr, STYLE_ERROR), (int)name, text, style_end(stderr), text + name);
 }
 
-/* A line that begins at the margin and ends with a colon is a heading. */
+/* Prints help; a line that begins at the margin and ends with a colon is a heading. */
 static void print_help(const char *text)
 {
     for (const char *line = text; *line != '\0';) {
@@ -93,7 +93,7 @@ static void print_kept(void)
 void style_argp(struct argp_state *state)
 {
     if (error_text.memory != NULL || help_text.memory != NULL) {
-        return; /* of another parser of the same command */
+        return; /* from another parser of the same command */
     }
     error_text.memory = style_is_on(stderr) ? open_memstream(&error_text.text, &error_text.bytes) : NULL;
     help_text.memory = style_is_on(stdout) ? open_memstream(&help_text.text, &help_text.bytes) : NULL;

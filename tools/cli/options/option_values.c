@@ -18,7 +18,7 @@ uint32_t option_number(struct argp_state *state, const char *option, const char 
 
 double option_decimal(struct argp_state *state, const char *option, const char *text, double low, double high)
 {
-    /* digits, signs, a point and an exponent alone: strtod() would also take spaces, hexadecimal and "nan" */
+    /* only digits, signs, a point and an exponent: strtod() would also take spaces, hexadecimal and "nan" */
     char *end;
     double value = strtod(text, &end);
     if (text[0] == '\0' || text[strspn(text, "0123456789.eE+-")] != '\0' || *end != '\0' ||

@@ -1,4 +1,4 @@
-/* The options of every command that runs stages: how much of the processor they may use. Results stay as they are. */
+/* The options of every command that runs stages: how much of the processor they use. Results do not depend on them. */
 #ifndef TRIM3R_TOOLS_PROCESSOR_OPTIONS_H
 #define TRIM3R_TOOLS_PROCESSOR_OPTIONS_H
 
@@ -7,18 +7,18 @@
 
 typedef struct processor_options {
     uint32_t threads; /* 1..T3R_MAX_WORKERS */
-    uint32_t cpu;     /* T3R_CPU_...: what the processor has, less what --cpu-mask leaves out */
+    uint32_t cpu;     /* T3R_CPU_...: the processor's features without those that --cpu-mask excludes */
 } processor_options;
 
-#define PROCESSOR_GROUP 30 /* of these options and of their like in --help */
+#define PROCESSOR_GROUP 30 /* group of these and similar options in --help */
 
-/* One thread, every vector extension of this processor. */
+/* Returns one thread and all vector extensions of this processor. */
 processor_options processor_defaults(void);
 
-/* The value of --threads: a number, or the processors of this machine for `all`. */
+/* Returns the value of --threads: a number, or the processors of this machine for `all`. */
 uint32_t option_threads(struct argp_state *state, const char *text);
 
-/* --threads, --cpu-mask. Each parent's parser hands a processor_options * on in state->child_inputs[]. */
+/* --threads, --cpu-mask. Each parent's parser passes a processor_options * in state->child_inputs[]. */
 extern const struct argp processor_argp;
 
 #endif

@@ -12,14 +12,14 @@ typedef struct recording_options {
     bool unchunked;
 } recording_options;
 
-#define RECORDING_GROUP 25 /* of these options in --help, behind the settings of a build */
+#define RECORDING_GROUP 25 /* group of these options in --help, after the settings of a build */
 
-/* --compression, --unchunked. Each parent's parser hands a recording_options * on in state->child_inputs[]; without
- * either, frames are chunks that are not compressed. */
+/* --compression, --unchunked. Each parent's parser passes a recording_options * in state->child_inputs[]; with neither,
+ * frames are uncompressed chunks. */
 extern const struct argp recording_argp;
 
-/* Sets what the options say in a header. 0, or -1 when memory is out. t3r_chunk_packer_close(header->packer) when the
- * recording is written, also behind -1. */
+/* Sets the options in a header. Returns 0, or -1 when memory is out. Call t3r_chunk_packer_close(header->packer) when
+ * the recording is written, also after -1. */
 int recording_options_apply(const recording_options *stored, t3r_recording_header *header);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "host/text.h"
 
-/* One character, ends of lines and tabs as they are; '?' for each byte of any other that readers of tables refuse.
+/* Writes one character; line ends and tabs unchanged, '?' for each byte of a character that readers of tables refuse.
  * Returns its bytes. */
 static size_t put_character(FILE *file, t3r_text text)
 {

@@ -1,5 +1,5 @@
-/* Comma-separated tables (RFC 4180, with plain newlines): a text that needs it is quoted. Bytes that csv_read.h
- * refuses, control characters and what is not UTF-8, become '?'. */
+/* Comma-separated tables (RFC 4180, with plain newlines); texts are quoted if necessary. Bytes that csv_read.h refuses,
+ * control characters and invalid UTF-8, become '?'. */
 #ifndef TRIM3R_TOOLS_CSV_H
 #define TRIM3R_TOOLS_CSV_H
 
@@ -11,9 +11,9 @@ typedef struct csv_table {
     bool within_row;
 } csv_table;
 
-/* The next cell of the row; "" and NULL are an empty one. */
+/* Writes the next cell of the row; "" and NULL give an empty cell. */
 void csv_cell(csv_table *table, const char *text);
-/* Ends the row and hands it to the system, so that long work leaves what it finished. */
+/* Ends the row and passes it to the system, so that interrupted work keeps its finished rows. */
 void csv_end_row(csv_table *table);
 
 #endif

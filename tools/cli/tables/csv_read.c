@@ -8,7 +8,7 @@
 #include "host/reason.h"
 #include "host/text.h"
 
-#define NUMBER_MOST 1e15 /* the largest that a chart has a use for */
+#define NUMBER_MOST 1e15 /* largest number that a chart can use */
 
 void csv_reader_open(csv_reader *reader, const char *name, const char *text, size_t bytes)
 {
@@ -23,11 +23,11 @@ static int fail(const csv_reader *reader, const char *why, char *error, size_t e
     return t3r_reason(error, error_bytes, "%s:%u: %s", reader->name, (unsigned)reader->line, why);
 }
 
-/* Where the row being read stands within `row`. */
+/* State of the row being read in `row`. */
 typedef struct row_state {
     size_t used;
     bool quoted; /* inside quotes */
-    bool closed; /* behind the closing quote of a cell */
+    bool closed; /* after the closing quote of a cell */
     bool begun;  /* the cell has a character or a quote */
 } row_state;
 
@@ -42,7 +42,7 @@ static const char *put(csv_reader *reader, row_state *state, const char *bytes, 
     return NULL;
 }
 
-/* The cell that begins at `start` ends; the next may begin. */
+/* Ends the cell that begins at `start`; the next may begin. */
 static const char *end_cell(csv_reader *reader, row_state *state, size_t *start)
 {
     if (reader->cell_count == CSV_COLUMNS_MOST) {
@@ -58,7 +58,7 @@ static const char *end_cell(csv_reader *reader, row_state *state, size_t *start)
     return NULL;
 }
 
-/* One character of a cell, quotes included; the reason when it may not stand there. */
+/* Takes one character of a cell, quotes included; returns the reason if it is not allowed there. */
 static const char *take(csv_reader *reader, row_state *state)
 {
     const char *p = reader->text + reader->at;
@@ -90,7 +90,7 @@ static const char *take(csv_reader *reader, row_state *state)
     return put(reader, state, p, count);
 }
 
-/* Reads up to the end of a line; *why = NULL or a reason. */
+/* Reads to the end of a line; *why = NULL or a reason. */
 static void read_row(csv_reader *reader, const char **why)
 {
     row_state state = {0};
@@ -144,7 +144,7 @@ int csv_number(const char *text, double *value, bool *given)
     if (*text == '\0' || strcasecmp(text, "nan") == 0) {
         return 0;
     }
-    /* digits, sign, point and exponent alone: strtod() would also take spaces, hexadecimal and infinities */
+    /* only digits, sign, point and exponent: strtod() would also take spaces, hexadecimal and infinities */
     char *end;
     double number = strtod(text, &end);
     if (strspn(text, "0123456789.+-eE") != strlen(text) || *end != '\0' || !(fabs(number) <= NUMBER_MOST)) {

@@ -1,4 +1,4 @@
-/* Comma-separated tables of anyone's making (RFC 4180; lines may also end in a plain newline), read a row at a time. */
+/* Reads comma-separated tables from any source (RFC 4180; lines may also end in a plain newline) row by row. */
 #ifndef TRIM3R_TOOLS_CSV_READ_H
 #define TRIM3R_TOOLS_CSV_READ_H
 
@@ -7,18 +7,18 @@
 #include <stdint.h>
 
 #define CSV_COLUMNS_MOST 256u
-#define CSV_ROW_BYTES_MOST 16384u /* of all cells of a row, an end each included */
+#define CSV_ROW_BYTES_MOST 16384u /* all cells of a row, each with its terminator */
 
 typedef struct csv_reader {
-    const char *name, *text; /* the caller's; the name is for messages */
+    const char *name, *text; /* owned by the caller; the name is for messages */
     size_t bytes, at;
-    uint32_t line, lines_read; /* where the last row began, from 1 on; newlines so far */
+    uint32_t line, lines_read; /* start of the last row, from 1 on; newlines so far */
     const char *cell[CSV_COLUMNS_MOST];
     uint32_t cell_count;
-    char row[CSV_ROW_BYTES_MOST]; /* what the cells point into */
+    char row[CSV_ROW_BYTES_MOST]; /* the cells point into it */
 } csv_reader;
 
-/* `text` need not end in a 0. A byte order mark is passed over. */
+/* `text` need not end in a 0. A byte order mark is skipped. */
 void csv_reader_open(csv_reader *reader, const char *name, const char *text, size_t bytes);
 
 /* The next row that is not an empty line, as texts in `cell`, valid until the next call: 1, or 0 at the end, or -1 with
@@ -26,7 +26,7 @@ void csv_reader_open(csv_reader *reader, const char *name, const char *text, siz
  * printable UTF-8, a row of too many cells or bytes. */
 int csv_reader_next(csv_reader *reader, char *error, size_t error_bytes);
 
-/* A finite number in decimal digits, *given = true; of "" and "nan" *given = false. 0, or -1: neither. */
+/* Parses a finite decimal number, *given = true; for "" and "nan" *given = false. Returns 0, or -1 for other texts. */
 int csv_number(const char *text, double *value, bool *given);
 
 #endif

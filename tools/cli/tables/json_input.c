@@ -6,7 +6,7 @@
 #include "mcap/reader_limits.h"
 #include "host/reason.h"
 
-/* Values begin the text, or stand behind a bracket, a brace or a comma outside of a string. */
+/* Bounds the number of values: a value begins the text, or follows a bracket, a brace or a comma outside strings. */
 static size_t most_values(const char *text, size_t bytes)
 {
     size_t values = 1;

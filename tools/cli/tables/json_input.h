@@ -1,4 +1,4 @@
-/* JSON of others. */
+/* JSON from other programs. */
 #ifndef TRIM3R_TOOLS_JSON_INPUT_H
 #define TRIM3R_TOOLS_JSON_INPUT_H
 
@@ -6,12 +6,12 @@
 
 #include <cjson/cJSON.h>
 
-/* Parses a text of at most T3R_LIMIT_JSON_VALUES values, counted before any memory is asked for them. NULL with "byte
- * N: what" in error[]; cJSON_Delete() the rest. What stands behind the value is not looked at. */
+/* Parses a text of at most T3R_LIMIT_JSON_VALUES values, which are counted before memory is allocated for them. Returns
+ * NULL with "byte N: what" in error[] on failure; cJSON_Delete() the result. What follows the value is ignored. */
 cJSON *json_parse(const char *text, size_t bytes, char *error, size_t error_bytes);
 
-/* The array of that name in an object, NULL where there is nothing of that name: 0, or -1 with a reason in error[].
- * An object in its place is refused, as cJSON walks its members like an array's. */
+/* Finds the array of that name in an object; NULL if there is no such name. Returns 0, or -1 with a reason in error[].
+ * An object instead of an array is refused, since cJSON would iterate over its members. */
 int json_array(const cJSON *object, const char *name, const cJSON **array, char *error, size_t error_bytes);
 
 #endif

@@ -8,13 +8,13 @@
 
 #define HASH_TEXT_BYTES 17
 
-/* 16 lower-case hexadecimal digits. */
+/* Writes 16 lower-case hexadecimal digits. */
 void hash_text(uint64_t hash, char text[HASH_TEXT_BYTES]);
-/* 0, or -1 unless text is 16 hexadecimal digits, with "0x" before them or not. */
+/* Parses 16 hexadecimal digits, optionally preceded by "0x". Returns 0, or -1 for other texts. */
 int hash_parse(const char *text, uint64_t *hash);
 
 void json_add_hash(cJSON *object, const char *key, uint64_t hash);
-/* Exact beyond 2^53 too, where a double would round. */
+/* Adds an integer exactly, also beyond 2^53, where a double would round. */
 void json_add_integer(cJSON *object, const char *key, int64_t value);
 void json_add_integers(cJSON *object, const char *key, const uint32_t *values, uint32_t count);
 /* Prints the object on one line and frees it. */

@@ -1,4 +1,4 @@
-/* Lines of text, one behind the other, for what is told at the end of a command. */
+/* Lines of text to print at the end of a command. */
 #ifndef TRIM3R_TOOLS_TEXT_LIST_H
 #define TRIM3R_TOOLS_TEXT_LIST_H
 
@@ -6,16 +6,16 @@
 
 #include <cjson/cJSON.h>
 
-/* Starts with zeros. */
+/* Initialise with zeros. */
 typedef struct text_list {
     char **lines;
     uint32_t count;
 } text_list;
 
-/* Adds a line, cleaned and cut as reasons are (reason.h). 0, or -1: out of memory. */
+/* Adds a line, cleaned and cut as reasons are (reason.h). Returns 0, or -1 when out of memory. */
 int text_list_add(text_list *list, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void text_list_free(text_list *list);
-/* "what: line" of each on stdout. */
+/* Prints "what: line" for each line on stdout. */
 void text_list_print(const text_list *list, const char *what);
 void text_list_add_json(const text_list *list, cJSON *object, const char *key);
 

@@ -16,7 +16,7 @@
 
 extern char **environ;
 
-/* 0, or an errno. */
+/* Returns 0, or an errno. */
 static int start(const char *path, char *const arguments[], int output, pid_t *child)
 {
     posix_spawn_file_actions_t actions;
@@ -32,7 +32,7 @@ static int start(const char *path, char *const arguments[], int output, pid_t *c
     return failed;
 }
 
-/* Its exit status; -1: it took too long. */
+/* Waits for the child. Returns its exit status; -1: it took too long. */
 static int wait_for(pid_t child, double seconds_most)
 {
     const struct timespec while_waiting = {0, 5000000};

@@ -15,21 +15,21 @@
 
 #include "cli/cli.h"
 
-/* Before every part, and alone at an item's end. */
+/* Precedes every part; without a part it ends an item. */
 typedef struct head {
     uint32_t item;
-    int32_t code; /* at its end: what make() returned */
+    int32_t code; /* at an item's end: the result of make() */
     uint64_t bytes;
     bool ends;
 } head;
 
 struct process_pool_line {
-    const process_pool_job *job; /* in the caller's own process: parts are taken at once */
-    int pipe;                    /* else */
+    const process_pool_job *job; /* in the caller's own process, parts are taken at once */
+    int pipe;                    /* in a worker */
     uint32_t item;
 };
 
-/* A part that waits for its turn. */
+/* A part that was received before its turn. */
 typedef struct part {
     struct part *next;
     head head;
@@ -38,9 +38,9 @@ typedef struct part {
 
 typedef struct worker {
     pid_t process;
-    int pipe; /* -1: it has ended */
+    int pipe; /* -1: the worker has ended */
     head head;
-    size_t got; /* bytes of the head, then of the part */
+    size_t got; /* bytes received of the head, then of the part */
     part *coming;
 } worker;
 
@@ -48,8 +48,8 @@ typedef struct pool {
     const process_pool_job *job;
     worker workers[PROCESS_POOL_MOST];
     uint32_t running;
-    part **first, **last; /* of each item; last[i]: where the next is hung */
-    uint32_t turn;        /* the item whose parts are taken */
+    part **first, **last; /* per item: first part, and where to append the next one */
+    uint32_t turn;        /* the item whose parts are taken now */
 } pool;
 
 uint32_t process_pool_processors(void)
@@ -99,10 +99,10 @@ int process_pool_send(process_pool_line *line, const void *bytes, size_t count, 
     head h = {.item = line->item, .bytes = count + more_bytes};
     bool sent = write_all(line->pipe, &h, sizeof h) && write_all(line->pipe, bytes, count) &&
                 (more_bytes == 0 || write_all(line->pipe, more, more_bytes));
-    return sent ? CLI_OK : CLI_BAD_INPUT; /* nobody listens any more */
+    return sent ? CLI_OK : CLI_BAD_INPUT; /* the caller is gone */
 }
 
-/* Takes items until there are none, or one fails. */
+/* Works on items until none are left, or one fails. */
 static void serve(const process_pool_job *job, atomic_uint *next, int pipe)
 {
     cli_progress_silence();
@@ -133,7 +133,7 @@ static bool start_worker(pool *p, atomic_uint *next)
     const pid_t caller = getpid();
     pid_t process = fork();
     if (process == 0) {
-        /* with the caller, who may be gone already: nobody would take the work */
+        /* ends with the caller; if the caller is gone already, nothing would take the work */
         if (prctl(PR_SET_PDEATHSIG, SIGTERM) != 0 || getppid() != caller) {
             _exit(0);
         }
@@ -153,7 +153,7 @@ static bool start_worker(pool *p, atomic_uint *next)
     return true;
 }
 
-/* Parts of the item whose turn it is, and of those after it that have ended by then. */
+/* Takes the parts of the current item, and of following items once the current one is complete. */
 static int take_in_turn(pool *p)
 {
     while (p->turn < p->job->items && p->first[p->turn] != NULL) {
@@ -189,7 +189,7 @@ static void hang(pool *p, part *it)
     p->last[item] = it;
 }
 
-/* The end of a worker's pipe. */
+/* Handles the end of a worker's pipe. */
 static int part_with(worker *w)
 {
     int status = 0;
@@ -205,7 +205,7 @@ static int part_with(worker *w)
     return WEXITSTATUS(status) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "a worker process failed");
 }
 
-/* What has come, up to the end of a head or of a part. */
+/* Reads what has arrived, up to the end of a head or of a part. */
 static int hear(pool *p, worker *w)
 {
     bool in_head = w->got < sizeof w->head;
@@ -241,7 +241,8 @@ static int listen_to_all(pool *p)
     for (uint32_t open = p->running; open > 0 && code == CLI_OK;) {
         struct pollfd files[PROCESS_POOL_MOST];
         for (uint32_t w = 0; w < p->running; w++) {
-            files[w] = (struct pollfd){.fd = p->workers[w].pipe, .events = POLLIN}; /* below 0: not looked at */
+            files[w] =
+                (struct pollfd){.fd = p->workers[w].pipe, .events = POLLIN}; /* negative descriptors are ignored */
         }
         if (poll(files, p->running, -1) < 0 && errno != EINTR) {
             return cli_error(CLI_BAD_INPUT, "poll: %s", strerror(errno));
@@ -261,7 +262,7 @@ static void dismiss(pool *p)
     for (uint32_t i = 0; i < p->running; i++) {
         worker *w = &p->workers[i];
         if (w->process > 0) {
-            kill(w->process, SIGTERM); /* it removes what is not whole */
+            kill(w->process, SIGTERM); /* its handler removes incomplete files */
             close(w->pipe);
             (void)waitpid(w->process, NULL, 0);
         }
@@ -307,7 +308,7 @@ int process_pool_run(const process_pool_job *job)
         code = cli_error(CLI_BAD_INPUT, "out of memory");
     } else {
         atomic_init(next, 0);
-        fflush(NULL); /* or every worker would have what is not written yet */
+        fflush(NULL); /* or every worker would inherit the unwritten output */
         for (uint32_t w = 0; w < processes && code == CLI_OK; w++) {
             code = start_worker(&p, next) ? CLI_OK : cli_error(CLI_BAD_INPUT, "no process: %s", strerror(errno));
         }

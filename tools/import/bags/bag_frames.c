@@ -21,7 +21,7 @@ static double number(uint64_t f64)
     return value;
 }
 
-/* NULL, or what is wrong. */
+/* Returns NULL, or what is wrong. */
 static const char *rigid_of(const t3r_ros_pose *pose, rigid *out)
 {
     for (int i = 0; i < 3; i++) {
@@ -123,7 +123,7 @@ static int read_poses(bag_frames *b, char *error, size_t error_bytes)
     return 0;
 }
 
-/* The frame_id of the first message of that use. */
+/* Returns the frame_id of the first message of that use. */
 static t3r_text frame_of(const t3r_recording *recording, t3r_stream_use use)
 {
     size_t stream = t3r_recording_stream_for(recording, use);
@@ -132,7 +132,7 @@ static t3r_text frame_of(const t3r_recording *recording, t3r_stream_use use)
         return none;
     }
     t3r_recorded_message message = t3r_recording_message(recording, stream, 0);
-    t3r_cdr_reader in; /* every message of these begins with its header */
+    t3r_cdr_reader in; /* all these messages begin with a header */
     t3r_cdr_open(&in, message.data, message.bytes);
     t3r_cdr_get_u32(&in);
     t3r_cdr_get_u32(&in);
@@ -177,14 +177,14 @@ static bool lookup(const bag_frames *b, t3r_text to, t3r_text from, int64_t stam
                                  stamp_ns, b->options.near_ns, out);
 }
 
-/* By transforms alone. */
+/* Gets the pose from transforms only. */
 static bool pose_of_tree(bag_frames *b, int64_t stamp_ns, rigid *out)
 {
     uint32_t camera = transform_tree_find(&b->tree, b->camera);
     if (camera == TRANSFORM_NO_FRAME) {
         return false;
     }
-    if (b->fixed.count == 0 && !transform_tree_moves(&b->tree, camera)) { /* a rig's own frames are no poses */
+    if (b->fixed.count == 0 && !transform_tree_moves(&b->tree, camera)) { /* frames inside a rigid rig are no poses */
         remark(b, "no pose topic was chosen, and transforms stand still", b->camera, (t3r_text){"its root", 8});
         return false;
     }
@@ -197,7 +197,7 @@ static bool pose_of_tree(bag_frames *b, int64_t stamp_ns, rigid *out)
     return true;
 }
 
-/* By the pose topic, with transforms before and behind it where its frames are not those asked for. */
+/* Gets the pose from the pose topic, with transforms on either side if its frames are not the requested ones. */
 static bool pose_of_topic(bag_frames *b, int64_t stamp_ns, rigid *out)
 {
     if (!pose_track_at(&b->poses, stamp_ns, b->options.near_ns, out)) {
@@ -224,7 +224,7 @@ static bool pose_of_topic(bag_frames *b, int64_t stamp_ns, rigid *out)
     return true;
 }
 
-/* Whether the pose that the recording gives is the one asked for. */
+/* Whether the recording's own pose is the requested one. */
 static bool is_as_asked(const bag_frames *b, uint32_t index, int64_t stamp_ns)
 {
     t3r_recorded_message pose = t3r_recording_frame_message(b->recording, index, T3R_USE_POSE);
@@ -259,7 +259,7 @@ static int make_pose(bag_frames *b, uint32_t index, t3r_capture_frame *frame, ch
 
 /* ---- depth ---- */
 
-/* Whether the depth camera sees what colour sees, in pixels of another size at most. */
+/* Whether the depth camera sees the same as the colour camera, at most in another resolution. */
 static bool is_aligned(const lens *depth, const lens *colour)
 {
     double sx = colour->width / depth->width, sy = colour->height / depth->height;
@@ -274,7 +274,7 @@ static void drop_depth(bag_frames *b, t3r_frame *frame)
     b->unregistered++;
 }
 
-/* The depth camera's intrinsics; false where it has none of its own. */
+/* Reads the depth camera's intrinsics; *there is false if it has none of its own. */
 static int depth_lens(const bag_frames *b, uint32_t index, const t3r_frame *frame, lens *out, bool *there, char *error,
                       size_t error_bytes)
 {
@@ -292,7 +292,7 @@ static int depth_lens(const bag_frames *b, uint32_t index, const t3r_frame *fram
     return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "camera_info of depth: %s", wrong);
 }
 
-/* Registered depth in the place of the frame's. False: out of memory. */
+/* Replaces the frame's depth by registered depth. False: out of memory. */
 static bool put_registered(bag_frames *b, uint32_t index, t3r_frame *f, const lens *depth, const lens *colour,
                            const rigid *from_depth)
 {

@@ -7,7 +7,7 @@
 #include "host/little_floats.h"
 #include "host/reason.h"
 
-/* In front of the picture of compressedDepth: how it was made, and two floats a and b. */
+/* Precedes the picture of compressedDepth: how it was made, and two floats a and b. */
 #define DEPTH_HEADER_BYTES 12u
 
 static bool begins_with(t3r_text text, const char *word)
@@ -15,7 +15,7 @@ static bool begins_with(t3r_text text, const char *word)
     return text.count >= strlen(word) && memcmp(text.chars, word, strlen(word)) == 0;
 }
 
-/* Metres are a / (sample - b), as depth_image_transport quantizes them; 0 is no measurement. */
+/* Metres are a / (sample - b), as depth_image_transport quantizes them; 0 means no measurement. */
 static void metres_to_steps(picture *p, double a, double b, uint64_t unit_q40)
 {
     uint16_t *samples = p->samples;
@@ -25,7 +25,7 @@ static void metres_to_steps(picture *p, double a, double b, uint64_t unit_q40)
     }
 }
 
-/* In place: the samples become little-endian bytes. */
+/* Converts the samples to little-endian bytes in place. */
 static void to_bytes(picture *p)
 {
     uint16_t *samples = p->samples;

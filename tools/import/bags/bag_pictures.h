@@ -1,4 +1,4 @@
-/* The compressed images of a bag, decoded for its import. */
+/* Decodes the compressed images of a bag for import. */
 #ifndef TRIM3R_TOOLS_BAG_PICTURES_H
 #define TRIM3R_TOOLS_BAG_PICTURES_H
 
@@ -6,11 +6,12 @@
 #include "recording/recording.h"
 
 typedef struct bag_pictures {
-    picture colour, depth; /* the last ones */
+    picture colour, depth; /* the last ones decoded */
 } bag_pictures;
 
-/* JPEG, PNG and the PNG of compressedDepth, 16UC1 as it is and 32FC1 by the scale that the message gives. `pictures`
- * begins with zeros and outlives the recording; bag_pictures_free() when that is closed. */
+/* Returns a decoder of JPEG, PNG and the PNG of compressedDepth, 16UC1 unchanged and 32FC1 by the scale in the message.
+ * `pictures` is initialised with zeros and outlives the recording; call bag_pictures_free() when the recording is
+ * closed. */
 t3r_image_decoder bag_pictures_decoder(bag_pictures *pictures);
 void bag_pictures_free(bag_pictures *pictures);
 

@@ -23,13 +23,13 @@ typedef struct made_frames {
     const pose_account *accounts; /* NULL: poses were not estimated */
 } made_frames;
 
-/* The frame as it is written, its poses those that were estimated where they were. */
+/* Makes the frame to write, with its estimated pose if poses were estimated. */
 static int make(void *user, uint32_t index, t3r_capture_frame *frame, char *error, size_t error_bytes)
 {
     const made_frames *made = user;
     int status = bag_frames_make(made->frames, index, frame, error, error_bytes);
     if (made->accounts != NULL && made->accounts[index].why[0] != '\0') {
-        frame->has_pose = false; /* one of another world than the estimated ones */
+        frame->has_pose = false; /* a recorded pose would be in another world than the estimated ones */
     }
     return status;
 }
@@ -69,9 +69,9 @@ static int estimate_all(t3r_recording *recording, const recording_import_request
     return code;
 }
 
-/* ---- what is said of it ---- */
+/* ---- the report ---- */
 
-/* What a cut cost: "" where there was none. */
+/* Describes what was lost by a cut; "" without one. */
 static void say_lost(const t3r_recording *recording, char *text, size_t bytes)
 {
     t3r_recording_cut cut = t3r_recording_cut_of(recording);
@@ -89,7 +89,7 @@ static void say_lost(const t3r_recording *recording, char *text, size_t bytes)
     }
 }
 
-/* Transforms are also used where a pose topic's frames are not those asked for. */
+/* Returns a stream's use. Transforms are also used if a pose topic's frames are not the requested ones. */
 static t3r_stream_use use_of(const t3r_stream_info *info, const bag_frames *frames)
 {
     bool transforms = t3r_ros_is_named(T3R_ROS_TF, t3r_text_of(info->schema));

@@ -1,5 +1,5 @@
-/* A recording or a bag of others, written anew: frames whole and indexed, images decoded, poses composed, depth
- * registered, what a cut left mended. */
+/* Writes a recording, or a bag from elsewhere, anew: complete indexed frames, decoded images, composed poses,
+ * registered depth, cuts repaired. */
 #ifndef TRIM3R_TOOLS_RECORDING_IMPORT_H
 #define TRIM3R_TOOLS_RECORDING_IMPORT_H
 
@@ -8,14 +8,14 @@
 #include "import/poses/poses.h"
 
 typedef struct recording_import_request {
-    const char *input, *output, *source; /* source: what the new one says that it was made of */
+    const char *input, *output, *source; /* source: stored in the new recording as its origin */
     poses_source poses;
     const bag_options *bag;
     const recording_options *stored;
     bool json;
 } recording_import_request;
 
-/* Writes it and prints what was made of what. An exit status of cli.h. */
+/* Writes the recording and prints what was used for what. Returns an exit status of cli.h. */
 int recording_import(const recording_import_request *request);
 
 #endif

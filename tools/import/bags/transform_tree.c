@@ -6,14 +6,14 @@
 #include "host/grow.h"
 #include "mcap/reader_limits.h"
 
-#define SLOTS (2u * T3R_LIMIT_TRANSFORM_FRAMES) /* a power of two; half of them stay free */
+#define SLOTS (2u * T3R_LIMIT_TRANSFORM_FRAMES) /* a power of two; at least half stay free */
 
 t3r_text transform_tree_name(t3r_text name)
 {
     return name.count > 0 && name.chars[0] == '/' ? (t3r_text){name.chars + 1, name.count - 1} : name;
 }
 
-/* The slot of that name, or the free one where it would stand (FNV-1a). */
+/* Returns the slot of that name, or the free one for it (FNV-1a). */
 static uint32_t *slot_of(const transform_tree *tree, t3r_text name)
 {
     uint32_t hash = 2166136261u;
@@ -27,7 +27,7 @@ static uint32_t *slot_of(const transform_tree *tree, t3r_text name)
     return &tree->slots[at];
 }
 
-/* The frame of that name, made where there is none; TRANSFORM_NO_FRAME with a reason in *wrong. */
+/* Returns the frame of that name, made if necessary; TRANSFORM_NO_FRAME with a reason in *wrong. */
 static uint32_t frame_of(transform_tree *tree, t3r_text name, const char **wrong)
 {
     name = transform_tree_name(name);
@@ -95,7 +95,7 @@ const char *transform_tree_finish(transform_tree *tree)
 uint32_t transform_tree_find(const transform_tree *tree, t3r_text name)
 {
     name = transform_tree_name(name);
-    return tree->slots == NULL ? TRANSFORM_NO_FRAME : *slot_of(tree, name) - 1; /* 0 - 1: none */
+    return tree->slots == NULL ? TRANSFORM_NO_FRAME : *slot_of(tree, name) - 1; /* 0 - 1: no frame */
 }
 
 uint32_t transform_tree_root(const transform_tree *tree, uint32_t frame)
@@ -124,7 +124,8 @@ static uint32_t depth_of(const transform_tree *tree, uint32_t frame)
     return depth;
 }
 
-/* The lowest frame that is above both, or either; TRANSFORM_NO_FRAME where their roots differ. */
+/* Returns the lowest common ancestor of both frames, which may be one of them; TRANSFORM_NO_FRAME if their roots
+ * differ. */
 static uint32_t common_frame(const transform_tree *tree, uint32_t a, uint32_t b)
 {
     uint32_t depth_a = depth_of(tree, a), depth_b = depth_of(tree, b);
@@ -140,7 +141,7 @@ static uint32_t common_frame(const transform_tree *tree, uint32_t a, uint32_t b)
     return a == b ? a : TRANSFORM_NO_FRAME;
 }
 
-/* From `frame` to `top`, which is above it. */
+/* Composes the transform from `frame` to its ancestor `top`. */
 static bool climb(const transform_tree *tree, uint32_t top, uint32_t frame, int64_t stamp_ns, int64_t near_ns,
                   rigid *out)
 {

@@ -66,7 +66,7 @@ static const char *read_camera(FILE *file, colmap_model *model)
     return colmap_model_add_camera(model, &camera);
 }
 
-/* NULL, or what is wrong. */
+/* Returns NULL, or what is wrong. */
 static const char *take_name(FILE *file, char name[COLMAP_NAME_BYTES])
 {
     for (uint32_t length = 0; length < COLMAP_NAME_BYTES; length++) {
@@ -96,7 +96,7 @@ static const char *read_image(FILE *file, colmap_model *model)
     if (wrong != NULL) {
         return wrong;
     }
-    /* a jump behind the end is seen when the next image is read, or is of no harm */
+    /* a jump past the end is noticed at the next image, or does no harm */
     if (!take_u64(file, &points) || points > INT64_MAX / POINT_BYTES ||
         fseeko(file, (off_t)(points * POINT_BYTES), SEEK_CUR) != 0) {
         return "its points reach past the file's end";
@@ -104,7 +104,8 @@ static const char *read_image(FILE *file, colmap_model *model)
     return colmap_model_add_image(model, name, camera, pose);
 }
 
-/* A count, and so many of what `read` takes; each is at least as many bytes as its fields, so a lie ends at the end. */
+/* Reads a count, and so many items by `read`. Every item takes at least the bytes of its fields, so a false count ends
+ * at the end of the file. */
 static int read_all(FILE *file, colmap_model *model, const char *(*read)(FILE *file, colmap_model *model),
                     const char *what, char *error, size_t error_bytes)
 {

@@ -3,14 +3,14 @@
 #include <math.h>
 #include <string.h>
 
-/* Where a coefficient goes: its place in posed_intrinsics.coefficients. */
+/* Index of a coefficient in posed_intrinsics.coefficients. */
 typedef enum coefficient {
     K1 = 0,
     K2 = 1,
-    P1 = 2, /* of radial-tangential lenses */
+    P1 = 2, /* for radial-tangential lenses */
     P2 = 3,
     K3 = 4,
-    FISH_K3 = 2, /* of fisheye lenses */
+    FISH_K3 = 2, /* for fisheye lenses */
     FISH_K4 = 3,
     MUST_BE_0 = 5 /* the runtime has no such coefficient */
 } coefficient;
@@ -19,15 +19,15 @@ struct colmap_camera_model {
     int32_t id;
     const char *name;
     uint32_t parameters;
-    uint32_t focals;  /* 1: fx is fy, too; then come cx, cy and the coefficients */
-    const char *lens; /* NULL: the runtime has it, else what is told */
+    uint32_t focals;  /* 1: fx is also fy; cx, cy and the coefficients follow */
+    const char *lens; /* NULL: the runtime has it; else its name for messages */
     t3r_distortion distortion;
     coefficient coefficients[8];
 };
 
 #define NO_COUNTERPART(name) "the camera model " name " is not supported; colmap image_undistorter makes PINHOLE of it"
 
-/* As COLMAP's documentation lists them. */
+/* In the order of COLMAP's documentation. */
 static const colmap_camera_model models[] = {
     {0, "SIMPLE_PINHOLE", 3, 1, NULL, T3R_DISTORTION_NONE, {0}},
     {1, "PINHOLE", 4, 2, NULL, T3R_DISTORTION_NONE, {0}},
@@ -90,7 +90,7 @@ const char *colmap_intrinsics(const colmap_camera_model *model, const double *pa
     if (!(out->fx > 0 && out->fy > 0)) {
         return "a focal length is not positive";
     }
-    bool any = model->distortion == T3R_DISTORTION_FISHEYE; /* which bends rays without coefficients, too */
+    bool any = model->distortion == T3R_DISTORTION_FISHEYE; /* fisheye lenses bend rays even without coefficients */
     for (uint32_t i = 0; i < model->parameters - model->focals - 2; i++) {
         double value = centre[2 + i];
         any = any || value != 0;

@@ -10,14 +10,14 @@
 
 typedef struct colmap_camera_model colmap_camera_model;
 
-/* NULL: there is no such model. */
+/* Returns NULL if there is no such model. */
 const colmap_camera_model *colmap_model_of_id(int32_t id);
 const colmap_camera_model *colmap_model_of_name(const char *name);
-/* How many numbers it has, COLMAP_PARAMETERS_MOST or fewer. */
+/* Returns the number of parameters, at most COLMAP_PARAMETERS_MOST. */
 uint32_t colmap_model_parameters(const colmap_camera_model *model);
 
-/* The camera of a picture of width x height pixels. NULL, or what is wrong: a lens that has no counterpart in the
- * runtime, which is named, or a number that is not finite. */
+/* Makes the camera of a picture of width x height pixels. Returns NULL, or what is wrong: a lens without counterpart in
+ * the runtime, by name, or a number that is not finite. */
 const char *colmap_intrinsics(const colmap_camera_model *model, const double *parameters, uint64_t width,
                               uint64_t height, posed_intrinsics *out);
 

@@ -1,16 +1,16 @@
-/* Dense depth maps of COLMAP (patch_match_stereo), beside a model of undistorted pictures. */
+/* Dense depth maps of COLMAP (patch_match_stereo), next to a model of undistorted pictures. */
 #ifndef TRIM3R_TOOLS_COLMAP_DEPTH_H
 #define TRIM3R_TOOLS_COLMAP_DEPTH_H
 
 #include "import/folders/posed_frame.h"
 
-/* The map of a picture that the model names so becomes the frame's depth, where there is one; the geometric before the
- * photometric. -1: out of memory. */
+/* Sets the frame's depth to the map of that picture, if there is one; a geometric map wins over a photometric one. -1:
+ * out of memory. */
 int colmap_depth_find(const char *directory, const char *image, posed_frame *frame);
-/* Once all are found: how long the steps are that lengths are rounded to, where depth_unit is not given: so that the
- * largest of some maps' medians is an eighth of the most that 16 bits hold. */
+/* Sets the depth step that lengths are rounded to, unless depth_unit is given; call when all maps are found. The
+ * largest median of a sample of the maps becomes an eighth of the 16-bit range. */
 void colmap_depth_set_unit(const char *directory, posed_folder *folder);
-/* Notes maps that lie in a folder below. -1: out of memory. */
+/* Adds a remark on maps that lie in a folder below. -1: out of memory. */
 int colmap_depth_tell(const char *directory, posed_folder *folder);
 
 #endif

@@ -11,7 +11,7 @@
 #include "host/reason.h"
 
 #define PATH_BYTES 8192
-#define MODELS_MOST 100u /* numbered folders beside each other */
+#define MODELS_MOST 100u /* numbered folders of models */
 
 typedef struct model_files {
     const char *cameras, *images;
@@ -19,21 +19,21 @@ typedef struct model_files {
     int (*read_images)(FILE *file, colmap_model *model, char *error, size_t error_bytes);
 } model_files;
 
-/* In the order in which COLMAP prefers them. */
+/* In COLMAP's order of preference. */
 static const model_files forms[] = {
     {"cameras.bin", "images.bin", colmap_read_cameras_binary, colmap_read_images_binary},
     {"cameras.txt", "images.txt", colmap_read_cameras_text, colmap_read_images_text},
 };
 #define FORMS (sizeof forms / sizeof *forms)
 
-/* Where models lie: as COLMAP, 3DGS and nerfstudio place them, or in the folder itself. */
+/* Where models lie: the folders of COLMAP, 3DGS and nerfstudio, or the folder itself. */
 static const char *const model_places[] = {"sparse", "colmap/sparse", "."};
-/* Where pictures lie, with a model in the folder itself last. */
+/* Where pictures lie; the last ones are for a model in the folder itself. */
 static const char *const picture_places[] = {"images", "input", "rgb", "color", ".", "../images", "../../images"};
 static const char *const depth_places[] = {"depth", "depths"};
 static const char *const depth_endings[] = {".png", ".exr"};
 
-/* FOLDER/NAME; "" where it is too long, which is nowhere. */
+/* Joins FOLDER/NAME; "", which is no path, if it is too long. */
 static void join(char path[PATH_BYTES], const char *folder, const char *name)
 {
     int length = snprintf(path, PATH_BYTES, "%s/%s", folder, name);
@@ -41,7 +41,7 @@ static void join(char path[PATH_BYTES], const char *folder, const char *name)
     path[0] = length >= PATH_BYTES ? '\0' : path[0];
 }
 
-/* The form of the model in DIR/PLACE; NULL: none. */
+/* Returns the form of the model in DIR/PLACE; NULL: none. */
 static const model_files *form_of(const char *directory, const char *place)
 {
     for (size_t i = 0; i < FORMS; i++) {
@@ -55,7 +55,7 @@ static const model_files *form_of(const char *directory, const char *place)
     return NULL;
 }
 
-/* The folder's first model, its numbered ones first. place: where it lies. NULL: none. */
+/* Finds the folder's first model, numbered ones first, and its `place`. NULL: none. */
 static const model_files *find_model(const char *directory, char place[PATH_BYTES])
 {
     const model_files *form = NULL;
@@ -76,7 +76,7 @@ bool colmap_folder_is(const char *directory)
     return find_model(directory, place) != NULL;
 }
 
-/* Models beside the one that is read: what COLMAP could not join to it. */
+/* Remarks on other models in the same place, which COLMAP could not join to the one that is read. */
 static void tell_others(const char *directory, const char *place, posed_folder *out)
 {
     const char *slash = strrchr(place, '/');
@@ -115,7 +115,7 @@ static int read_list(const char *directory, const char *place, const char *name,
     return status;
 }
 
-/* The first of the places where the picture lies; NULL: none. */
+/* Returns the first of the places that has the picture; NULL: none. */
 static const char *place_of(const char *directory, const char *const *places, size_t count, const char *name)
 {
     for (size_t i = 0; i < count; i++) {
@@ -128,7 +128,7 @@ static const char *place_of(const char *directory, const char *const *places, si
     return NULL;
 }
 
-/* The depth that goes with a picture: of its name, with an ending of its own. */
+/* Makes the name of a picture's depth: the same name with another suffix. */
 static void depth_name(const char *image, const char *depth_ending, char name[PATH_BYTES])
 {
     const char *slash = strrchr(image, '/'), *dot = strrchr(image, '.');
@@ -163,7 +163,7 @@ static int add_frames(const char *directory, const posed_folder_options *options
 {
     const char *place =
         place_of(directory, picture_places, sizeof picture_places / sizeof *picture_places, model->images[0].name);
-    place = place != NULL ? place : picture_places[0]; /* whose pictures are missed where they are read */
+    place = place != NULL ? place : picture_places[0]; /* pictures are then reported as missing when they are read */
     out->frames = calloc(model->image_count, sizeof *out->frames);
     if (out->frames == NULL) {
         return t3r_reason(error, error_bytes, "out of memory");

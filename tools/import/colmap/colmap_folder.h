@@ -9,8 +9,8 @@
 
 bool colmap_folder_is(const char *directory);
 
-/* The model's images with a pose, in the order of their names, and depth: pictures where there are some and
- * options->depth_unit is given, else COLMAP's own dense maps. The scale is that of the model. */
+/* Reads the model's images that have a pose, in the order of their names, and depth: pictures if there are any and
+ * options->depth_unit is given, else COLMAP's own dense maps. The scale is the model's. */
 int colmap_folder_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                        size_t error_bytes);
 

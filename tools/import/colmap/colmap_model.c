@@ -19,7 +19,7 @@ void colmap_model_free(colmap_model *model)
     *model = (colmap_model){0};
 }
 
-/* Room for one more; lists double at powers of two. NULL: out of memory. */
+/* Makes room for one more; lists double at powers of two. NULL: out of memory. */
 static void *grown(void *list, uint32_t count, size_t each)
 {
     return (count & (count - 1)) == 0 ? realloc(list, (count == 0 ? 1 : (size_t)count * 2) * each) : list;

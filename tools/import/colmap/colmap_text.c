@@ -1,5 +1,5 @@
 /* cameras.txt: CAMERA_ID MODEL WIDTH HEIGHT PARAMETERS...
- * images.txt, two lines an image: IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, then its points. */
+ * images.txt, two lines per image: IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, then its points. */
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 
 #define BLANKS " \t\r"
 
-/* What takes a value moves *text behind it. */
+/* The take_ functions move *text past the value. */
 static bool take_number(char **text, double *value)
 {
     char *end;
@@ -32,7 +32,7 @@ static bool take_whole(char **text, uint64_t most, uint64_t *value)
     return start[0] >= '0' && start[0] <= '9' && errno == 0 && *value <= most;
 }
 
-/* A word that ends at a blank; NULL where there is none. */
+/* Takes a word that ends at a blank; NULL if there is none. */
 static char *take_word(char **text)
 {
     char *start = *text + strspn(*text, BLANKS);
@@ -42,7 +42,7 @@ static char *take_word(char **text)
     return length > 0 ? start : NULL;
 }
 
-/* The next line that is not a comment; empty lines, of which a list of points may be one, are the caller's. */
+/* Reads the next line that is not a comment. Empty lines are returned, as an image's list of points may be one. */
 static bool next_line(line_reader *lines)
 {
     bool there;
@@ -106,7 +106,7 @@ static const char *parse_image(char *line, colmap_model *model)
     return colmap_model_add_image(model, line, (uint32_t)camera, pose);
 }
 
-/* All lines that `parse` takes; behind each, `skipped` more. */
+/* Passes lines to `parse`; skips `skipped` lines after each. */
 static int read_lines(FILE *file, colmap_model *model, const char *(*parse)(char *line, colmap_model *model),
                       uint32_t skipped, char *error, size_t error_bytes)
 {

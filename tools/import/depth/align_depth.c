@@ -58,7 +58,7 @@ int align_depth(const posed_frame *frame, const picture *colour, picture *depth,
                       .depth_width = depth->width,
                       .depth_height = depth->height,
                       .depth_stride_bytes = depth->width * 2,
-                      .depth_unit_q40 = UINT64_C(1) << 40}; /* as from_depth has it */
+                      .depth_unit_q40 = UINT64_C(1) << 40}; /* as in from_depth */
     picture drawn = {.channels = 1, .bits = 16};
     register_depth_size(&seen, &drawn.width, &drawn.height);
     const size_t drawn_count = (size_t)drawn.width * drawn.height;

@@ -1,4 +1,4 @@
-/* The file lies in memory as a whole; the library reads it from there, a chunk (some lines, or a tile) at a time. */
+/* The whole file is in memory; the library reads it from there, a chunk (some lines, or a tile) at a time. */
 #include "import/depth/exr_depth.h"
 
 #include <math.h>
@@ -24,14 +24,15 @@ bool exr_depth_is(const char *name)
 
 enum {
     REASON_BYTES = 256,
-    TILE_SIDE_LEAST = 8,   /* smaller ones, unless the picture is, take longer to find than to unpack */
-    TILE_SIDE_MOST = 1024, /* one chunk is in memory four times: packed, unpacked, while it unpacks, as floats */
-    /* what stands beside the numbers: attributes, the place of each chunk, a chunk's own header */
+    TILE_SIDE_LEAST = 8, /* smaller tiles, unless the picture is small, take longer to find than to decompress */
+    TILE_SIDE_MOST =
+        1024, /* a chunk is in memory four times: compressed, decompressed, while it decompresses, as floats */
+    /* room for attributes, the table of chunks, and the chunks' own headers */
     FILE_BYTES_BESIDE = 16 << 20,
-    ALLOCATION_MOST = 64 << 20, /* of the library, which asks for what the header says */
+    ALLOCATION_MOST = 64 << 20, /* bounds what the library allocates on the header's word */
 };
 
-/* What any file unpacks to is bounded by its sides, whatever its size. */
+/* The decompressed size is bounded by the sides, whatever the size of the file. */
 _Static_assert((uint64_t)T3R_MAX_SIDE *T3R_MAX_SIDE * sizeof(float) <= T3R_LIMIT_UNPACKED_FREE,
                "depth of the largest sides is within what compressed data may become");
 
@@ -40,12 +41,12 @@ typedef struct exr_file {
     size_t count;
     exr_context_t context;
     char reason[REASON_BYTES]; /* the library's first message */
-    exr_attr_box2i_t window;   /* of pixels, both ends inclusive */
-    uint32_t width, height;    /* its sides */
+    exr_attr_box2i_t window;   /* in pixels, both ends inclusive */
+    uint32_t width, height;    /* sides of the window */
     exr_storage_t storage;
     double unit;
-    uint16_t *samples;       /* of width x height */
-    bool has_length, is_any; /* some number is a length; some length became a step */
+    uint16_t *samples;       /* width x height */
+    bool has_length, is_any; /* some number is a length; some length gave a step */
 } exr_file;
 
 const char *exr_depth_missing(void)
@@ -53,7 +54,7 @@ const char *exr_depth_missing(void)
     return NULL;
 }
 
-/* ---- what the library calls ---- */
+/* ---- the library's callbacks ---- */
 
 static int64_t give_bytes(exr_const_context_t context, void *user, void *buffer, uint64_t count, uint64_t offset,
                           exr_stream_error_func_ptr_t error)
@@ -69,7 +70,7 @@ static int64_t give_bytes(exr_const_context_t context, void *user, void *buffer,
     return (int64_t)given;
 }
 
-/* Zeros: a damaged chunk that unpacks to less than it should leaves the rest as it was. */
+/* Allocates zeros, so that a damaged chunk that decompresses to less than it should leaves zeros. */
 static void *allocate(size_t count)
 {
     return count <= ALLOCATION_MOST ? calloc(count, 1) : NULL;
@@ -93,7 +94,7 @@ static void take_message(exr_const_context_t context, exr_result_t code, const c
     }
 }
 
-/* NULL, or what the library said. */
+/* Returns NULL, or the library's message. */
 static const char *answer(const exr_file *file, exr_result_t code)
 {
     return code == EXR_ERR_SUCCESS   ? NULL
@@ -101,7 +102,7 @@ static const char *answer(const exr_file *file, exr_result_t code)
                                      : exr_get_default_error_message(code);
 }
 
-/* ---- the header: each answers NULL, or what is wrong ---- */
+/* ---- the header: each function returns NULL, or what is wrong ---- */
 
 static const char *check_channel(const exr_file *file)
 {
@@ -212,7 +213,7 @@ static const char *unpack(exr_file *file, const exr_chunk_info_t *chunk, float *
     return answer(file, code);
 }
 
-/* A chunk's numbers to samples from (x, y) on; the chunk lies within the picture. */
+/* Converts a chunk's numbers to samples from (x, y) on; the chunk must lie within the picture. */
 static void put_steps(exr_file *file, const exr_chunk_info_t *chunk, uint32_t x, uint32_t y, const float *numbers)
 {
     for (int32_t row = 0; row < chunk->height; row++) {
@@ -226,7 +227,7 @@ static void put_steps(exr_file *file, const exr_chunk_info_t *chunk, uint32_t x,
     }
 }
 
-/* The chunk that covers width x height pixels from (x, y) on. */
+/* Reads the chunk that covers width x height pixels from (x, y) on. */
 static const char *take_chunk(exr_file *file, const exr_chunk_info_t *chunk, uint32_t x, uint32_t y, uint32_t width,
                               uint32_t height)
 {
@@ -301,7 +302,7 @@ static const char *read_samples(exr_file *file)
 
 /* ---- files ---- */
 
-/* out NULL: the header alone. */
+/* Parses a file; out NULL: only the header. */
 static int parse(exr_file *file, picture *out, char *error, size_t error_bytes)
 {
     const char *wrong = read_header(file);

@@ -27,7 +27,7 @@ static float number_of(const numbers *n, size_t index)
     return t3r_load_float(n->at + 4 * index);
 }
 
-/* "123&" at *at, which moves behind it; 0: there is no such number of 1..T3R_MAX_SIDE. */
+/* Reads "123&" at *at, which moves past it; 0: there is no number of 1..T3R_MAX_SIDE. */
 static uint32_t read_side(const uint8_t *bytes, size_t count, size_t *at)
 {
     uint32_t side = 0;
@@ -37,7 +37,7 @@ static uint32_t read_side(const uint8_t *bytes, size_t count, size_t *at)
     return *at < count && bytes[(*at)++] == '&' && side <= T3R_MAX_SIDE ? side : 0;
 }
 
-/* NULL, or what is wrong. */
+/* Returns NULL, or what is wrong. */
 static const char *find_numbers(const uint8_t *bytes, size_t count, const raw_depth *raw, numbers *out)
 {
     size_t at = 0;

@@ -16,18 +16,18 @@ void register_depth_size(const t3r_frame *frame, uint32_t *width, uint32_t *heig
     *height = frame->height / n > 2 ? frame->height / n : 2;
 }
 
-/* What stays the same for all samples. */
+/* Constants of the target for all samples. */
 typedef struct target {
     const lens *colour;
     const rigid *from_depth;
     uint32_t width, height;
-    double scale[2];  /* its pixels a pixel of colour */
-    double widest[2]; /* of a sample's square, in its pixels: more is a sample on the camera itself */
+    double scale[2];  /* its pixels per pixel of colour */
+    double widest[2]; /* largest square of a sample in its pixels: a larger one is at the camera itself */
     double unit;
     uint8_t *out;
 } target;
 
-/* The corner of a sample's square in the target's pixels, and its distance in front of the colour camera. */
+/* Projects a corner of a sample's square into the target's pixels; *depth is its depth in the colour camera. */
 static bool corner(const target *t, const float ray[2], double z, double pixel[2], double *depth)
 {
     const double point[3] = {(double)ray[0] * z, (double)ray[1] * z, z};
@@ -43,7 +43,7 @@ static bool corner(const target *t, const float ray[2], double z, double pixel[2
     return true;
 }
 
-/* The pixels whose centres lie from a to b, at least the nearest one; within 0..count - 1. */
+/* Finds the pixels whose centres lie from a to b, at least the nearest one; within 0..count - 1. */
 static bool span(double a, double b, double widest, uint32_t count, uint32_t *first, uint32_t *last)
 {
     double low = ceil(fmin(a, b)), high = ceil(fmax(a, b)) - 1;

@@ -16,14 +16,14 @@
 #include "mcap/reader_limits.h"
 #include "host/reason.h"
 
-#define MIN_SIDE 2u /* of t3r_frame */
+#define MIN_SIDE 2u /* least side of t3r_frame */
 
 _Static_assert(T3R_MAX_POSITION_Q32 == INT64_C(1) << (T3R_LIMIT_POSITION_LOG2 + 32) &&
                    T3R_MAX_TANGENTIAL_Q24 == T3R_LIMIT_TANGENTIAL << 24 &&
                    T3R_MAX_DEPTH_UNIT_Q40 == ((uint64_t)T3R_LIMIT_DEPTH_UNIT << 40) - 1,
                "readers and runtime have the same limits");
 
-/* a b / c to the nearest, halves up; sides are at most 2^12, so nothing overflows */
+/* Returns a b / c rounded to nearest, halves up; sides are at most 2^12, so nothing overflows. */
 static uint32_t share(uint32_t a, uint32_t b, uint32_t c)
 {
     return (2 * a * b + c) / (2 * c);
@@ -68,7 +68,7 @@ void import_crop_camera(t3r_recorded_camera *camera, const import_crop *crop, ui
 
 /* ---- pictures -------------------------------------------------------------------------------------------------- */
 
-/* The picture's path; synthetic NeRF scenes leave the ending out. */
+/* Returns the picture's path; synthetic NeRF scenes omit the suffix. */
 static char *find_picture(const char *directory, const char *name)
 {
     static const char *const endings[] = {".png", ".jpg", ".jpeg"};
@@ -144,7 +144,7 @@ static int read_depth(const char *path, const raw_depth *raw, picture *out, char
     return 0;
 }
 
-/* A picture of a frame; raw: it is one of depth. */
+/* Reads a picture of a frame; raw: it is a depth picture. */
 static int read_named(const char *directory, const char *name, const raw_depth *raw, picture *out, char *error,
                       size_t error_bytes)
 {
@@ -156,7 +156,7 @@ static int read_named(const char *directory, const char *name, const raw_depth *
     return status;
 }
 
-/* Samples that stand for no depth become 0. */
+/* Sets samples that mean "no depth" to 0. */
 static void forget_samples(picture *depth, uint16_t no_depth)
 {
     uint16_t *samples = depth->samples;
@@ -167,7 +167,7 @@ static void forget_samples(picture *depth, uint16_t no_depth)
 
 /* ---- adapting -------------------------------------------------------------------------------------------------- */
 
-/* The cropped colour picture to interleaved RGB of width x height, through the runtime's own resize. */
+/* Converts the cropped colour picture to interleaved RGB of width x height, with the runtime's own resize. */
 static int develop_colour(const picture *in, const import_crop *crop, uint32_t width, uint32_t height, uint8_t *rgb)
 {
     t3r_frame frame = {
@@ -223,8 +223,8 @@ static int develop_depth(picture *in, const import_crop *crop, uint32_t width, u
     return 0;
 }
 
-/* Whether the runtime finds its way back through the lens: some coefficients fold the picture. -1 when memory is out.
- */
+/* Whether the lens folds: with some coefficients the runtime cannot invert the distortion within the picture. -1 when
+ * memory is out. */
 static int lens_folds(const t3r_camera *camera, uint32_t width, uint32_t height)
 {
     if (camera->distortion == T3R_DISTORTION_NONE) {
@@ -236,7 +236,7 @@ static int lens_folds(const t3r_camera *camera, uint32_t width, uint32_t height)
     return folds;
 }
 
-/* What build can use, of the camera that is left after cropping and resizing. */
+/* Checks that build can use the camera that results from cropping and resizing. */
 static int check_camera(const t3r_recorded_camera *camera, const char *name, char *error, size_t error_bytes)
 {
     t3r_camera fixed;
@@ -316,7 +316,7 @@ static int adapt(const char *directory, const posed_frame *frame, uint32_t width
             return t3r_reason(error, error_bytes, "%s: its lens: %s", frame->depth, reason);
         }
     }
-    /* networks round sides to whole patches, so the two need not agree to the pixel */
+    /* networks round sides to whole patches, so the two aspect ratios need not agree to the pixel */
     double aspect = (double)depth->width * colour->height / ((double)depth->height * colour->width);
     if (made && fabs(aspect - 1) > 0.04) {
         return t3r_reason(error, error_bytes, "%s: a pointmap of %ux%u pixels, but the picture has %ux%u", frame->image,

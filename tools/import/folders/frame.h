@@ -14,27 +14,27 @@ typedef struct import_crop {
     uint32_t x, y, width, height;
 } import_crop;
 
-/* The largest centred rectangle of width:height in a picture; its other side is rounded to the nearest pixel, an odd
- * pixel left over goes to the right or bottom. */
+/* Returns the largest centred rectangle of width:height in a picture. Its other side is rounded to the nearest pixel;
+ * an odd pixel left over goes to the right or bottom. */
 import_crop import_largest_crop(uint32_t picture_width, uint32_t picture_height, uint32_t width, uint32_t height);
 
-/* The same share of a picture of another resolution, each edge at the nearest pixel. */
+/* Returns the same share of a picture of another resolution, each edge at the nearest pixel. */
 import_crop import_crop_in_proportion(const import_crop *crop, uint32_t from_width, uint32_t from_height,
                                       uint32_t width, uint32_t height);
 
-/* The sides of the frame's picture, by its header. 0, or -1 with "picture: what" in error[]. */
+/* Reads the sides of the frame's picture from its header. Returns 0, or -1 with "picture: what" in error[]. */
 int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
                         size_t error_bytes);
 
-/* The same of its depth, which it has. */
+/* Reads the sides of its depth; the frame must have depth. */
 int import_depth_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
                       size_t error_bytes);
 
-/* Whether the frame's picture, or its depth, can be read: 0, or -1 with "picture: what" in error[]. */
+/* Checks whether the frame's picture and its depth can be read. Returns 0, or -1 with "picture: what" in error[]. */
 int import_check_picture(const char *directory, const posed_frame *frame, char *error, size_t error_bytes);
 int import_check_depth(const char *directory, const posed_frame *frame, char *error, size_t error_bytes);
 
-/* The camera of what is left after cropping and resizing to width x height. */
+/* Adapts a camera to cropping and resizing to width x height. */
 void import_crop_camera(t3r_recorded_camera *camera, const import_crop *crop, uint32_t width, uint32_t height);
 
 typedef struct import_buffers {
@@ -42,10 +42,10 @@ typedef struct import_buffers {
     uint16_t *depth;
 } import_buffers;
 
-/* Reads and adapts a frame: to width x height, or as it is when width is 0. depth: 16-bit steps made elsewhere, in the
- * place of the frame's own (NULL: those), which the call uses up. `out` (all but its stamp) points into
- * `buffers`, which import_buffers_free() releases in either case. 0, or with "picture: what" in error[]
- * IMPORT_UNREADABLE where the picture or its depth cannot be read, and -1 for all else. */
+/* Reads and adapts a frame: to width x height, or unchanged in size when width is 0. depth: 16-bit steps made
+ * elsewhere, which replace the frame's own (NULL: those are used) and which the call consumes. `out` (all but its
+ * stamp) points into `buffers`, which import_buffers_free() releases in either case. Returns 0; with "picture: what" in
+ * error[], IMPORT_UNREADABLE if the picture or its depth cannot be read, and -1 for all other errors. */
 enum { IMPORT_UNREADABLE = 1 };
 int import_frame(const char *directory, const posed_frame *frame, picture *depth, uint32_t width, uint32_t height,
                  import_buffers *buffers, t3r_recorded_frame *out, char *error, size_t error_bytes);

@@ -1,4 +1,4 @@
-/* Lines of a text that is too large to be held. */
+/* Reads lines of a text that is too large for memory. */
 #ifndef TRIM3R_TOOLS_LINE_READER_H
 #define TRIM3R_TOOLS_LINE_READER_H
 
@@ -8,17 +8,17 @@
 
 #define LINE_READER_BYTES 8192
 
-/* Starts with zeros, but for `file`. */
+/* Initialise with zeros, except `file`. */
 typedef struct line_reader {
     FILE *file;
-    char line[LINE_READER_BYTES]; /* without its end; its first part where `longer` */
-    bool longer;                  /* than the room, or with a zero byte */
-    uint64_t number, bytes;       /* of lines and bytes up to the end of this one */
+    char line[LINE_READER_BYTES]; /* without its line end; if `longer`, only its first part */
+    bool longer;                  /* longer than the buffer, or contains a zero byte */
+    uint64_t number, bytes;       /* count of lines and bytes, including this line */
 } line_reader;
 
-/* The next line; false at the end of the file, where it cannot be read, and behind T3R_LIMIT_MODEL_BYTES. */
+/* Reads the next line; false at the end of the file, when it cannot be read, and past T3R_LIMIT_MODEL_BYTES. */
 bool line_reader_next(line_reader *reader);
-/* Whether it ended at that limit. */
+/* Whether reading ended at that limit. */
 bool line_reader_at_limit(const line_reader *reader);
 
 #endif

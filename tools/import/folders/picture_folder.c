@@ -1,4 +1,4 @@
-/* A folder of pictures and nothing else. */
+/* A folder that holds only pictures. */
 #define _GNU_SOURCE /* versionsort() */
 #include "import/folders/picture_folder.h"
 
@@ -63,7 +63,7 @@ static int by_text(const void *a, const void *b)
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-/* The entry's path as frames spell it, on the heap. */
+/* Returns the entry's path as frames spell it, on the heap. */
 static char *spelled(const char *place, const char *name)
 {
     const size_t bytes = strlen(place) + strlen(name) + 2;

@@ -6,7 +6,7 @@
 #include "cli/cli.h"
 #include "import/folders/frame.h"
 
-#define PLANE_STEPS 2000u /* of a thousandth of a unit: two units away */
+#define PLANE_STEPS 2000u /* in thousandths of a unit: two units away */
 
 static t3r_recorded_camera plane_camera(uint32_t width, uint32_t height)
 {
@@ -19,7 +19,7 @@ static t3r_recorded_camera plane_camera(uint32_t width, uint32_t height)
                                  .rotation = {1, 0, 0, 0}};
 }
 
-/* One frame to a recording in memory; NULL without it. */
+/* Writes one frame to a recording in memory; returns NULL when memory is out. */
 static uint8_t *record(const t3r_recorded_frame *frame, size_t *count)
 {
     char *bytes = NULL;
@@ -63,7 +63,7 @@ static uint8_t *record_plane(t3r_recorded_frame *frame, size_t *count)
 
 t3r_recording *planar_recording(char *path, uint32_t width, uint32_t height, uint8_t **bytes)
 {
-    /* import asks for some camera; record_plane() replaces it */
+    /* import requires a camera; record_plane() replaces this one */
     posed_frame posed = {
         .image = path,
         .intrinsics =

@@ -6,8 +6,9 @@
 
 #include "recording/recording.h"
 
-/* A recording in memory of one image, cropped and averaged to width x height as import does: a single view on a plane
- * two units away, the focal length `width` pixels. *bytes (free()) must outlive it. NULL after a message. */
+/* Makes a recording in memory of one image, cropped and averaged to width x height as import does: a single view of a
+ * plane two units away, with a focal length of `width` pixels. *bytes (free()) must outlive it. Returns NULL after a
+ * message. */
 t3r_recording *planar_recording(char *path, uint32_t width, uint32_t height, uint8_t **bytes);
 
 #endif

@@ -1,5 +1,5 @@
-/* A pose is camera to world, 4x4 or 3x4, x right, y down, z forward. Depth pictures have 16 bits, in millimetres if
- * nothing else is said. Camera matrices are 4x4 or 3x3, pixel (0, 0) being the centre of the top-left pixel. */
+/* A pose is camera to world, 4x4 or 3x4, x right, y down, z forward. Depth pictures have 16 bits, in millimetres unless
+ * specified otherwise. Camera matrices are 4x4 or 3x3; pixel (0, 0) is the centre of the top-left pixel. */
 #define _GNU_SOURCE /* versionsort() */
 #include "import/folders/pose_files.h"
 
@@ -21,18 +21,18 @@
 
 #define PATH_BYTES 1024
 #define ERROR_BYTES 1024
-#define FILE_BYTES 65536u /* of a matrix */
+#define FILE_BYTES 65536u /* most bytes of a matrix */
 #define MILLIMETRE 0.001
 
-/* Where a camera stands among those of the device: its own frame to one that both share. */
+/* A camera's place on the device: from its own frame to one that all cameras share. */
 static const char *const colour_places[] = {"intrinsic/extrinsic_color.txt", "extrinsic_color.txt", NULL};
 static const char *const depth_places[] = {"intrinsic/extrinsic_depth.txt", "extrinsic_depth.txt", NULL};
 
-/* What all frames of a folder share. */
+/* What all frames of a folder have in common. */
 typedef struct cameras {
-    posed_intrinsics colour, depth; /* depth.fx 0: it sees what colour sees */
-    rigid from_depth;               /* to colour's camera, in steps of depth */
-    bool is_moved;                  /* from_depth is not nothing */
+    posed_intrinsics colour, depth; /* depth.fx 0: same view as colour */
+    rigid from_depth;               /* to colour's camera, in depth steps */
+    bool is_moved;                  /* from_depth is not the identity */
 } cameras;
 
 bool pose_files_are_there(const char *directory)
@@ -40,8 +40,7 @@ bool pose_files_are_there(const char *directory)
     return pose_layout_of(directory) != NULL;
 }
 
-/* A matrix as 4x4; rows and columns that the file lacks are those of the unit matrix. columns: 3 of a lens, 4 of a
- * pose. */
+/* Reads a matrix as 4x4, completed by rows and columns of the identity. columns: 3 for a lens, 4 for a pose. */
 static int read_matrix(const char *directory, const char *name, uint32_t columns, double matrix[16], char *error,
                        size_t error_bytes)
 {
@@ -84,7 +83,7 @@ static int read_lens(const char *directory, const char *name, posed_intrinsics *
     return 0;
 }
 
-/* Colour's lens, and depth's where it has one of its own. */
+/* Reads colour's lens, and depth's if it has its own. */
 static int read_lenses(const char *directory, const pose_layout *layout, const posed_folder_options *options,
                        cameras *out, char *error, size_t error_bytes)
 {
@@ -102,7 +101,7 @@ static int read_lenses(const char *directory, const pose_layout *layout, const p
     return depth != NULL ? read_lens(directory, depth, &out->depth, error, error_bytes) : 0;
 }
 
-/* The first of the files that is there; without one the camera stands at the device's own place. */
+/* Reads the first of the files that exists; without one the camera is at the device's own place. */
 static int read_place(const char *directory, const char *const *names, rigid *out, char *error, size_t error_bytes)
 {
     double matrix[16];
@@ -118,7 +117,7 @@ static int read_place(const char *directory, const char *const *names, rigid *ou
     return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "%s/%s: %s", directory, name, wrong);
 }
 
-/* Depth's camera among colour's: first to what both share, then back. */
+/* Computes the transform from depth's camera to colour's: to the frame that both share, then back. */
 static int read_places(const char *directory, double depth_unit, cameras *out, char *error, size_t error_bytes)
 {
     rigid colour, depth;
@@ -141,7 +140,7 @@ static int read_places(const char *directory, double depth_unit, cameras *out, c
                : 0;
 }
 
-/* 1: it is left out, with the reason in error[]. */
+/* Returns 1 if the frame is left out, with the reason in error[]. */
 static int add_frame(const char *directory, const pose_layout *layout, const char *pose_name, const char *stem,
                      posed_frame *frame, char *error, size_t error_bytes)
 {
@@ -168,7 +167,7 @@ static int add_frame(const char *directory, const pose_layout *layout, const cha
     return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "%s/%s: %s", directory, pose_name, wrong);
 }
 
-/* Where depth's lens sees what colour's does, from the same place, it is forgotten. */
+/* Drops depth's lens if it sees the same as colour's from the same place. */
 static int compare_lenses(const char *directory, const posed_frame *frame, cameras *shared, char *error,
                           size_t error_bytes)
 {
@@ -198,7 +197,7 @@ static int add_all(const char *directory, const char *folder, const pose_layout 
     const bool without_poses = options != NULL && options->without_poses;
     bool compared = false;
     for (int i = 0; i < count; i++) {
-        char pose_name[PATH_BYTES], stem[256]; /* of a file name, which has 255 bytes at most */
+        char pose_name[PATH_BYTES], stem[256]; /* a file name has at most 255 bytes */
         const bool here = strcmp(folder, ".") == 0;
         snprintf(pose_name, sizeof pose_name, "%s%s%s", here ? "" : folder, here ? "" : "/", entries[i]->d_name);
         snprintf(stem, sizeof stem, "%.*s", (int)(strlen(entries[i]->d_name) - strlen(layout->pose_ending)),
@@ -215,7 +214,7 @@ static int add_all(const char *directory, const char *folder, const pose_layout 
             continue;
         }
         frame->intrinsics = shared.colour;
-        /* pictures that cannot be read are told where they are read */
+        /* unreadable pictures are reported later, where they are read */
         compared =
             compared || (frame->depth != NULL && compare_lenses(directory, frame, &shared, reason, sizeof reason) == 0);
         frame->depth_lens = shared.depth;
@@ -227,7 +226,7 @@ static int add_all(const char *directory, const char *folder, const pose_layout 
                             folder, reason);
 }
 
-/* Frees the entries that are no poses, and returns the number of the others, which keep their order. */
+/* Frees the entries that are no poses, and returns the number of the others, whose order is kept. */
 static int keep_poses(const pose_layout *layout, struct dirent **entries, int count)
 {
     int kept = 0;

@@ -1,4 +1,4 @@
-/* Folders with a text file for each pose, as exports of ScanNet have them. */
+/* Folders with a text file for each pose, as in exports of ScanNet. */
 #ifndef TRIM3R_TOOLS_POSE_FILES_H
 #define TRIM3R_TOOLS_POSE_FILES_H
 
@@ -9,8 +9,8 @@
 
 bool pose_files_are_there(const char *directory);
 
-/* Each file of `pose` with the picture and the depth of its name. A pose that is not finite is one that was lost: its
- * picture is left out, or stays without a pose where options->without_poses. */
+/* Reads each file of `pose`, with the picture and the depth of the same name. A pose that is not finite marks lost
+ * tracking: its picture is left out, or stays without a pose if options->without_poses. */
 int pose_files_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                     size_t error_bytes);
 

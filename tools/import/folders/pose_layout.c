@@ -9,7 +9,7 @@
 #define PATH_BYTES 1024
 #define NAMES(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-/* Exports of ScanNet, and what is like them. */
+/* Exports of ScanNet and similar folders. */
 static const pose_layout folders = {
     .poses = NAMES("pose", "poses"),
     .colours = NAMES("color", "colour", "rgb", "image", "images"),
@@ -23,7 +23,7 @@ static const pose_layout folders = {
     .lens_hint = "no intrinsic/intrinsic_color.txt; give --intrinsics fx,fy,cx,cy[,k1,k2,p1,p2,k3]",
 };
 
-/* 7-Scenes and 3DMatch: a sequence's files beside each other. */
+/* 7-Scenes and 3DMatch: all files of a sequence in one folder. */
 static const pose_layout flat = {
     .poses = NAMES("."),
     .colours = NAMES("."),

@@ -54,7 +54,7 @@ static int read_transforms(const char *directory, const posed_folder_options *op
     return status;
 }
 
-/* Every kind of folder, in the order in which they are looked for. */
+/* All kinds of folder, in the order in which they are tried. */
 static const struct folder_kind {
     const char *name;
     bool (*is)(const char *directory);
@@ -66,7 +66,7 @@ static const struct folder_kind {
     {"pose files", pose_files_are_there, pose_files_read},
 };
 
-/* Any kind of folder may name depth that is OpenEXR. */
+/* Marks depth that is OpenEXR, which folders of any kind may name. */
 static void mark_exr(posed_folder *folder)
 {
     const double length = folder->exr_length != 0 ? folder->exr_length : 1;
@@ -74,7 +74,7 @@ static void mark_exr(posed_folder *folder)
         posed_frame *frame = &folder->frames[i];
         if (frame->depth != NULL && exr_depth_is(frame->depth)) {
             frame->depth_raw = (raw_depth){.kind = RAW_DEPTH_EXR, .unit = folder->depth_unit / length};
-            frame->no_depth = 0; /* floats have their own ways to say that */
+            frame->no_depth = 0; /* floats have their own markers of missing depth */
         }
     }
 }

@@ -1,5 +1,5 @@
-/* Folders of pictures with known cameras, of every kind that posed_folder.c lists, or without poses as pictures alone.
- * Reading one yields the list of its frames; the pictures are left to the caller. */
+/* Folders of pictures with known cameras, of every kind that posed_folder.c lists, or pictures without poses. Reading a
+ * folder gives the list of its frames; the caller reads the pictures. */
 #ifndef TRIM3R_TOOLS_POSED_FOLDER_H
 #define TRIM3R_TOOLS_POSED_FOLDER_H
 
@@ -7,7 +7,8 @@
 
 #include "import/folders/posed_frame.h"
 
-/* Reads DIR's lists. 0, or -1 with "file: frame: field: what" in error[]. posed_folder_close() in either case. */
+/* Reads DIR's lists. Returns 0, or -1 with "file: frame: field: what" in error[]. Call posed_folder_close() in either
+ * case. */
 int posed_folder_open(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                       size_t error_bytes);
 

@@ -52,7 +52,7 @@ posed_intrinsics posed_intrinsics_of(const double numbers[9])
     return out;
 }
 
-/* A focal length: the given one, else from a field of view over `pixels`, else the other axis's. */
+/* Returns a focal length: the given one, else from a field of view over `pixels`, else the other axis's. */
 static double focal_length(double given, double angle, double pixels, double other)
 {
     if (!isnan(given)) {

@@ -7,7 +7,7 @@
 #include "cli/cli.h"
 #include "host/reason.h"
 
-/* Exact: fixed point of at most 53 bits. */
+/* Converts a camera exactly: its fixed-point numbers have at most 53 bits. */
 static t3r_recorded_camera camera_of(const t3r_capture_frame *frame)
 {
     const t3r_camera *in = &frame->camera;

@@ -1,7 +1,7 @@
 /* An unpacked .r3d: metadata, and rgbd with N.jpg, N.depth (float32 in metres, packed with LZFSE) and N.conf. The
- * export with EXR: metadata.json, rgb and depth. Poses are camera to world as qx qy qz qw x y z, the camera's axes
- * OpenGL's. K is a 3x3 matrix column by column, in pixels of pictures of w x h, measured as nerfstudio does: from the
- * corner of the top-left pixel. */
+ * export with EXR: metadata.json, rgb and depth. Poses are camera to world as qx qy qz qw x y z, with OpenGL camera
+ * axes. K is a 3x3 matrix column by column, in pixels of pictures of w x h, measured as in nerfstudio: from the corner
+ * of the top-left pixel. */
 #include "import/folders/record3d.h"
 
 #include <math.h>
@@ -18,10 +18,10 @@
 #include "host/reason.h"
 
 #define DEPTH_MAGIC_BYTES 4
-#define MILLIMETRE 0.001 /* the step that depth is rounded to */
+#define MILLIMETRE 0.001 /* step that depth is rounded to */
 #define NAME_BYTES 64
 
-/* How one of its exports lays its files out. */
+/* The file layout of one of its exports. */
 typedef struct layout {
     const char *metadata, *pictures, *depth, *depth_ending;
 } layout;
@@ -48,7 +48,7 @@ bool record3d_is(const char *directory)
 
 /* ---- metadata --------------------------------------------------------------------------------------------------- */
 
-/* Exactly `count` finite numbers. */
+/* Reads exactly `count` finite numbers. */
 static bool take_numbers(const cJSON *array, int count, double *numbers)
 {
     if (!cJSON_IsArray(array) || cJSON_GetArraySize(array) != count) {
@@ -65,7 +65,7 @@ static bool take_numbers(const cJSON *array, int count, double *numbers)
     return true;
 }
 
-/* A side of pictures; 0 where there is none. */
+/* Reads a side of pictures; 0 if missing. */
 static bool take_side(const cJSON *root, const char *name, uint32_t *side)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(root, name);
@@ -81,7 +81,7 @@ static bool take_side(const cJSON *root, const char *name, uint32_t *side)
     return true;
 }
 
-/* NULL, or what is wrong. */
+/* Returns NULL, or what is wrong. */
 static const char *take_pose(const cJSON *array, posed_frame *out)
 {
     static const rigid half_about_x = {{0, 0, 0}, {0, 1, 0, 0}}; /* from y up, z backward to y down, z forward */
@@ -175,7 +175,7 @@ int record3d_parse(const char *text, size_t bytes, posed_folder *out, uint32_t d
 
 /* ---- files ------------------------------------------------------------------------------------------------------ */
 
-/* Whether depth of that file can be read: not what is packed with LZFSE, whose blocks begin with "bvx". */
+/* Whether depth of that file is packed with LZFSE, whose blocks begin with "bvx", and cannot be read. */
 static int is_packed(const char *directory, const char *name, bool *packed, char *error, size_t error_bytes)
 {
     char first[DEPTH_MAGIC_BYTES] = {0};

@@ -1,5 +1,5 @@
-/* transforms.json: camera-to-world matrices with OpenGL axes (x right, y up, z backward). Intrinsics stand in a frame
- * or, for all frames, at the top; a frame's own win. */
+/* transforms.json: camera-to-world matrices with OpenGL axes (x right, y up, z backward). Intrinsics are in a frame or,
+ * for all frames, at the top; a frame's own win. */
 #define _GNU_SOURCE /* strcasestr() */
 #include "import/folders/transforms_json.h"
 
@@ -17,10 +17,10 @@
 #include "trim3r.h"
 
 #define MAX_PATH_BYTES 4096u
-#define TOLD_MOST 16u         /* fields that are not read and are told of */
-#define NERFSTUDIO_UNIT 0.001 /* of a depth_file_path, where nothing else is said: nerfstudio's own default */
+#define TOLD_MOST 16u         /* most remarks on unread fields */
+#define NERFSTUDIO_UNIT 0.001 /* default of a depth_file_path, as in nerfstudio */
 
-/* Every field that is read of the top or of a frame, in the order of strcmp(). */
+/* Every field that is read at the top or in a frame, in the order of strcmp(). */
 static const char *const known[] = {"camera_angle_x",
                                     "camera_angle_y",
                                     "camera_model",
@@ -55,17 +55,17 @@ static const char *const known[] = {"camera_angle_x",
                                     "w"};
 #define KNOWN (sizeof known / sizeof *known)
 
-/* The fields of one object, each found in one pass over it: cJSON looks for one among all of them. */
+/* The fields of one object, found in one pass: cJSON would search all of them for each. */
 typedef struct field_table {
-    const cJSON *item[KNOWN]; /* NULL: not there */
+    const cJSON *item[KNOWN]; /* NULL: missing */
 } field_table;
 
 typedef struct reader {
     field_table top, own;
-    const cJSON *frame; /* NULL while the top is read */
+    const cJSON *frame; /* NULL while the top level is read */
     const posed_folder_options *options;
     text_list *remarks;
-    const char *told[TOLD_MOST]; /* fields that remarks are made of; the names are the text's */
+    const char *told[TOLD_MOST]; /* fields with remarks; the names belong to the text */
     uint32_t told_count;
     bool nerfstudio; /* some frame has a depth_file_path */
     char where[64];  /* "frames[3]" */
@@ -83,18 +83,18 @@ static int by_name(const void *key, const void *entry)
     return strcmp(key, *(const char *const *)entry);
 }
 
-/* Its place in `known`; KNOWN when it is no field that is read. */
+/* Returns its index in `known`; KNOWN for other fields. */
 static size_t number_of(const char *name)
 {
     const char *const *found = bsearch(name, known, KNOWN, sizeof *known, by_name);
     return found != NULL ? (size_t)(found - known) : KNOWN;
 }
 
-/* Whether a field that is not read may hold depth or poses, by its name. */
+/* Whether an unread field may hold depth or poses, by its name. */
 static bool may_matter(const char *name)
 {
     static const char *const parts[] = {"depth", "disparity", "pose", "transform", "extrinsic"};
-    static const char *const harmless[] = {"applied_transform"}; /* the poses have it in them already */
+    static const char *const harmless[] = {"applied_transform"}; /* the poses already include it */
     for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++) {
         if (strcmp(name, harmless[i]) == 0) {
             return false;
@@ -108,7 +108,7 @@ static bool may_matter(const char *name)
     return false;
 }
 
-/* Once a name. */
+/* Remarks once per name. */
 static void tell_unread(reader *r, const char *name)
 {
     for (uint32_t i = 0; i < r->told_count; i++) {
@@ -123,7 +123,7 @@ static void tell_unread(reader *r, const char *name)
     }
 }
 
-/* Of two equal keys the first counts. */
+/* Fills the table; of two equal keys the first counts. */
 static void find_fields(reader *r, const cJSON *object, field_table *table)
 {
     const cJSON *item;
@@ -146,14 +146,14 @@ static const cJSON *field(const field_table *table, const char *name)
     return table->item[number];
 }
 
-/* The field of the frame, else of the top; NULL when neither has it. */
+/* Returns the field of the frame, else of the top level; NULL when neither has it. */
 static const cJSON *field_of(const reader *r, const char *name)
 {
     const cJSON *item = r->frame == NULL ? NULL : field(&r->own, name);
     return item != NULL ? item : field(&r->top, name);
 }
 
-/* A number, NAN when absent; -1 when it is something else or not finite. */
+/* Reads a number, NAN when absent; -1 when it is something else or not finite. */
 static int read_number(reader *r, const char *name, double *value)
 {
     const cJSON *item = field_of(r, name);
@@ -185,7 +185,7 @@ static int read_path(reader *r, const char *name, char **path)
     return *path != NULL ? 0 : fail(r, name, "out of memory");
 }
 
-/* NULL when absent. */
+/* Reads a path, NULL when absent. */
 static int read_optional_path(reader *r, const char *name, char **path)
 {
     const cJSON *item = field(&r->own, name);
@@ -227,7 +227,7 @@ static bool is_true(const reader *r, const char *name)
     return cJSON_IsTrue(item) || (cJSON_IsNumber(item) && item->valuedouble != 0);
 }
 
-/* Which lens: camera_model as nerfstudio and COLMAP spell it, or instant-ngp's flags. */
+/* Reads the lens type: camera_model as nerfstudio and COLMAP spell it, or instant-ngp's flags. */
 static int read_lens(reader *r, bool *fisheye, bool *pinhole)
 {
     static const char *const unsupported[] = {"ftheta_p0", "latlong", "equirectangular", "orthographic"};
@@ -355,7 +355,7 @@ static int read_pose(reader *r, posed_frame *out)
 
 /* ---- depth ----------------------------------------------------------------------------------------------------- */
 
-/* depth_path as instant-ngp calls it, or depth_file_path as nerfstudio does. */
+/* Reads depth_path (instant-ngp's name) or depth_file_path (nerfstudio's). */
 static int read_depth_path(reader *r, posed_frame *out)
 {
     char *other = NULL;
@@ -375,7 +375,7 @@ static int read_depth_path(reader *r, posed_frame *out)
     return status;
 }
 
-/* One of the two names of the depth unit; NAN when absent. */
+/* Reads one of the two names of the depth unit; NAN when absent. */
 static int read_unit(reader *r, const char *name, double *unit)
 {
     uint64_t fixed;
@@ -398,8 +398,8 @@ static bool all_depth_is_exr(const posed_folder *folder)
     return all && some;
 }
 
-/* Floats have no step of their own: the user's, else that of integers, else the default. nerfstudio multiplies them by
- * its factor all the same. */
+/* Chooses the step for depth in floats, which has none of its own: the user's, else that of integers, else the default.
+ * nerfstudio's factor still scales the floats. */
 static void settle_exr(reader *r, double integer_unit, posed_folder *out)
 {
     out->depth_unit = r->options->depth_unit != 0 ? r->options->depth_unit

@@ -6,8 +6,8 @@
 
 #include "import/folders/posed_frame.h"
 
-/* The text of a transforms.json, without touching any other file; options may be NULL. posed_folder_close() in either
- * case. */
+/* Parses the text of a transforms.json without touching any other file; options may be NULL. Call posed_folder_close()
+ * in either case. */
 int transforms_json_parse(const char *text, size_t bytes, const posed_folder_options *options, posed_folder *out,
                           char *error, size_t error_bytes);
 

@@ -1,6 +1,6 @@
-/* TUM RGB-D folders: rgb.txt, depth.txt (optional) and groundtruth.txt, whose lines begin with a time in seconds.
- * Depth is the nearest in time within 20 ms; poses are interpolated between neighbours at most 100 ms apart, else
- * the nearest within 20 ms is taken, else the picture is left out. */
+/* TUM RGB-D folders: rgb.txt, depth.txt (optional) and groundtruth.txt, whose lines begin with a time in seconds. Depth
+ * is the nearest in time within 20 ms; poses are interpolated between neighbours at most 100 ms apart, else the nearest
+ * within 20 ms is used, else the picture is left out. */
 #include "import/folders/tum_rgbd.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@
 
 typedef struct stamped {
     double stamp;
-    char *name; /* picture lists */
+    char *name; /* for picture lists */
     rigid pose; /* the trajectory */
 } stamped;
 
@@ -59,7 +59,7 @@ static int by_stamp(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* A finite number at *text, which moves behind it. */
+/* Takes a finite number at *text, which moves past it. */
 static bool take_number(char **text, double *value)
 {
     char *end;
@@ -71,7 +71,7 @@ static bool take_number(char **text, double *value)
     return true;
 }
 
-/* One line to an item: NULL, or what is wrong with it. */
+/* Parses one line into an item. Returns NULL, or what is wrong with it. */
 static const char *parse_line(char *line, bool poses, stamped *item)
 {
     char *at = line;
@@ -152,7 +152,7 @@ static int read_list(const char *directory, const char *name, bool poses, stampe
     return status;
 }
 
-/* Index of the first item that is not before `stamp`; count when all are. */
+/* Returns the index of the first item not before `stamp`; count when there is none. */
 static size_t lower_bound(const stamped_list *list, double stamp)
 {
     size_t low = 0, high = list->count;
@@ -167,7 +167,7 @@ static size_t lower_bound(const stamped_list *list, double stamp)
     return low;
 }
 
-/* The nearest item within NEAR_SECONDS; the earlier of two equally near. */
+/* Returns the nearest item within NEAR_SECONDS; the earlier of two equally near. */
 static const stamped *nearest(const stamped_list *list, double stamp)
 {
     size_t after = lower_bound(list, stamp);

@@ -6,7 +6,7 @@
 
 #include "import/folders/posed_frame.h"
 
-/* The three lists of a TUM RGB-D folder. */
+/* Reads the three lists of a TUM RGB-D folder. */
 int tum_rgbd_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                   size_t error_bytes);
 

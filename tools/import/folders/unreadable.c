@@ -16,7 +16,7 @@ typedef struct sorting {
     char first_reason[REASON_BYTES], first_depth_reason[REASON_BYTES];
 } sorting;
 
-/* Of one frame, which moves to its new place; a frame that is left out gets no place. */
+/* Sorts out one frame: moves it to its new place, or drops it without one. */
 static int sort_frame(const char *directory, posed_folder *folder, uint32_t index, sorting *s)
 {
     posed_frame *frame = &folder->frames[index];
@@ -44,7 +44,7 @@ static int sort_frame(const char *directory, posed_folder *folder, uint32_t inde
     return 0;
 }
 
-/* Triplets of frames that are still there. */
+/* Keeps the triplets whose frames are all kept. */
 static int keep_triplets(posed_folder *folder, const sorting *s)
 {
     uint32_t kept = 0;

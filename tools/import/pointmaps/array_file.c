@@ -16,14 +16,14 @@
 
 struct array_file {
     zip_source_t *source;
-    zip_t *zip; /* NULL: a lone .npy */
+    zip_t *zip; /* NULL: a single .npy */
     uint64_t bytes, unpacked;
 };
 
 struct array_stream {
     array_file *file;
     zip_uint64_t index; /* in the archive */
-    zip_file_t *member; /* NULL: not open, or a lone .npy */
+    zip_file_t *member; /* NULL: not open, or a single .npy */
     npy_array array;
     uint64_t at; /* bytes read */
     uint8_t block[BLOCK_BYTES];
@@ -44,7 +44,7 @@ static const char *first_bytes(zip_source_t *source, uint8_t first[2])
     return why;
 }
 
-/* Takes the source, also when it fails. */
+/* Opens the source and owns it, also on failure. */
 static array_file *open_source(zip_source_t *source, char *error, size_t error_bytes)
 {
     uint8_t first[2] = {0};
@@ -158,7 +158,7 @@ static const char *read_bytes(array_stream *s, uint8_t *out, size_t count)
     return NULL;
 }
 
-/* To byte `offset` of the array's file. */
+/* Moves to byte `offset` of the array's file. */
 static const char *go_to(array_stream *s, uint64_t offset)
 {
     const char *wrong = offset < s->at ? reopen(s) : NULL;
@@ -169,7 +169,7 @@ static const char *go_to(array_stream *s, uint64_t offset)
     return wrong;
 }
 
-/* Behind the last byte: a read makes libzip compare the CRC. */
+/* Reads past the last byte, which makes libzip compare the CRC. */
 static const char *check_end(array_stream *s)
 {
     uint8_t more;
@@ -181,7 +181,7 @@ static const char *check_end(array_stream *s)
 
 /* ---- arrays ---- */
 
-/* Bytes of the array's file as the archive has them. */
+/* Gets the size of the array's file within the archive. */
 static const char *stat_array(array_stream *s, uint64_t *bytes)
 {
     zip_stat_t about;
@@ -256,7 +256,7 @@ const npy_array *array_stream_header(const array_stream *s)
     return &s->array;
 }
 
-/* One of floats and doubles. */
+/* Reads into either floats or doubles. */
 static const char *read_numbers(array_stream *s, size_t first, size_t count, float *floats, double *doubles)
 {
     size_t step = s->array.item_bytes, block = BLOCK_BYTES / step;

@@ -10,12 +10,12 @@
 #include "messages/fixed_camera.h"
 #include "host/reason.h"
 
-#define RESECTED 3000u       /* points that a pose is taken from */
-#define RESECTION_PIXELS 5.0 /* root mean square that is accepted, of 512 */
-#define SAMPLED 20000u       /* depths a frame for the median */
+#define RESECTED 3000u       /* points that a pose is computed from */
+#define RESECTION_PIXELS 5.0 /* largest accepted root mean square error, for 512 pixels */
+#define SAMPLED 20000u       /* depths per frame for the median */
 #define MEDIAN_STEPS 8192.0
 #define MOST_STEPS 65535.0
-#define SAME_POSE 1e-3 /* of two poses: what a rotation's entries, and a share of the position, may differ by */
+#define SAME_POSE 1e-3 /* equal poses differ at most so: rotation entries, and relative position */
 
 static int open_maps(const pointmap_source *source, uint32_t index, pointmaps *maps, char *error, size_t error_bytes)
 {
@@ -34,8 +34,8 @@ static int open_maps(const pointmap_source *source, uint32_t index, pointmaps *m
     return status;
 }
 
-/* The maps that hold frame `index`, its view read, and which of them it is; NULL when it has none. `own` receives what
- * must be freed. */
+/* Returns the maps that hold frame `index`, with its view read, and which view it is; NULL when it has none. `own`
+ * receives what must be freed. */
 static int maps_of(pointmap_source *source, uint32_t index, pointmaps *own, pointmaps **maps, uint32_t *which,
                    char *error, size_t error_bytes)
 {
@@ -75,7 +75,7 @@ static int ascending(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-/* The confidence that half of a view's points have. */
+/* Returns the median confidence of a view's points. */
 static double median_confidence(const float *confidence, size_t pixels)
 {
     size_t stride = pixels / SAMPLED + 1, count = 0;
@@ -91,7 +91,7 @@ static double median_confidence(const float *confidence, size_t pixels)
     return median;
 }
 
-/* The lens of a frame's picture, on the pixels of its map. */
+/* Makes the lens of a frame's picture in pixels of its map. */
 static int map_lens(const pointmap_source *source, const posed_frame *frame, const pointmaps *maps,
                     t3r_recorded_camera *lens, char *error, size_t error_bytes)
 {
@@ -108,7 +108,8 @@ static int map_lens(const pointmap_source *source, const posed_frame *frame, con
     return 0;
 }
 
-/* The pose from which the points lie on their pixels' rays: of the more confident half, spread over the view. */
+/* Computes the pose from which the points lie on their pixels' rays; uses the more confident half, spread over the
+ * view. */
 static int resect_map(const pointmaps *maps, const t3r_recorded_camera *lens, double least, motion *camera,
                       double *pixels_off)
 {
@@ -136,20 +137,20 @@ static int resect_map(const pointmaps *maps, const t3r_recorded_camera *lens, do
     return status == 0 && *pixels_off < RESECTION_PIXELS * fmax(maps->width, maps->height) / 512 ? 0 : -1;
 }
 
-/* Where the points' frame is the first camera's: the frame's own pose in it, before it is changed. */
+/* Returns the frame's own pose in the first camera's frame, before it is changed. */
 static motion in_first(const pointmap_source *source, uint32_t index)
 {
     motion here = pose_of(&source->folder->frames[index]), back = motion_inverse(&source->first);
     return motion_after(&back, &here);
 }
 
-/* Of frames on which messages depend the first is named. */
+/* Notes the first frame of each world, for messages. */
 static void note_world(const char **world, const posed_frame *frame)
 {
     *world = *world != NULL ? *world : frame->image;
 }
 
-/* Whether the folder gives the frame this pose as well: then it does not tell their worlds apart. */
+/* Whether the folder gives the frame the same pose; the pose then does not distinguish the two worlds. */
 static bool folder_agrees(const posed_frame *frame, const motion *pose)
 {
     if (!frame->posed) {
@@ -361,7 +362,7 @@ int pointmap_source_depth(pointmap_source *source, uint32_t index, picture *dept
             *depth = (picture){maps->width, maps->height, 1, 16, steps};
         }
         free(z);
-        pointmaps_forget(maps); /* its frame's pictures want the memory */
+        pointmaps_forget(maps); /* frees memory for the frame's pictures */
     }
     pointmaps_free(&own);
     return status;

@@ -9,9 +9,9 @@
 
 #define MAGIC "\x93NUMPY"
 #define MAGIC_BYTES 6
-#define MOST_ITEMS ((uint64_t)1 << 30) /* so that products of sizes fit */
+#define MOST_ITEMS ((uint64_t)1 << 30) /* bounds products of sizes */
 
-/* What is left of the header's text. */
+/* The unread part of the header's text. */
 typedef struct remainder {
     const char *at, *end;
 } remainder;
@@ -44,7 +44,7 @@ static bool take_word(remainder *t, const char *word)
     return false;
 }
 
-/* 'word' as Python writes it: no escapes. */
+/* Takes 'word' as Python writes it: no escapes. */
 static bool take_string(remainder *t, char *out, size_t bytes)
 {
     size_t length = 0;
@@ -70,7 +70,7 @@ static bool take_number(remainder *t, uint32_t *out)
     return t->at > begin && value >= 1 && value < MOST_ITEMS;
 }
 
-/* (2, 3) or (7,) or () */
+/* Takes (2, 3) or (7,) or (). */
 static const char *take_shape(remainder *t, npy_array *out)
 {
     out->dimensions = 0;
@@ -100,7 +100,7 @@ static const char *take_type(remainder *t, npy_array *out, char *type, size_t by
     return out->item_bytes != 0 ? NULL : "descr is neither '<f4' nor '<f8', little-endian float32 and float64";
 }
 
-/* {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), } with its entries in any order, each once */
+/* Reads {'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), } with its entries in any order, each once. */
 static const char *read_header(remainder *t, npy_array *out)
 {
     bool type = false, order = false, shape = false;

@@ -12,12 +12,12 @@
 #include "mcap/reader_limits.h"
 
 #define NAMES 5
-#define SMALL_MOST (16u * T3R_LIMIT_VIEWS_OF_POINTS) /* numbers of all poses, or of all intrinsics */
+#define SMALL_MOST (16u * T3R_LIMIT_VIEWS_OF_POINTS) /* most numbers of all poses, or of all intrinsics */
 
-/* What an array is, and its names in a .npz. */
+/* The meaning of an array, and its names in a .npz. */
 typedef struct array_role {
-    const char *names[NAMES]; /* NULL behind the last */
-    uint32_t dimensions;      /* of one view */
+    const char *names[NAMES]; /* ends with NULL */
+    uint32_t dimensions;      /* of one view's array */
 } array_role;
 
 static const array_role points_role = {{"pts3d", "world_points", "points", "pointmap"}, 3},
@@ -25,18 +25,18 @@ static const array_role points_role = {{"pts3d", "world_points", "points", "poin
                         poses_role = {{"poses"}, 2}, extrinsics_role = {{"extrinsics", "extrinsic"}, 2},
                         intrinsics_role = {{"intrinsics", "intrinsic"}, 2}, focals_role = {{"focals"}, 0};
 
-/* An array of a file: one a view, `count` of them. */
+/* An array of a file: `count` views. */
 typedef struct stack {
     const char *name;
     array_stream *stream; /* owned */
     npy_array array;
     uint32_t count;
-    const uint32_t *shape; /* of one view */
+    const uint32_t *shape; /* shape of one view */
 } stack;
 
-/* What views are read from. */
+/* Where views are read from. */
 struct pointmaps_input {
-    char *path, *confidence_path; /* NULL: from memory; from the same file */
+    char *path, *confidence_path; /* NULL: read from memory; part of the same file */
     array_file *file, *confidence_file;
     stack points, confidence;
 };
@@ -48,7 +48,7 @@ static int fail(const stack *s, const char *what, char *error, size_t error_byte
     return t3r_reason(error, error_bytes, "array %s of %s: %s", s->name, shape, what);
 }
 
-/* Where a number stands, "[1, 20, 30, 2]". */
+/* Writes the place of a number, such as "[1, 20, 30, 2]". */
 static void place_text(const npy_array *array, size_t index, char *text, size_t bytes)
 {
     uint32_t at[NPY_MOST_DIMENSIONS];
@@ -63,12 +63,12 @@ static void place_text(const npy_array *array, size_t index, char *text, size_t 
     }
 }
 
-/* The array's dimensions as views and what one view has: leading ones beyond that are dropped. */
+/* Splits the array's dimensions into views and one view's shape; drops extra leading dimensions of 1. */
 static int understand(stack *s, const array_role *role, char *error, size_t error_bytes)
 {
     uint32_t first = 0, end = s->array.dimensions;
     while (role->dimensions == 0 && end > 1 && s->array.shape[end - 1] == 1) {
-        end--; /* a number a view may stand as N x 1 */
+        end--; /* one number per view may have the shape N x 1 */
     }
     while (end - first > role->dimensions + 1 && s->array.shape[first] == 1) {
         first++;
@@ -82,7 +82,7 @@ static int understand(stack *s, const array_role *role, char *error, size_t erro
     return 0;
 }
 
-/* The reason for number `index` of the array, which is not finite. */
+/* Reports that number `index` of the array is not finite. */
 static int refuse_number(const stack *s, size_t index, double value, char *error, size_t error_bytes)
 {
     char place[64];
@@ -91,7 +91,7 @@ static int refuse_number(const stack *s, size_t index, double value, char *error
                       isnan(value) ? "not a number" : "infinite");
 }
 
-/* 1, 0 when the file has none of the names, -1 with a reason. */
+/* Finds the array of a role. Returns 1; 0 when the file has none of the names; -1 with a reason. */
 static int find(array_file *file, const array_role *role, stack *out, char *error, size_t error_bytes)
 {
     *out = (stack){0};
@@ -110,7 +110,7 @@ static int find(array_file *file, const array_role *role, stack *out, char *erro
     return 0;
 }
 
-/* All numbers of a small array, finite; NULL with a reason. */
+/* Reads all numbers of a small array, which must be finite; NULL with a reason. */
 static double *read_small(const stack *s, char *error, size_t error_bytes)
 {
     double *out = s->array.count <= SMALL_MOST ? malloc(SMALL_MOST * sizeof *out) : NULL;
@@ -130,7 +130,7 @@ static double *read_small(const stack *s, char *error, size_t error_bytes)
     return out;
 }
 
-/* ---- what they become ------------------------------------------------------------------------------------------- */
+/* ---- conversion ------------------------------------------------------------------------------------------------- */
 
 static int take_points(const stack *s, pointmaps *out, char *error, size_t error_bytes)
 {
@@ -172,7 +172,7 @@ static int check_count(const stack *s, const pointmaps *out, char *error, size_t
     return s->count == out->count ? 0 : fail(s, "not as many as there are pointmaps", error, error_bytes);
 }
 
-/* poses as they are, extrinsics inverted */
+/* Converts poses; extrinsics are inverted. */
 static int check_poses(const stack *s, bool inverse, const pointmaps *out, char *error, size_t error_bytes)
 {
     uint32_t rows = s->shape[0];
@@ -243,7 +243,7 @@ static int take_intrinsics(const stack *s, bool matrices, const double *numbers,
             }
         } else {
             k[0] = k[1] = numbers[v];
-            k[2] = out->width / 2.0; /* where DUSt3R has it */
+            k[2] = out->width / 2.0; /* as in DUSt3R */
             k[3] = out->height / 2.0;
         }
         if (!(k[0] > 0 && k[1] > 0)) {
@@ -328,7 +328,7 @@ int pointmaps_parse(const uint8_t *bytes, size_t count, pointmaps *out, char *er
     return out->input->file != NULL ? read_headers(out, error, error_bytes) : -1;
 }
 
-/* In the place of what the .npz itself may hold. */
+/* Opens a confidence file, which replaces the confidence in the .npz. */
 static int open_confidence(const char *path, pointmaps *out, char *error, size_t error_bytes)
 {
     struct pointmaps_input *in = out->input;

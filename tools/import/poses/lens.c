@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-#define STEPS 20     /* of the inverse: each brings a usual lens nearer by a factor of three or more */
-#define MARGIN 1.05  /* around the picture */
-#define ENOUGH 1e-9  /* of the inverse, in units of the focal length */
+#define STEPS 20    /* iterations of the inverse: each reduces the error of a usual lens by a factor of three or more */
+#define MARGIN 1.05 /* around the picture */
+#define ENOUGH 1e-9 /* tolerance of the inverse, in units of the focal length */
 #define WIDEST 100.0 /* radius in units of the focal length: 89.4 degrees off the axis */
 
 static void distort(const lens *l, const double in[2], double out[2])
@@ -32,7 +32,7 @@ void lens_ray(const lens *l, double u, double v, double ray[2])
         double at[2];
         distort(l, ray, at);
         double r = hypot(ray[0], ray[1]), got = hypot(at[0], at[1]), wanted = hypot(seen[0], seen[1]);
-        if (l->model == LENS_EQUIDISTANT) { /* a matter of the radius alone */
+        if (l->model == LENS_EQUIDISTANT) { /* depends on the radius only */
             double scaled = got > 0 ? fmin(r * wanted / got, WIDEST) : wanted;
             ray[0] = wanted > 0 ? seen[0] / wanted * scaled : 0;
             ray[1] = wanted > 0 ? seen[1] / wanted * scaled : 0;
@@ -55,7 +55,7 @@ static void find_radius(lens *l)
         double ray[2];
         lens_ray(l, corners[i][0], corners[i][1], ray);
         double r = hypot(ray[0], ray[1]) * MARGIN;
-        l->radius_most = r <= WIDEST ? fmax(l->radius_most, r) : WIDEST; /* also where it is not a number */
+        l->radius_most = r <= WIDEST ? fmax(l->radius_most, r) : WIDEST; /* also for NaN */
     }
 }
 

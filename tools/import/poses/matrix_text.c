@@ -16,7 +16,7 @@ const char *matrix_text_parse(const char *text, double numbers[MATRIX_NUMBERS_MO
             return "more than 16 numbers";
         }
         numbers[*count] = strtod(text, &end);
-        if (end == text || strchr(" \t\r\n,", *end) == NULL) { /* the end of the text is one of these, too */
+        if (end == text || strchr(" \t\r\n,", *end) == NULL) { /* also matches the end of the text */
             return "a word that is no number";
         }
         ++*count;

@@ -6,8 +6,9 @@
 
 #define MATRIX_NUMBERS_MOST 16u
 
-/* Numbers with blanks, commas or line ends between them, row by row; infinities and NaN among them, with which some
- * programs mark poses that they lost. NULL, or what is wrong: another character, more than MATRIX_NUMBERS_MOST. */
+/* Parses numbers separated by blanks, commas or line ends, row by row. Infinities and NaN are allowed, since some
+ * programs mark lost poses with them. Returns NULL, or what is wrong: another character, more than
+ * MATRIX_NUMBERS_MOST. */
 const char *matrix_text_parse(const char *text, double numbers[MATRIX_NUMBERS_MOST], uint32_t *count);
 
 #endif

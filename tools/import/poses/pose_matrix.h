@@ -1,4 +1,4 @@
-/* Poses as matrices, as files of others hold them. */
+/* Poses as matrices, as other programs' files hold them. */
 #ifndef TRIM3R_TOOLS_POSE_MATRIX_H
 #define TRIM3R_TOOLS_POSE_MATRIX_H
 

@@ -32,7 +32,7 @@ void pose_track_sort(pose_track *track)
     }
 }
 
-/* The items that are not after `stamp_ns`. */
+/* Returns the number of items not after `stamp_ns`. */
 static size_t count_until(const pose_track *track, int64_t stamp_ns)
 {
     size_t low = 0, high = track->count;

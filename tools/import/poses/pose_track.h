@@ -1,4 +1,4 @@
-/* Poses of one thing over time, asked for at any time between them. */
+/* The poses of one object over time, interpolated at any time between them. */
 #ifndef TRIM3R_TOOLS_POSE_TRACK_H
 #define TRIM3R_TOOLS_POSE_TRACK_H
 
@@ -8,12 +8,12 @@
 
 #include "geometry/rigid.h"
 
-#define POSE_TRACK_GAP_NS INT64_C(2000000000) /* between neighbours farther apart nothing is interpolated */
+#define POSE_TRACK_GAP_NS INT64_C(2000000000) /* no interpolation between neighbours farther apart */
 
 typedef struct pose_track {
     struct pose_track_item {
         int64_t stamp_ns;
-        size_t order; /* of two at one time the later one counts */
+        size_t order; /* of two items at one time the later one wins */
         rigid pose;
     } * items;
     size_t count, capacity;
@@ -22,9 +22,10 @@ typedef struct pose_track {
 
 /* false: out of memory. */
 bool pose_track_add(pose_track *track, int64_t stamp_ns, const rigid *pose);
-/* Once, when all are added. */
+/* Sorts the track; call once, when all poses are added. */
 void pose_track_sort(pose_track *track);
-/* The pose of that time: that of the same time, else between its neighbours, else the nearest within near_ns. */
+/* Finds the pose at a time: the pose of exactly that time, else interpolated between its neighbours, else the nearest
+ * within near_ns. */
 bool pose_track_at(const pose_track *track, int64_t stamp_ns, int64_t near_ns, rigid *out);
 void pose_track_free(pose_track *track);
 

@@ -17,7 +17,7 @@ static int look_at(const char *directory, const posed_folder *folder, uint32_t i
     t3r_recorded_frame recorded;
     int status = import_frame(directory, &folder->frames[index], NULL, 0, 0, &buffers, &recorded, error, error_bytes);
     if (status == 0) {
-        (void)t3r_fixed_camera(&recorded.camera, camera); /* import_frame() has checked it */
+        (void)t3r_fixed_camera(&recorded.camera, camera); /* cannot fail: import_frame() has checked it */
         t3r_frame frame = {.format = recorded.format, .width = recorded.width, .height = recorded.height};
         frame.planes[0] = recorded.planes[0];
         frame.stride_bytes[0] = recorded.stride_bytes[0];
@@ -27,7 +27,8 @@ static int look_at(const char *directory, const posed_folder *folder, uint32_t i
             for (size_t i = 0; i < count; i++) {
                 t3r_store_le16(bytes + 2 * i, buffers.depth[i]);
             }
-            (void)t3r_fixed_depth_unit(folder->depth_unit, &frame.depth_unit_q40); /* so has the folder's reader */
+            (void)t3r_fixed_depth_unit(folder->depth_unit,
+                                       &frame.depth_unit_q40); /* cannot fail: the folder's reader has checked it */
             frame.depth = bytes;
             frame.depth_width = recorded.depth_width;
             frame.depth_height = recorded.depth_height;
@@ -42,7 +43,8 @@ static int look_at(const char *directory, const posed_folder *folder, uint32_t i
     return status;
 }
 
-/* Exact: 2^30 and 2^32 divide a double's mantissa while positions are below 2^20 units; beyond, a few last bits go. */
+/* Sets the pose exactly: dividing by 2^30 and 2^32 keeps a double's mantissa while positions are below 2^20 units;
+ * beyond, a few last bits are lost. */
 static void set_pose(posed_frame *frame, const t3r_camera *camera)
 {
     for (int i = 0; i < 3; i++) {

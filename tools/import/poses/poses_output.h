@@ -1,4 +1,4 @@
-/* What is told of poses. */
+/* Reports on poses. */
 #ifndef TRIM3R_TOOLS_POSES_OUTPUT_H
 #define TRIM3R_TOOLS_POSES_OUTPUT_H
 
@@ -7,14 +7,14 @@
 #include "posing/estimate.h"
 #include "recording/recording.h"
 
-/* "position", in the recording's unit, and "rotation", a quaternion w x y z: exact. */
+/* Adds "position", in the recording's unit, and "rotation", a quaternion w x y z: exact. */
 void pose_add_json(cJSON *object, const t3r_camera *camera);
-/* "poses": one object a frame: what it rests on, and the pose as the recording now has it, exact. */
+/* Adds "poses": one object per frame, with what it is based on, and the exact pose that the recording now has. */
 void poses_add_json(cJSON *object, const t3r_recording *recording, const uint32_t *frames, uint32_t count,
                     const pose_account *accounts);
-/* A line a frame on stdout. frames: their numbers; NULL: 0, 1 ... */
+/* Prints a line per frame on stdout. frames: their numbers; NULL: 0, 1 ... */
 void poses_print(const uint32_t *frames, uint32_t count, const pose_account *accounts);
-/* The account alone, for one frame of poses_add_json(). */
+/* Returns only the account, for one frame of poses_add_json(). */
 cJSON *pose_account_json(const uint32_t *frames, uint32_t index, const pose_account *accounts);
 
 #endif

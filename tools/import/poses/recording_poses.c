@@ -8,7 +8,7 @@
 
 #define ERROR_BYTES 512
 
-/* The frame's corners; its pose, or the origin, goes to `camera`. */
+/* Finds the frame's corners; its pose, or the origin, goes to `camera`. */
 static int look_at(const t3r_recording *recording, const char *path, uint32_t index, pose_view *view,
                    t3r_camera *camera)
 {
@@ -55,7 +55,7 @@ static int estimate(t3r_recording *recording, const char *path, const uint32_t *
     }
     const uint32_t first = poses_find(accounts, 0, count, true);
     for (uint32_t i = first; i < count; i = poses_find(accounts, i + 1, count, true)) {
-        t3r_camera camera = cameras[first]; /* of which the first view keeps every bit */
+        t3r_camera camera = cameras[first]; /* the first view keeps every bit */
         if (i > first && pose_store(&poses[i], &cameras[first], &camera) != 0) {
             return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": its position is out of range", path, frames[i]);
         }

@@ -12,7 +12,7 @@
 #include "mcap/reader_limits.h"
 #include "recording/recording.h"
 
-#define MAX_BYTES ((size_t)1 << 30) /* of a bag */
+#define MAX_BYTES ((size_t)1 << 30) /* largest bag */
 #define MAX_STAMP_S INT64_C(4000000000)
 #define MAX_STAMP_NS (MAX_STAMP_S * 1000000000)
 
@@ -28,7 +28,7 @@ static int by_stamp(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* NULL, or why not. */
+/* Returns NULL, or why it cannot be appended. */
 static const char *append(trajectory *t, size_t *room, const trajectory_pose *pose)
 {
     if (t->count == T3R_LIMIT_POSES) {
@@ -47,7 +47,7 @@ static const char *append(trajectory *t, size_t *room, const trajectory_pose *po
     return NULL;
 }
 
-/* Sorts; of equal stamps the first stays. */
+/* Sorts by stamp; of equal stamps the first stays. */
 static void order(trajectory *t)
 {
     size_t kept = 0;
@@ -62,8 +62,8 @@ static void order(trajectory *t)
 
 /* ---- lines ---- */
 
-/* Seconds with up to nine digits behind the point, to whole nanoseconds without a detour over binary fractions; *text
- * moves behind them. */
+/* Takes seconds with up to nine decimal places as whole nanoseconds, without binary fractions in between; *text moves
+ * past them. */
 static bool take_seconds(char **text, int64_t *stamp_ns)
 {
     char *p = *text;
@@ -114,7 +114,7 @@ static bool take_number(char **text, double *value)
     return true;
 }
 
-/* NULL, or what is wrong with the line. */
+/* Returns NULL, or what is wrong with the line. */
 static const char *parse_line(char *line, bool commas, trajectory_pose *out)
 {
     double *const position = out->pose.position, *const rotation = out->pose.rotation;
@@ -167,7 +167,7 @@ int trajectory_parse(char *text, const char *path, trajectory *out, char *error,
 
 /* ---- bags ---- */
 
-/* The stream on the topic, or the only one with poses. */
+/* Finds the stream on the topic, or the only one with poses. */
 static int find_stream(const t3r_recording *bag, const char *path, const char *topic, uint32_t *found, char *error,
                        size_t error_bytes)
 {
@@ -256,7 +256,7 @@ int trajectory_read(const char *path, const char *topic, trajectory *out, char *
     return status;
 }
 
-/* ---- asking ---- */
+/* ---- look-up ---- */
 
 bool trajectory_at(const trajectory *t, int64_t stamp_ns, rigid *pose)
 {
@@ -277,7 +277,7 @@ bool trajectory_at(const trajectory *t, int64_t stamp_ns, rigid *pose)
         return false;
     }
     trajectory_pose a = t->poses[low - 1], b = t->poses[low];
-    /* b is later; stamps of a bag may be as far apart as uint64_t alone holds */
+    /* b is later; only uint64_t holds the largest gap between stamps of a bag */
     uint64_t gap = (uint64_t)b.stamp_ns - (uint64_t)a.stamp_ns;
     if (gap > TRAJECTORY_BRACKET_NS) {
         return false;

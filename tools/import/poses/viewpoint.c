@@ -14,7 +14,7 @@
 #include "mcap/reader_limits.h"
 #include "host/reason.h"
 
-#define MAX_POSES_BYTES ((size_t)16 << 20) /* a lone pose is parsed twice and printed between */
+#define MAX_POSES_BYTES ((size_t)16 << 20) /* a single pose is parsed twice and printed between */
 
 void viewpoint_list_free(viewpoint_list *list)
 {
@@ -22,7 +22,7 @@ void viewpoint_list_free(viewpoint_list *list)
     *list = (viewpoint_list){0};
 }
 
-/* Fixed point of a double that is known to be finite; saturates, which t3r_camera_check() then refuses. */
+/* Converts a finite double to fixed point; saturates, so that t3r_camera_check() refuses it. */
 static int32_t to_q(double value, int fraction_bits)
 {
     double scaled = nearbyint(ldexp(value, fraction_bits));
@@ -91,7 +91,8 @@ static int convert_frames(const posed_folder *folder, viewpoint_list *out, char 
     return 0;
 }
 
-/* The text of a transforms.json around a lone pose, so that one reader checks both; NULL when that is not needed. */
+/* Returns the text of a transforms.json around a single pose, so that one reader checks both; NULL when that is not
+ * needed. */
 static char *wrap_pose(const char *text, size_t bytes)
 {
     char *wrapped = NULL;
@@ -196,7 +197,7 @@ int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint
             break;
         }
         if (out->count == room) {
-            room = room == 0 ? 64 : room * 2; /* a line has 16 bytes and more: below 2^23 */
+            room = room == 0 ? 64 : room * 2; /* a line has at least 16 bytes, so there are below 2^23 */
             viewpoint *grown = realloc(out->items, room * sizeof *grown);
             if (grown == NULL) {
                 snprintf(reason, sizeof reason, "out of memory");

@@ -1,4 +1,4 @@
-/* Where a picture is taken from: pose files and trajectories. */
+/* Viewpoints of pictures: pose files and trajectories. */
 #ifndef TRIM3R_TOOLS_VIEWPOINT_H
 #define TRIM3R_TOOLS_VIEWPOINT_H
 
@@ -17,17 +17,17 @@ typedef struct viewpoint_list {
     uint32_t count;
 } viewpoint_list;
 
-/* A JSON object with the fields of one frame of transforms.json (fl_x [fl_y cx cy] w h transform_matrix), or a whole
- * transforms.json; pictures are not looked at. 0, or -1 with "path: field: what" in error[]. */
+/* Reads a JSON object with the fields of one frame of transforms.json (fl_x [fl_y cx cy] w h transform_matrix), or a
+ * whole transforms.json; pictures are not opened. Returns 0, or -1 with "path: field: what" in error[]. */
 int viewpoint_read_pose(const char *path, viewpoint_list *out, char *error, size_t error_bytes);
 
-/* TUM lines `stamp tx ty tz qx qy qz qw`, camera to world, x right, y down, z forward; # starts a comment. Intrinsics
- * and size are those of `lens`. 0, or -1 with "path: line: what" in error[]. */
+/* Reads TUM lines `stamp tx ty tz qx qy qz qw`, camera to world, x right, y down, z forward; # starts a comment.
+ * Intrinsics and size are those of `lens`. Returns 0, or -1 with "path: line: what" in error[]. */
 int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint_list *out, char *error,
                               size_t error_bytes);
 
-/* A lens of the given horizontal angle in degrees, (0, 180), looking along the world's z from its origin. 0, or -1
- * when the focal length is out of the runtime's range. */
+/* Makes a lens of the given horizontal angle in degrees, (0, 180), at the world's origin, looking along its z. Returns
+ * 0, or -1 when the focal length is out of the runtime's range. */
 int viewpoint_from_angle(double degrees, uint32_t width, uint32_t height, viewpoint *out);
 
 void viewpoint_list_free(viewpoint_list *list);

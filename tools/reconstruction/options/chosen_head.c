@@ -57,7 +57,7 @@ bool chosen_head_is_one(const char *text)
            (length > end && strcmp(text + length - end, FILE_END) == 0);
 }
 
-/* The bytes, aligned, for the weights held so far; frees them. */
+/* Replaces the weights by the bytes, aligned; frees the bytes. */
 static int own(chosen_head *chosen, uint8_t *bytes, size_t count)
 {
     void *aligned;

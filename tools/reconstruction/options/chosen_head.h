@@ -14,13 +14,13 @@
 
 typedef struct chosen_head {
     t3r_head head;
-    bool unadapted;      /* of `none`: `analytic`, which then sees every point as retained */
+    bool unadapted;      /* for `none`: `analytic`, which then treats every point as retained */
     char name[16];       /* analytic, none; of a network the name in its weights */
-    char bits[8];        /* of a network's weights and activations: 8, 16, or W/A where they differ; else "" */
+    char bits[8];        /* of a network's weights and activations: 8, 16, or W/A if they differ; else "" */
     const void *weights; /* NULL of analytic and none */
     size_t bytes;
     uint32_t weight_bits, activation_bits;
-    char crc[9]; /* of a network, 8 hexadecimal digits; else "" */
+    char crc[9]; /* for a network, 8 hexadecimal digits; else "" */
     void *owned; /* weights read from a file */
 } chosen_head;
 
@@ -29,8 +29,8 @@ const char *chosen_head_names(char names[CHOSEN_HEAD_NAMES_BYTES]);
 /* Whether the text is one of the names or ends in .t3w. */
 bool chosen_head_is_one(const char *text);
 
-/* CLI_OK, and chosen_head_close() is due; or an exit status of cli.h after a message, and nothing is. A weight file is
- * refused with the reason of t3r_weights_error(). */
+/* Opens a head. Returns CLI_OK, after which chosen_head_close() is due; or an exit status of cli.h after a message. A
+ * weight file is refused with the reason of t3r_weights_error(). */
 int chosen_head_open(chosen_head *chosen, const char *text);
 void chosen_head_close(chosen_head *chosen);
 
@@ -41,7 +41,7 @@ int chosen_head_hide_mask(chosen_head *chosen);
 /* Sets the configuration's head, and its head_column_bytes: 0 for analytic and none, what a network needs. */
 void chosen_head_configure(const chosen_head *chosen, t3r_config *config);
 
-/* After t3r_init(): binds a network's weights; takes away what `ablation` does, and of `none` the adapting. */
+/* Binds a network's weights after t3r_init(); removes what `ablation` removes, and for `none` the adapting. */
 t3r_status chosen_head_bind(const chosen_head *chosen, t3r_runtime *runtime, t3r_ablation ablation);
 
 #endif

@@ -30,7 +30,7 @@ static char *complete_help(int key, const char *text, void *input)
     char names[CHOSEN_HEAD_NAMES_BYTES], *whole;
     const size_t bytes = 512;
     if (key != KEY_HEAD || (whole = malloc(bytes)) == NULL) {
-        return (char *)(uintptr_t)text; /* argp frees only what is another text */
+        return (char *)(uintptr_t)text; /* argp frees only a different text */
     }
     snprintf(whole, bytes, "%s%s (" CHOSEN_HEAD_DEFAULT ")", text, chosen_head_names(names));
     return whole;

@@ -4,7 +4,7 @@
 
 #include <argp.h>
 
-/* Each parent's parser hands a const char ** on in state->child_inputs[]: the text becomes one that
+/* Each parent's parser passes a const char ** in state->child_inputs[]: it receives a text that
  * chosen_head_is_one(). */
 extern const struct argp head_argp;
 

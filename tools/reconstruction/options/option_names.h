@@ -7,11 +7,11 @@
 
 #include "trim3r.h"
 
-/* A head's name, or a path that ends as weight files do. */
+/* Returns a head's name, or a path with the suffix of weight files. */
 const char *option_head(struct argp_state *state, const char *option, const char *text);
-/* A source of depth by its name. */
+/* Returns a source of depth by its name. */
 t3r_depth option_depth(struct argp_state *state, const char *option, const char *text);
-/* How much work a build is worth, by its name: the settings and the head for it. */
+/* Sets the settings and the head for a named effort, the amount of work of a build. */
 void option_preset(struct argp_state *state, const char *option, const char *text, t3r_config *config,
                    const char **head);
 

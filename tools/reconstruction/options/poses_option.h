@@ -4,7 +4,7 @@
 
 #include <argp.h>
 
-/* Each parent's parser hands a poses_source * on in state->child_inputs[]. `poses_argp` is the child. */
+/* Each parent's parser passes a poses_source * in state->child_inputs[]. `poses_argp` is the child. */
 extern const struct argp poses_argp;
 
 #endif

@@ -1,4 +1,4 @@
-/* What a replay tells of its hashes, as text and as JSON. */
+/* Reports the hashes of a replay as text and JSON. */
 #ifndef TRIM3R_TOOLS_HASH_REPORT_H
 #define TRIM3R_TOOLS_HASH_REPORT_H
 
@@ -8,9 +8,9 @@
 
 #include "reconstruction/reconstruction.h"
 
-/* A line on stdout for each stage that has a hash, then one for the hash of the whole. */
+/* Prints a line on stdout for each stage with a hash, then one for the hash of the whole. */
 void hash_report_print(const reconstruction *r, uint64_t whole);
-/* The field "stages" of the object: the hash of each stage that has one, by its name. */
+/* Adds the field "stages": the hash of each stage that has one, by name. */
 void hash_report_add_stages(cJSON *object, const reconstruction *r);
 
 #endif

@@ -16,7 +16,7 @@ static int read_hash(const cJSON *item, uint64_t *hash)
     return cJSON_IsString(item) && hash_parse(item->valuestring, hash) == 0 ? 0 : -1;
 }
 
-/* Hashes, or objects with one. */
+/* Reads an array of hashes, or of objects with one. */
 static int read_hashes(const cJSON *array, uint64_t **hashes, uint32_t *hash_count)
 {
     int count = cJSON_GetArraySize(array);

@@ -16,7 +16,7 @@ typedef struct slide_run {
     const char *path;
     reconstruction r;
     uint32_t scenes;
-    double *milliseconds; /* of each scene but the first: frames to planes, and the build */
+    double *milliseconds; /* per scene except the first: frames to planes, and the build */
 } slide_run;
 
 static int add_frame(slide_run *s, uint32_t frame)
@@ -32,7 +32,7 @@ static int add_frame(slide_run *s, uint32_t frame)
                : cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
 }
 
-/* The scene of the frame and the one before. */
+/* Builds the scene of the frame and the previous one. */
 static int build_at(slide_run *s, uint32_t frame)
 {
     int code = CLI_OK;

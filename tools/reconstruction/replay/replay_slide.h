@@ -1,4 +1,4 @@
-/* Replay of a pair that slides: a scene of every two frames that follow one another, all stages hashed. */
+/* Replays a sliding pair: a scene of every two consecutive frames, all stages hashed. */
 #ifndef TRIM3R_TOOLS_REPLAY_SLIDE_H
 #define TRIM3R_TOOLS_REPLAY_SLIDE_H
 
@@ -8,9 +8,9 @@
 #include "recording/recording.h"
 #include "reconstruction/replay/replay_expectation.h"
 
-/* Frames 0 and 1 make the first scene, and each later one makes one with the frame before, in the same arena. With
- * config.warm a build follows the one before. A budget in percent is of the first pair's points. An exit status of
- * cli.h. */
+/* Builds the first scene from frames 0 and 1, and one from each later frame and its predecessor, in the same arena.
+ * With config.warm a build continues the previous one. A budget in percent refers to the first pair's points. Returns
+ * an exit status of cli.h. */
 int replay_slide(const t3r_recording *recording, const char *path, const reconstruction_options *settings, bool json,
                  const expectation *e);
 

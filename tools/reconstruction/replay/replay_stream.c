@@ -27,12 +27,12 @@ typedef struct keyframe {
     uint64_t hash; /* of all stages so far */
 } keyframe;
 
-/* A frame that was no keyframe, drawn from the map as it was behind the next keyframe, and in the end. Frames behind
- * the last keyframe are drawn in the end only. */
+/* A frame that was no keyframe, drawn from the map after the next keyframe, and at the end. Frames after the last
+ * keyframe are drawn only at the end. */
 typedef struct held_back {
     uint32_t frame;
     bool has_live;
-    double live_psnr, final_psnr; /* where the frame has a depth */
+    double live_psnr, final_psnr; /* over pixels with depth */
     double live_psnr_all, final_psnr_all;
 } held_back;
 
@@ -42,7 +42,7 @@ typedef struct stream_run {
     const char *path;
     uint32_t every;
     reconstruction r;
-    t3r_runtime *developing; /* an arena of its own: the map's takes keyframes alone */
+    t3r_runtime *developing; /* an arena of its own: the map's takes only keyframes */
     void *developing_arena;
     uint8_t *target, *drawn, *mask;
     uint16_t *depth;
@@ -91,7 +91,7 @@ static int write_picture(const stream_run *s, const char *what, uint32_t frame, 
     return picture_write_png(path, &p, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
-/* Draws the frame's view from the map as it is and compares: over pixels where the frame has a depth, and over all. */
+/* Draws the frame's view from the current map and compares: over pixels where the frame has a depth, and over all. */
 static int draw_held(stream_run *s, uint32_t frame, const char *when, double *psnr, double *psnr_all)
 {
     const uint32_t width = s->r.config.width, height = s->r.config.height;
@@ -126,7 +126,7 @@ static int draw_held(stream_run *s, uint32_t frame, const char *when, double *ps
     return code == CLI_OK ? write_picture(s, "mask", frame, 1, s->mask) : code;
 }
 
-/* Those between the keyframe just taken and the one before. */
+/* Draws the frames between the keyframe just taken and the previous one. */
 static int draw_live(stream_run *s, uint32_t now)
 {
     for (uint32_t i = 0; i < s->held_count; i++) {
@@ -165,7 +165,7 @@ static int take_keyframe(stream_run *s, uint32_t frame)
     return CLI_OK;
 }
 
-/* Every so many frames, and where there is little in common with the last keyframe. */
+/* Whether a frame is a keyframe: every so many frames, and when the overlap with the last keyframe is small. */
 static int is_keyframe(const stream_run *s, uint32_t frame, bool *wanted)
 {
     uint32_t since = s->keyframe_count == 0 ? s->every : frame - s->keyframes[s->keyframe_count - 1].frame;
@@ -233,11 +233,12 @@ static int write_map(const stream_run *s)
                : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
-/* ---- what is told ------------------------------------------------------------------------------------------------ */
+/* ---- the report
+ * ---------------------------------------------------------------------------------------------------- */
 
 typedef struct means {
     uint32_t live_count, final_count;
-    double live, live_all, final, final_all; /* means of dB; NaN of nothing */
+    double live, live_all, final, final_all; /* means in dB; NaN without frames */
 } means;
 
 static means means_of(const stream_run *s)
@@ -360,8 +361,8 @@ static void print_text(const stream_run *s, uint64_t hash)
     hash_report_print(r, hash);
 }
 
-/* The first place that differs, as text; "" when none does. A stage's hashes are chained over all keyframes, so the
- * first stage that differs is that of the first keyframe that does, or of a later one. */
+/* Finds the first difference, as text; "" when there is none. A stage's hashes are chained over all keyframes, so the
+ * first stage that differs belongs to the first keyframe that differs, or to a later one. */
 static void find_difference(const expectation *e, const stream_run *s, uint64_t hash, char *text, size_t text_bytes)
 {
     (void)expectation_missed(e, &s->r, hash, text, text_bytes);
@@ -386,7 +387,7 @@ int replay_stream(const replay_stream_options *options, const t3r_recording *rec
         .views_hash = T3R_HASH_START,
     };
     uint32_t frames = t3r_recording_frame_count(recording);
-    reconstruction_options first = *settings; /* the frames that a budget in percent is of */
+    reconstruction_options first = *settings; /* the frames that a budget in percent refers to */
     first.context_count = frames > s.every ? 2 : 1;
     first.context[0] = 0;
     first.context[1] = s.every;

@@ -1,4 +1,4 @@
-/* Where the time of a build went, stage by stage. */
+/* Where the time of a build went, by stage. */
 #ifndef TRIM3R_TOOLS_STAGE_TIMES_H
 #define TRIM3R_TOOLS_STAGE_TIMES_H
 
@@ -10,31 +10,31 @@
 #include "trim3r.h"
 
 typedef struct stage_times {
-    double seconds[T3R_STAGE_COUNT]; /* 0 of a stage that did not run */
+    double seconds[T3R_STAGE_COUNT]; /* 0 for a stage that did not run */
     clockid_t clock;
-    double since; /* by that clock, when the stage at hand began */
+    double since; /* start of the current stage, by that clock */
 } stage_times;
 
-/* All to 0; the first stage begins now. Of one thread it is processor time, of more elapsed time. */
+/* Sets all to 0; the first stage begins now. With one thread it is processor time, else elapsed time. */
 void stage_times_begin(stage_times *times, uint32_t threads);
-/* A stage is done, as the hook stage_hash says: it took the time since the one before. */
+/* Ends a stage, as the hook stage_hash reports: it took the time since the previous one. */
 void stage_times_end(stage_times *times, t3r_stage stage);
 double stage_times_sum(const stage_times *times);
-/* Each stage's time becomes that of `other` where that is less, or where it has none. */
+/* Replaces each stage's time by that of `other` if that is less, or if it has none. */
 void stage_times_keep_least(stage_times *times, const stage_times *other);
 
-/* A runtime whose stages are timed, and nothing else is wanted of it. */
+/* A runtime whose stages are only timed. */
 typedef struct stage_clock {
     stage_times times;
     t3r_threads *threads; /* the caller's; NULL: none */
 } stage_clock;
 
-/* The hooks that keep the times; the clock must stay where it is. */
+/* Returns the hooks that measure the times; the clock must not move. */
 t3r_hooks stage_clock_hooks(stage_clock *clock);
 
-/* Under `key`: milliseconds by the stages' names, of those that ran. */
+/* Adds under `key` the milliseconds of the stages that ran, by name. */
 void stage_times_add_json(cJSON *object, const char *key, const stage_times *times);
-/* A line a stage that ran: its name, milliseconds, and percent of the sum. */
+/* Prints a line per stage that ran: its name, milliseconds, and percent of the sum. */
 void stage_times_print(FILE *out, const stage_times *times);
 
 #endif

@@ -1,6 +1,6 @@
-/* .splat: 32 bytes a Gaussian and nothing else. Position and linear scale are three floats each; red, green, blue,
- * opacity and the rotation w x y z (128 + 128 q) are bytes. Viewers draw them in the order of the file while they load.
- */
+/* .splat: 32 bytes per Gaussian, without a header. Position and linear scale are three floats each; red, green, blue,
+ * opacity and the rotation w x y z (128 + 128 q) are bytes. Viewers draw Gaussians in the order of the file while they
+ * load. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -53,7 +53,7 @@ typedef struct ranked {
     uint32_t index;
 } ranked;
 
-/* What covers most comes first; the order of the scene decides between equals. */
+/* Sorts the Gaussians that cover most to the front; ties keep the scene's order. */
 static int compare_ranks(const void *a, const void *b)
 {
     const ranked *x = a, *y = b;
@@ -66,7 +66,8 @@ static double rank_of(const scene_row *row)
     return row->log_scale[0] + row->log_scale[1] + row->log_scale[2] + log(scene_row_opacity(row));
 }
 
-/* Bytes q of 128 + 128 w x y z: +1 has no byte, so the largest is negative in the quaternion that means the same. */
+/* Writes w x y z as bytes 128 + 128 q. +1 has no byte, so the equivalent quaternion whose largest component is negative
+ * is written. */
 static void put_rotation(uint8_t *bytes, const double rotation[4])
 {
     int largest = 0;

@@ -1,4 +1,4 @@
-/* What a head is calibrated on: recordings and plain images through the runtime, at several budgets. */
+/* The calibration input of a head: recordings and plain images through the runtime, at several budgets. */
 #ifndef TRIM3R_TOOLS_CALIBRATION_INPUT_H
 #define TRIM3R_TOOLS_CALIBRATION_INPUT_H
 
@@ -6,15 +6,15 @@
 
 #include "calibrate.h"
 
-/* Percent of the valid points that each input goes through with. */
+/* Budgets of each input, in percent of the valid points. */
 #define CALIBRATION_BUDGETS                                                                                            \
     {                                                                                                                  \
         100, 40, 20, 10, 5                                                                                             \
     }
-#define CALIBRATION_PAIRS 4u /* context pairs of a recording: of its triplets, else of its frames, evenly spread */
+#define CALIBRATION_PAIRS 4u /* context pairs of a recording: its triplets', else evenly spaced frames */
 
-/* A recording (.mcap), or an image as a plane of width x height as `eval --planar` has it. An exit status of cli.h,
- * after a message unless it is CLI_OK. */
+/* Runs a recording (.mcap), or an image as a plane of width x height as in `eval --planar`. Returns an exit status of
+ * cli.h, after a message unless it is CLI_OK. */
 int calibration_input(calibration *c, char *path, uint32_t width, uint32_t height);
 
 #endif

@@ -1,5 +1,5 @@
-/* The runtime as a WebAssembly module: what the page's worker calls. The worker places the bundle and the arena in the
- * module's memory, which it grows itself; there is no heap here either. */
+/* The runtime as a WebAssembly module, called by the page's worker. The worker places the bundle and the arena in the
+ * module's memory, which the worker grows; the module has no heap. */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -26,7 +26,7 @@ typedef struct frame_data {
 typedef struct reading {
     const uint8_t *start;
     size_t at, count;
-    int32_t broken; /* 1 = it ended too early */
+    int32_t broken; /* 1 = the bundle ended too early */
 } reading;
 
 /* The module keeps one bundle and one runtime: a page shows one scene. */
@@ -78,7 +78,7 @@ static const uint8_t *take_block(reading *in, size_t bytes)
 
 static void take_config(reading *in, t3r_config *config)
 {
-    uint32_t *words = (uint32_t *)config; /* a structure of words: bundle_layout.h */
+    uint32_t *words = (uint32_t *)config; /* a struct of 32-bit words: bundle_layout.h */
     in->broken |= take_u32(in) != BUNDLE_CONFIG_WORDS;
     for (uint32_t i = 0; i < BUNDLE_CONFIG_WORDS; i++) {
         words[i] = take_u32(in);
@@ -146,7 +146,7 @@ static int report_progress(void *user, t3r_stage stage, uint32_t done, uint32_t 
     return page_progress(stage, done, total);
 }
 
-/* As `trim3r replay` keeps them: a stage that reports several times has its reports chained. */
+/* Keeps a stage's hash as `trim3r replay` does: the reports of a stage that reports several times are chained. */
 static void keep_hash(void *user, t3r_stage stage, uint64_t hash)
 {
     (void)user;
@@ -155,8 +155,8 @@ static void keep_hash(void *user, t3r_stage stage, uint64_t hash)
     page_stage_ends(stage);
 }
 
-/* Takes the bundle at this address, aligned to 16, whose memory stays the module's; targets are at most of this size.
- * The bytes of the arena that it needs; 0 = the bundle is damaged or its configuration refused. */
+/* Opens the bundle at this address, aligned to 16, which must stay in the module's memory; targets are at most of this
+ * size. Returns the bytes of the arena that it needs; 0 = the bundle is damaged or its configuration refused. */
 EXPORT(open) uint32_t module_open(const uint8_t *bundle, uint32_t bytes, uint32_t render_width, uint32_t render_height)
 {
     reading in = {.start = bundle, .count = bytes};
@@ -169,7 +169,7 @@ EXPORT(open) uint32_t module_open(const uint8_t *bundle, uint32_t bytes, uint32_
     return t3r_plan(&module.config, &plan) == T3R_OK ? (uint32_t)plan.bytes : 0;
 }
 
-/* Lays the arena out at this address, aligned to 64. A t3r_status. */
+/* Initialises the arena at this address, aligned to 64. Returns a t3r_status. */
 EXPORT(start) int32_t module_start(void *arena, uint32_t bytes)
 {
     const t3r_hooks hooks = {.progress = report_progress, .stage_hash = keep_hash};
@@ -203,7 +203,7 @@ static t3r_gaussian gaussian_at(uint32_t index)
     return g;
 }
 
-/* Puts the bundle's Gaussians into the arena. A t3r_status. */
+/* Puts the bundle's Gaussians into the arena. Returns a t3r_status. */
 EXPORT(load) int32_t module_load(void)
 {
     t3r_status status = t3r_scene_begin(module.runtime, &module.scene_frame);
@@ -214,7 +214,7 @@ EXPORT(load) int32_t module_load(void)
     return status == T3R_OK ? t3r_get_scene(module.runtime, &module.scene) : status;
 }
 
-/* Adds the context views to an empty arena. A t3r_status. */
+/* Adds the context views to an empty arena. Returns a t3r_status. */
 static t3r_status add_views(void)
 {
     const uint32_t width = module.config.width, height = module.config.height;
@@ -238,7 +238,8 @@ static t3r_status add_views(void)
     return status;
 }
 
-/* Builds a scene of this budget: the first time from the frames, then from the analysis that was kept. A t3r_status. */
+/* Builds a scene of this budget: the first time from the frames, then from the analysis that was kept. Returns a
+ * t3r_status. */
 EXPORT(build) int32_t module_build(uint32_t gaussians)
 {
     const t3r_request request = {.gaussians = gaussians};
@@ -262,13 +263,14 @@ EXPORT(valid_points) uint32_t module_valid_points(void)
     return module.scene.valid_points;
 }
 
-/* The exponent of the scene's frame: the median depth is 1 to 2 times 2^exponent world units. */
+/* Returns the exponent of the scene's frame: the median depth is 1 to 2 times 2^exponent world units. */
 EXPORT(exponent) int32_t module_exponent(void)
 {
     return module.scene.frame.exponent;
 }
 
-/* The hash of a stage of the last build, 0 = it did not run; of all stages that ran with T3R_STAGE_COUNT. */
+/* Returns the hash of a stage of the last build, 0 = it did not run; for T3R_STAGE_COUNT the hash of all stages that
+ * ran. */
 EXPORT(hash) uint64_t module_hash(uint32_t stage)
 {
     if (stage < T3R_STAGE_COUNT) {
@@ -286,7 +288,7 @@ EXPORT(hash) uint64_t module_hash(uint32_t stage)
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
 /* Draws RGB, depth (Q20 scene units) and alpha (Q15), rows without gaps, as a camera of these numbers sees the scene
- * (t3r_camera has their ranges). A t3r_status. */
+ * (t3r_camera has their ranges). Returns a t3r_status. */
 EXPORT(render)
 int32_t module_render(int32_t fx_q16, int32_t fy_q16, int32_t cx_q16, int32_t cy_q16, int64_t x_q32, int64_t y_q32,
                       int64_t z_q32, int32_t qw_q30, int32_t qx_q30, int32_t qy_q30, int32_t qz_q30, uint32_t width,
@@ -313,7 +315,7 @@ int32_t module_render(int32_t fx_q16, int32_t fy_q16, int32_t cx_q16, int32_t cy
     return t3r_render(module.runtime, &camera, &target);
 }
 
-/* The pixels of a frame in the bundle, 3 bytes each. */
+/* Returns the pixels of a frame in the bundle, 3 bytes each. */
 EXPORT(frame_rgb) const uint8_t *module_frame_rgb(uint32_t frame)
 {
     return frame < module.frames ? module.frame[frame].rgb : NULL;
@@ -321,8 +323,8 @@ EXPORT(frame_rgb) const uint8_t *module_frame_rgb(uint32_t frame)
 
 enum { PLANE_MASK, PLANE_TEXTURE };
 
-/* A plane of an analysed context view: the mask of retained pixels (a bit each, in words) or the texture (16 bits
- * each). NULL = there is none. */
+/* Returns a plane of an analysed context view: the mask of retained pixels (a bit each, in words) or the texture (16
+ * bits each). NULL = there is none. */
 EXPORT(plane) const void *module_plane(uint32_t view, uint32_t plane)
 {
     if (!module.runtime->analysed || view >= module.config.views) {
@@ -334,7 +336,8 @@ EXPORT(plane) const void *module_plane(uint32_t view, uint32_t plane)
 
 #define NO_LABEL UINT16_MAX
 
-/* The SuperCluster of each pixel of an analysed context view, NO_LABEL where there is no depth or no analysis. */
+/* Writes the SuperCluster of each pixel of an analysed context view, NO_LABEL where there is no depth or no
+ * analysis. */
 EXPORT(labels) void module_labels(uint32_t view, uint16_t *label)
 {
     const bool is_analysed = module.runtime->analysed && view < module.config.views;

@@ -1,11 +1,11 @@
 "use strict";
-/* The page: camera, controls and words. What is computed, the worker computes. */
+/* The page: camera, controls and texts. The worker does all computation. */
 const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
 const bytesOf = (id) => Uint8Array.from(atob($(id).textContent), (c) => c.charCodeAt(0)).buffer;
 const STAGES = data.stages;
 
-/* ---- vectors: rows of a matrix are the world's axes, its columns right, down and forward of the camera ------------- */
+/* ---- vectors: a matrix has the world's axes as rows, and right, down and forward of the camera as columns ---------- */
 
 const add = (a, b, s = 1) => a.map((x, i) => x + s * b[i]);
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -43,7 +43,7 @@ function turned(vector, axis, angle) {
 
 /* ---- the camera ---------------------------------------------------------------------------------------------------- */
 
-const lens = data.frames[0]; /* a page has one frame at least: that it starts from */
+const lens = data.frames[0]; /* a page has at least one frame: the one that it starts from */
 const up = axesOf(lens.rotation)[1].map((x) => -x);
 const camera = { position: [0, 0, 0], axes: [], distance: 1, frame: 0 };
 let sceneUnit = 1;
@@ -59,7 +59,7 @@ function lookFrom(index) {
 function turn(yaw, pitch) {
   const pivot = add(camera.position, camera.axes[2], camera.distance);
   const slope = Math.asin(Math.max(-1, Math.min(1, dot(camera.axes[2], up))));
-  const most = 1.45; /* radians: up stays up */
+  const most = 1.45; /* radians: keeps up pointing up */
   pitch = Math.max(-most - slope, Math.min(most - slope, pitch));
   camera.axes = camera.axes.map((axis) => turned(axis, up, yaw));
   const right = camera.axes[0];
@@ -87,7 +87,7 @@ const cameraOf = (frame, width) => {
            position: frame.position, rotation: frame.rotation };
 };
 
-/* ---- the worker: one request at a time, and of those that wait the newest of its kind -------------------------------- */
+/* ---- the worker: handles one request at a time; a newer request replaces a waiting one of its kind ------------------- */
 
 const source = new Blob([$("worker").textContent], { type: "text/javascript" });
 const worker = new Worker(URL.createObjectURL(source));
@@ -144,7 +144,7 @@ function onFrame() {
   return document.querySelector("#overlay input:checked") !== null;
 }
 
-/* A move leaves the frame, and with it what can be shown of it alone. */
+/* Handles a move: away from a frame, overlays that only frames have are switched off. */
 function moved() {
   if (onFrame() && camera.frame === null) document.querySelector("input[name=show][value=picture]").checked = true;
   markFrames();
@@ -158,12 +158,12 @@ done.draw = ({ pixels, width, height, ms, show }) => {
   }
   context.putImageData(new ImageData(pixels, width, height), 0, 0);
   if (ms > 0) $("drawn").textContent = `Last picture, ${width} x ${height}: ${ms.toFixed(1)} ms.`;
-  document.body.dataset.drawn = number; /* for tests: something was drawn since */
+  document.body.dataset.drawn = number; /* for tests: number of the last request drawn */
   const of = camera.frame === null ? "from a free viewpoint" : `from ${data.frames[camera.frame].name}`;
   canvas.setAttribute("aria-label", `${document.querySelector(`input[name=show][value=${show}]`).nextSibling.textContent}, ${of}`);
 };
 
-/* ---- words -------------------------------------------------------------------------------------------------------------- */
+/* ---- texts -------------------------------------------------------------------------------------------------------------- */
 
 const count = (n) => n.toLocaleString("en");
 function say(text, bad = false) {
@@ -205,7 +205,7 @@ function showResult({ gaussians, valid, stages, hash, psnr }) {
 
 /* ---- the budget ----------------------------------------------------------------------------------------------------------- */
 
-const LEAST = .5, MOST = 100; /* percent, at the ends of the slider, which is logarithmic */
+const LEAST = .5, MOST = 100; /* percent, at the ends of the logarithmic slider */
 const slider = $("slider");
 const percentAt = (value) => LEAST * (MOST / LEAST) ** (value / 1000);
 const sliderAt = (percent) => Math.round(1000 * Math.log(percent / LEAST) / Math.log(MOST / LEAST));
@@ -248,7 +248,7 @@ function settle(answer) {
 
 /* ---- controls --------------------------------------------------------------------------------------------------------------- */
 
-/* Of a view that the scene was built of here: its retained pixels, SuperClusters and texture. */
+/* Offers the overlays of views that the scene was built from here: retained pixels, SuperClusters and texture. */
 function showOverlays() {
   const built = data.valid > 0 && chosen("source") === "built";
   $("overlay").hidden = !data.frames.some((f) => f.recorded);

@@ -1,11 +1,11 @@
 "use strict";
-/* The runtime in a thread of its own. It answers the page's requests one after the other. */
+/* The runtime in a thread of its own. It answers the page's requests in order. */
 let runtime, opened;
 
 const ALIGN = 64, PAGE = 65536;
 const STAGES = 9;
 
-/* The module's memory: what the page was given, then the arena, then the pictures. It only grows. */
+/* The module's memory: the page's bundle, then the arena, then the pictures. It only grows. */
 let end;
 function place(bytes) {
   const at = Math.ceil(end / ALIGN) * ALIGN;
@@ -109,7 +109,7 @@ function psnr(camera, frame) {
   return sum === 0 ? Infinity : 10 * Math.log10(65025 * drawn.length / sum);
 }
 
-/* From dark blue over red to bright yellow, as lightness rises. */
+/* Maps 0..1 to dark blue, red and bright yellow, with rising lightness. */
 const STOPS = [[4, 4, 22], [64, 16, 104], [140, 41, 105], [214, 72, 68], [249, 142, 34], [252, 236, 164]];
 function heat(share, out, at) {
   const x = Math.min(Math.max(share, 0), 1) * (STOPS.length - 1), i = Math.min(Math.floor(x), STOPS.length - 2);
@@ -164,7 +164,7 @@ const painters = {
     };
   },
   clusters(count, frame) {
-    const rgb = recorded(frame), label = shortsAt(opened.alpha, count); // no picture is drawn with them
+    const rgb = recorded(frame), label = shortsAt(opened.alpha, count); // alpha's memory is free: no picture is drawn now
     runtime.labels(frame, opened.alpha);
     return (out, i, at) => {
       if (label[i] === 65535) return;

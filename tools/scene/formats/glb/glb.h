@@ -15,7 +15,7 @@ enum {
     GLB_VERSION_AT = 4,
     GLB_LENGTH_AT = 8,
     GLB_HEADER_BYTES = 12,
-    GLB_CHUNK_BYTES = 8 /* of each chunk's own header: length, then kind */
+    GLB_CHUNK_BYTES = 8 /* each chunk's header: length, then kind */
 };
 #define GLB_JSON 0x4E4F534Au
 #define GLB_BINARY 0x004E4942u
@@ -27,11 +27,11 @@ enum { GLB_BYTE = 5120, GLB_UBYTE = 5121, GLB_SHORT = 5122, GLB_USHORT = 5123, G
 enum { GLB_POSITION, GLB_ROTATION, GLB_SCALE, GLB_OPACITY, GLB_HARMONIC, GLB_REST };
 enum { GLB_ATTRIBUTES_MOST = GLB_REST + HARMONICS_REST_MOST, GLB_NAME_BYTES = 64 };
 
-/* The name and the number of components of attribute `index`. */
+/* Returns the name and the number of components of attribute `index`. */
 const char *glb_attribute_name(uint32_t index, char name[GLB_NAME_BYTES]);
 uint32_t glb_components(uint32_t index);
 
-/* As scene_format has them. */
+/* As in scene_format. */
 int glb_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
 int glb_write(FILE *file, const scene_source *source, char *error, size_t error_bytes);
 

@@ -18,7 +18,7 @@ typedef struct affine {
 
 typedef struct node {
     const cJSON *json;
-    uint32_t above; /* the index of its parent, or NO_NODE */
+    uint32_t above; /* index of its parent, or NO_NODE */
 } node;
 
 typedef struct node_list {
@@ -37,7 +37,7 @@ static const cJSON *get(const cJSON *object, const char *name)
 
 /* ---- the tree ---------------------------------------------------------------------------------------------------- */
 
-/* Notes for each child of a node which node is above it. */
+/* Sets the parent of each child of a node. */
 static int list_children(node_list *l, uint32_t index)
 {
     const cJSON *child, *children;
@@ -83,7 +83,7 @@ static int list_nodes(node_list *l, const cJSON *root)
     return 0;
 }
 
-/* The node that shows a mesh, or NO_NODE. */
+/* Finds the node that shows a mesh, or NO_NODE. */
 static int find_node(const node_list *l, uint32_t mesh_index, uint32_t *out)
 {
     *out = NO_NODE;
@@ -102,7 +102,7 @@ static int find_node(const node_list *l, uint32_t mesh_index, uint32_t *out)
 
 /* ---- transforms -------------------------------------------------------------------------------------------------- */
 
-/* `count` finite numbers of a node; without them `out` stays. */
+/* Reads `count` finite numbers of a node; if missing, `out` is unchanged. */
 static int get_numbers(const node_list *l, uint32_t index, const char *name, int count, double *out)
 {
     const cJSON *array = get(l->nodes[index].json, name), *each;
@@ -123,7 +123,7 @@ static int get_numbers(const node_list *l, uint32_t index, const char *name, int
     return 0;
 }
 
-/* Column by column, with 0 0 0 1 below. */
+/* Reads a matrix column by column, with 0 0 0 1 as the last row. */
 static int of_matrix(const node_list *l, uint32_t index, affine *out)
 {
     double columns[16] = {0};
@@ -142,7 +142,7 @@ static int of_matrix(const node_list *l, uint32_t index, affine *out)
     return 0;
 }
 
-/* A scale, then a rotation x y z w, then a translation. */
+/* Reads a scale, a rotation x y z w and a translation, applied in this order. */
 static int of_parts(const node_list *l, uint32_t index, affine *out)
 {
     double rotation[4] = {0, 0, 0, 1}, scale[3] = {1, 1, 1};
@@ -174,7 +174,7 @@ static int affine_of(const node_list *l, uint32_t index, affine *out)
                : FAIL(l, "node %" PRIu32 ": a matrix beside a translation, rotation or scale", index);
 }
 
-/* First `below`, then `above`. */
+/* Returns `below` followed by `above`. */
 static affine joined(const affine *above, const affine *below)
 {
     affine out = {.translation = {0}};
@@ -190,7 +190,8 @@ static affine joined(const affine *above, const affine *below)
     return out;
 }
 
-/* A uniform scale, a rotation and a translation; a Gaussian would not stay one file's Gaussian under anything else. */
+/* Splits the transform into a uniform scale, a rotation and a translation; any other transform would not keep a
+ * Gaussian representable. */
 static int place(const node_list *l, const affine *whole, glb_placement *out)
 {
     const double *m = whole->linear;

@@ -46,7 +46,7 @@ static bool is_text(const cJSON *object, const char *name, const char *text)
     return cJSON_IsString(item) && strcmp(item->valuestring, text) == 0;
 }
 
-/* A whole number of 0..2^32 - 1: 0, or -1. What is not there is `missing`. */
+/* Reads a whole number of 0..2^32 - 1; `missing` is the default. Returns 0, or -1. */
 static int get_whole(const reader *r, const cJSON *object, const char *name, double missing, uint32_t *out)
 {
     const cJSON *item = get(object, name);
@@ -59,7 +59,7 @@ static int get_whole(const reader *r, const cJSON *object, const char *name, dou
     return 0;
 }
 
-/* Item `index` of an array of the file; NULL: there is none. */
+/* Returns item `index` of an array of the file; NULL: there is none. */
 static const cJSON *item_of(const cJSON *root, const char *name, uint32_t index)
 {
     const cJSON *array = get(root, name);
@@ -71,7 +71,7 @@ static int get_array(const reader *r, const cJSON *object, const char *name, con
     return json_array(object, name, array, r->error, r->error_bytes);
 }
 
-/* The one primitive of Gaussians in the file's meshes, and the mesh. */
+/* Finds the only primitive of Gaussians in the file's meshes, and its mesh. */
 static int find_primitive(const reader *r, const cJSON *root, const cJSON **primitive, uint32_t *mesh_index)
 {
     const cJSON *meshes, *mesh, *primitives, *each;
@@ -202,7 +202,7 @@ static double number_of(const accessor *a, uint32_t row, uint32_t item)
     }
 }
 
-/* Where the nodes put it: 0, or -1 where its position has no number. */
+/* Moves a row by the nodes' transform. Returns 0, or -1 if its position overflows. */
 static int place_row(const glb_file *file, scene_row *row)
 {
     const glb_placement *to = &file->placement;
@@ -270,7 +270,7 @@ static int parse_json(const reader *r, const cJSON *root, scene_file *out)
     return scene_file_from_rows(&rows, out, r->error, r->error_bytes);
 }
 
-/* The chunk at *at, which moves behind it. */
+/* Reads the chunk at *at, which moves past it. */
 static int next_chunk(const reader *r, const uint8_t *bytes, size_t count, size_t *at, uint32_t kind,
                       const uint8_t **chunk, uint32_t *length)
 {

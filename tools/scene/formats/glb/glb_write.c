@@ -11,7 +11,7 @@
 #include "scene/formats/glb/glb.h"
 #include "host/little_floats.h"
 
-/* One attribute behind the other, COLOR_0 last: what programs that do not know Gaussians draw, as points. */
+/* One attribute after the other. COLOR_0 is last: programs that do not know Gaussians draw points from it. */
 typedef struct glb_layout {
     uint32_t count;
     uint32_t attributes; /* without COLOR_0 */
@@ -20,7 +20,7 @@ typedef struct glb_layout {
 
 enum { SHORTS_BYTES = 8, COLOUR_BYTES = 4 };
 
-/* Rotations are four shorts, all else floats. */
+/* Returns an attribute's bytes: rotations are four shorts, all others floats. */
 static uint32_t bytes_of(uint32_t attribute)
 {
     return attribute == GLB_ROTATION ? SHORTS_BYTES : 4 * glb_components(attribute);
@@ -45,7 +45,7 @@ static void add_numbers(cJSON *object, const char *name, const double values[3])
     }
 }
 
-/* The accessor of the next attribute, and its view. */
+/* Adds the accessor of the next attribute, and its view. */
 static void add_attribute(cJSON *views, cJSON *accessors, cJSON *attributes, const char *name, const char *type,
                           int component, double offset, double bytes, const glb_layout *layout)
 {
@@ -86,7 +86,7 @@ static void add_attributes(cJSON *root, cJSON *attributes, const glb_layout *lay
                   (double)COLOUR_BYTES * layout->count, layout);
 }
 
-/* The one object of an array. */
+/* Adds an array of one object, and returns the object. */
 static cJSON *only_item(cJSON *object, const char *array)
 {
     cJSON *item = cJSON_CreateObject();
@@ -94,7 +94,7 @@ static cJSON *only_item(cJSON *object, const char *array)
     return item;
 }
 
-/* NULL: out of memory. */
+/* Returns NULL when out of memory. */
 static char *make_json(const glb_layout *layout)
 {
     const int none = 0;
@@ -146,7 +146,7 @@ static void put_attribute(const scene_row *row, uint32_t attribute, uint8_t *out
     }
 }
 
-/* COLOR_0 is linear light; what screens show is sRGB. */
+/* Converts sRGB, as screens show, to linear light, as COLOR_0 needs. */
 static double linear_light(double shown)
 {
     return shown <= 0.04045 ? shown / 12.92 : pow((shown + 0.055) / 1.055, 2.4);
@@ -160,7 +160,7 @@ static void put_colour(const scene_row *row, uint8_t *out)
     out[3] = byte_of(255 * scene_row_opacity(row));
 }
 
-/* All numbers, by one pass over the scene; free() them. NULL: out of memory. */
+/* Returns all numbers, made in one pass over the scene; free() them. NULL: out of memory. */
 static uint8_t *make_numbers(const scene_source *source, const glb_layout *layout)
 {
     uint8_t *bytes = malloc((size_t)binary_bytes(layout) + 1);
@@ -215,7 +215,7 @@ static void write_file(FILE *file, const char *json, const uint8_t *numbers, uin
 
 int glb_write(FILE *file, const scene_source *source, char *error, size_t error_bytes)
 {
-    enum { JSON_BYTES_MOST = 65536 }; /* of 20 attributes */
+    enum { JSON_BYTES_MOST = 65536 }; /* enough for 20 attributes */
     const glb_layout layout = layout_of(source);
     const uint64_t number_bytes = binary_bytes(&layout); /* a multiple of 4, as all attributes are */
     if (number_bytes > UINT32_MAX - JSON_BYTES_MOST) {

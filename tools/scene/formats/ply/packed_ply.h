@@ -1,4 +1,4 @@
-/* PlayCanvas's compressed .ply: Gaussians in chunks of 256, each in four words of 32 bits within the bounds of its
+/* PlayCanvas's compressed .ply: Gaussians in chunks of 256, each in four 32-bit words relative to the bounds of its
  * chunk; harmonics above degree 0 are bytes. */
 #ifndef TRIM3R_TOOLS_PACKED_PLY_H
 #define TRIM3R_TOOLS_PACKED_PLY_H
@@ -8,7 +8,7 @@
 
 #define PACKED_PLY_CHUNK 256u
 
-/* In the order of the file. Those of colours are missing in old files: colours are from 0 to 1 then. */
+/* A chunk's bounds in the order of the file. Old files have no colour bounds: colours are from 0 to 1 then. */
 enum {
     PACKED_LOW_POSITION = 0,
     PACKED_HIGH_POSITION = 3,
@@ -22,7 +22,7 @@ extern const char *const packed_ply_bounds[PACKED_BOUNDS];
 enum { PACKED_POSITION, PACKED_ROTATION, PACKED_SCALE, PACKED_COLOUR, PACKED_WORDS };
 extern const char *const packed_ply_words[PACKED_WORDS];
 
-/* Whether a header is that of such a file. */
+/* Whether a header belongs to such a file. */
 bool packed_ply_is(const ply_header *header);
 int packed_ply_parse(const ply_header *header, const uint8_t *bytes, size_t count, scene_file *out, char *error,
                      size_t error_bytes);

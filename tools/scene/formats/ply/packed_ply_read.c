@@ -14,7 +14,7 @@ const char *const packed_ply_bounds[PACKED_BOUNDS] = {
 const char *const packed_ply_words[PACKED_WORDS] = {"packed_position", "packed_rotation", "packed_scale",
                                                     "packed_color"};
 
-/* Rows of an element and where in them the wanted properties are. */
+/* Rows of an element, and the offsets of the wanted properties in a row. */
 typedef struct column_set {
     const uint8_t *rows;
     uint32_t row_bytes;
@@ -24,7 +24,7 @@ typedef struct column_set {
 typedef struct packed_file {
     column_set chunks, vertices, harmonics;
     uint32_t degree;
-    bool has_colours; /* chunks bound them */
+    bool has_colours; /* chunks have colour bounds */
 } packed_file;
 
 bool packed_ply_is(const ply_header *header)
@@ -107,14 +107,14 @@ static int find_columns(const ply_header *header, const uint8_t *bytes, size_t c
 
 /* ---- Gaussians --------------------------------------------------------------------------------------------------- */
 
-/* `bits` of a word from `shift` on, as 0..1. */
+/* Returns `bits` of a word from bit `shift` on, as 0..1. */
 static double share(uint32_t word, uint32_t shift, uint32_t bits)
 {
     const uint32_t most = (1u << bits) - 1;
     return (double)(word >> shift & most) / most;
 }
 
-/* Between the bounds of a chunk that begin at `low` and at `high`. */
+/* Interpolates between a chunk's bounds `low` and `high`. */
 static double between(const packed_file *file, const uint8_t *chunk, int low, int high, double at)
 {
     return t3r_load_float(chunk + file->chunks.offset[low]) * (1 - at) +
@@ -135,7 +135,7 @@ static void unpack_rotation(uint32_t word, double rotation[4])
     rotation[largest] = sqrt(fmax(left, 0));
 }
 
-/* Of 256 steps from -4 to 4 the middle; the outermost are the ends. */
+/* Returns the middle of one of 256 steps from -4 to 4; the outermost steps give -4 and 4. */
 static double harmonic_of(uint8_t byte)
 {
     return byte == 0 ? -4 : byte == 255 ? 4 : (byte + 0.5) / 32 - 4;

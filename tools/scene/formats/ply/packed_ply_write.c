@@ -1,4 +1,4 @@
-/* Along a Z-order curve, so that the Gaussians of a chunk are neighbours. */
+/* Orders Gaussians along a Z-order curve, so that those of a chunk are neighbours. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -11,13 +11,13 @@
 #include "scene/scene_format.h"
 #include "scene/scene_order.h"
 
-/* Logarithms of scales beyond are held here: readers take no more. */
+/* Clamps logarithms of scales; readers accept no more. */
 #define SCALE_MOST 20.0
 
 typedef struct chunk {
     scene_row rows[PACKED_PLY_CHUNK];
     uint32_t count;
-    double bounds[PACKED_BOUNDS]; /* as the file has them, rounded to floats */
+    double bounds[PACKED_BOUNDS]; /* as in the file, rounded to floats */
 } chunk;
 
 static void read_chunk(const scene_source *source, const uint32_t *order, uint32_t index, chunk *out)
@@ -59,14 +59,14 @@ static void bound_chunk(chunk *c)
     }
 }
 
-/* A number of 0..1 in so many bits. */
+/* Quantizes a number of 0..1 to so many bits. */
 static uint32_t steps(double share, uint32_t bits)
 {
     const uint32_t most = (1u << bits) - 1;
     return share <= 0 ? 0 : share >= 1 ? most : (uint32_t)nearbyint(share * most);
 }
 
-/* Where a row lies between two bounds of its chunk. */
+/* Returns the position of a row's value between two bounds of its chunk, 0..1. */
 static double share_of(const chunk *c, const scene_row *row, int low)
 {
     const double size = c->bounds[low + 3] - c->bounds[low];

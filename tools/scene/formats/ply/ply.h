@@ -1,5 +1,5 @@
-/* 3DGS .ply, binary little-endian, harmonics of degree 0 to 3. NaN, infinities (but those of an opacity of 0 or 1 and
- * of a scale of 0), cut files, missing properties and other kinds of .ply are refused with a reason. */
+/* 3DGS .ply, binary little-endian, harmonics of degree 0 to 3. NaN, infinities (except for an opacity of 0 or 1 and a
+ * scale of 0), cut files, missing properties and other kinds of .ply are refused with a reason. */
 #ifndef TRIM3R_TOOLS_PLY_H
 #define TRIM3R_TOOLS_PLY_H
 
@@ -7,7 +7,7 @@
 
 #include "scene/scene_rows.h"
 
-/* As scene_format has them. */
+/* As in scene_format. */
 int ply_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
 int ply_write(FILE *file, const scene_source *source, char *error, size_t error_bytes);
 

@@ -19,7 +19,7 @@ typedef struct reader {
 
 #define FAIL(r, ...) t3r_reason((r)->error, (r)->error_bytes, __VA_ARGS__)
 
-/* The line at *at without its end; *at moves behind it. -1 when none is left or it is over-long. */
+/* Reads the line at *at without its end; *at moves past it. -1 when none is left or it is too long. */
 static int next_line(const reader *r, size_t *at, char line[MAX_LINE_BYTES])
 {
     size_t limit = r->count < MAX_HEADER_BYTES ? r->count : MAX_HEADER_BYTES;
@@ -161,7 +161,7 @@ static int read_line(const reader *r, size_t at, const char *line, ply_header *h
     return strncmp(line, "obj_info", 8) == 0 ? 0 : FAIL(r, "byte %zu: unknown header line '%.80s'", at, line);
 }
 
-/* Where each element's rows begin: below 16 x 2^24 x 2^13. */
+/* Computes where each element's rows begin: below 16 x 2^24 x 2^13. */
 static void place_elements(ply_header *h, size_t data)
 {
     uint64_t at = data;

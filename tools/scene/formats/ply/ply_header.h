@@ -1,4 +1,4 @@
-/* The header of a binary little-endian .ply: text from anywhere, of which every line, count and offset is checked. */
+/* Reads the header of a binary little-endian .ply. It is untrusted text, so every line, count and offset is checked. */
 #ifndef TRIM3R_TOOLS_PLY_HEADER_H
 #define TRIM3R_TOOLS_PLY_HEADER_H
 
@@ -9,24 +9,24 @@
 #include "trim3r.h"
 
 #define PLY_ELEMENTS_MOST 16u
-#define PLY_PROPERTIES_MOST 512u /* of all elements */
+#define PLY_PROPERTIES_MOST 512u /* over all elements */
 #define PLY_NAME_BYTES 64u
 
 typedef struct ply_property {
     char name[PLY_NAME_BYTES];
     char kind;       /* 'i', 'u' or 'f': signed, unsigned, float */
     uint32_t bytes;  /* 1, 2, 4 or 8 */
-    uint32_t offset; /* in a row */
+    uint32_t offset; /* within a row */
 } ply_property;
 
 typedef struct ply_element {
     char name[PLY_NAME_BYTES];
     uint32_t count; /* rows, at most T3R_MAX_GAUSSIANS */
     uint32_t row_bytes;
-    uint64_t at;     /* byte of the file at which its rows begin */
-    bool lists;      /* it has lists or lies behind some: `at` and row_bytes are not known */
-    uint32_t first;  /* of its properties in the header's */
-    uint32_t second; /* one behind the last */
+    uint64_t at;     /* byte of the file where its rows begin */
+    bool lists;      /* it has lists or follows some: `at` and row_bytes are unknown */
+    uint32_t first;  /* index of its first property in the header */
+    uint32_t second; /* index after its last property */
 } ply_element;
 
 typedef struct ply_header {
@@ -35,16 +35,16 @@ typedef struct ply_header {
     ply_property properties[PLY_PROPERTIES_MOST];
     uint32_t property_count;
     bool has_exponent, has_origin, local;
-    t3r_scene_frame frame; /* as comments name it */
+    t3r_scene_frame frame; /* as given in comments */
 } ply_header;
 
-/* Each: 0, or -1 with "byte: what" in error[]. */
+/* Each returns 0, or -1 with "byte: what" in error[]. */
 int ply_header_read(const uint8_t *bytes, size_t count, ply_header *out, char *error, size_t error_bytes);
-/* The rows of an element, all within the file's `count` bytes. */
+/* Finds an element whose rows all lie within the file's `count` bytes. */
 int ply_header_rows(const ply_header *header, const char *name, size_t count, const ply_element **out, char *error,
                     size_t error_bytes);
 
-/* NULL: there is none. */
+/* Returns NULL if there is none. */
 const ply_element *ply_header_element(const ply_header *header, const char *name);
 const ply_property *ply_header_property(const ply_header *header, const ply_element *element, const char *name);
 

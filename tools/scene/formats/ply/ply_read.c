@@ -1,4 +1,4 @@
-/* 3DGS .ply, binary little-endian: floats or doubles in any order, beside anything else. */
+/* 3DGS .ply, binary little-endian: floats or doubles in any order, among other properties. */
 #include "scene/formats/ply/ply.h"
 
 #include <inttypes.h>
@@ -11,7 +11,7 @@
 #include "scene/formats/ply/ply_header.h"
 #include "scene/scene_rows.h"
 
-/* What is read of each vertex, in this order; the harmonics above degree 0 follow. */
+/* The values read of each vertex, in this order; the harmonics above degree 0 follow. */
 enum { X, Y, Z, DC_0, DC_1, DC_2, OPACITY, SCALE_0, SCALE_1, SCALE_2, ROT_0, ROT_1, ROT_2, ROT_3, WANTED_COUNT };
 static const char *const wanted[WANTED_COUNT] = {"x",      "y",       "z",       "f_dc_0",  "f_dc_1",
                                                  "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2",
@@ -20,10 +20,10 @@ enum { VALUES_MOST = WANTED_COUNT + 3 * HARMONICS_REST_MOST };
 
 typedef struct ply_vertices {
     const uint8_t *rows;
-    uint64_t at; /* the byte of the file at which they begin */
+    uint64_t at; /* byte of the file where they begin */
     uint32_t row_bytes;
     uint32_t degree;
-    uint32_t value_count; /* numbers that are read of a row */
+    uint32_t value_count; /* numbers read per row */
     const ply_property *values[VALUES_MOST];
 } ply_vertices;
 
@@ -40,8 +40,8 @@ static int find_wanted(const ply_header *header, const ply_element *vertex, cons
     return 0;
 }
 
-/* f_rest_0, f_rest_1 ...: first all of red, then of green, then of blue. Those of degree 4 are passed over, and all of
- * them where their number is that of no degree. */
+/* Finds f_rest_0, f_rest_1 ...: all of red, then of green, then of blue. Those of degree 4 are skipped; all are, if
+ * their number fits no degree. */
 static int find_rest(const ply_header *header, const ply_element *vertex, ply_vertices *out, char *error,
                      size_t error_bytes)
 {
@@ -87,7 +87,7 @@ static int find_values(const ply_header *header, const ply_element *vertex, ply_
 
 /* ---- vertices --------------------------------------------------------------------------------------------- */
 
-/* Exporters write the logit of opacity 1 or 0, and the logarithm of scale 0, as infinities. */
+/* Whether an infinity is intended: exporters write the logit of opacity 1 or 0, and the logarithm of scale 0, so. */
 static bool is_meant(uint32_t index, double value)
 {
     return isfinite(value) ||

@@ -1,4 +1,4 @@
-/* 3DGS .ply, binary little-endian; f_rest for the harmonics above degree 0 alone: readers take their number from the
+/* 3DGS .ply, binary little-endian, with f_rest only for harmonics above degree 0: readers take their number from the
  * header. */
 #include "scene/formats/ply/ply.h"
 

@@ -10,8 +10,8 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Half of the values at even distances, half at even shares of the numbers: neither a far number nor a crowd is lost.
- */
+/* Initialises half of the values evenly over the range and half at even quantiles, so that neither outliers nor
+ * clusters are lost. */
 static void begin(const double *numbers, size_t count, double values[CODEBOOK_VALUES])
 {
     enum { HALF = CODEBOOK_VALUES / 2 };
@@ -23,7 +23,7 @@ static void begin(const double *numbers, size_t count, double values[CODEBOOK_VA
     qsort(values, CODEBOOK_VALUES, sizeof values[0], ascending);
 }
 
-/* Each value becomes the mean of the numbers that are nearest to it; one without numbers stays. */
+/* Moves each value to the mean of the numbers nearest to it; a value without numbers stays. */
 static void improve(const double *numbers, size_t count, double values[CODEBOOK_VALUES])
 {
     size_t at = 0;

@@ -1,4 +1,4 @@
-/* Numbers as indices into 256 values that suit them. */
+/* Represents numbers by indices into 256 fitted values. */
 #ifndef TRIM3R_TOOLS_CODEBOOK_H
 #define TRIM3R_TOOLS_CODEBOOK_H
 
@@ -7,9 +7,10 @@
 
 enum { CODEBOOK_VALUES = 256 };
 
-/* The values, ascending, by a fixed number of rounds of K-means; sorts `numbers`, of which there is at least one. */
+/* Fits the values, ascending, by a fixed number of rounds of K-means; sorts `numbers`, of which there is at least
+ * one. */
 void codebook_make(double *numbers, size_t count, double values[CODEBOOK_VALUES]);
-/* The index of the nearest value. */
+/* Returns the index of the nearest value. */
 uint8_t codebook_index(const double values[CODEBOOK_VALUES], double number);
 
 #endif

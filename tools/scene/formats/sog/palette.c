@@ -1,24 +1,24 @@
-/* Bisecting K-means: cells that are farthest from their means, in sums of squares, are split in two until there are
- * enough. A cell of equal rows is never split. */
+/* Bisecting K-means: the cells with the largest sums of squared distances to their means are split in two until there
+ * are enough. A cell of equal rows is never split. */
 #include "scene/formats/sog/palette.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROUNDS = 3 }; /* of K-means with two means, a split */
+enum { ROUNDS = 3 }; /* rounds of K-means with two means, per split */
 
 typedef struct cell {
-    uint32_t first, count; /* of the order; never empty */
-    uint32_t axis;         /* along which its rows differ most */
-    double error;          /* sum of squared distances to the mean; 0 exactly where all rows are equal */
+    uint32_t first, count; /* range of the order; never empty */
+    uint32_t axis;         /* axis of the largest variance */
+    double error;          /* sum of squared distances to the mean; exactly 0 if and only if all rows are equal */
 } cell;
 
 typedef struct rows {
     const int16_t *numbers;
     size_t stride;
     uint32_t width;
-    uint32_t *order; /* a cell's rows stand together */
+    uint32_t *order; /* the rows of a cell are consecutive */
 } rows;
 
 static const int16_t *row_of(const rows *r, uint32_t place)
@@ -26,8 +26,8 @@ static const int16_t *row_of(const rows *r, uint32_t place)
     return r->numbers + r->order[place] * r->stride;
 }
 
-/* The mean, the error and the axis of a cell. Differences to the first row are below 2^17 and rows at most 2^24, so
- * that sums of squares stay below 2^58. */
+/* Computes the mean, the error and the axis of a cell. Differences to the first row are below 2^17 and there are at
+ * most 2^24 rows, so sums of squares stay below 2^58. */
 static void survey(const rows *r, cell *c, double *mean)
 {
     int64_t sums[PALETTE_WIDTH_MOST] = {0}, squares[PALETTE_WIDTH_MOST] = {0};
@@ -51,7 +51,7 @@ static void survey(const rows *r, cell *c, double *mean)
     }
 }
 
-/* Puts the rows that lie nearer to `low` than to `high`, or as near, before the others, and returns their number. */
+/* Moves the rows that are at least as near to `low` as to `high` to the front, and returns their number. */
 static uint32_t part(const rows *r, const cell *c, const double *low, const double *high)
 {
     double normal[PALETTE_WIDTH_MOST], bound = 0;
@@ -75,7 +75,7 @@ static uint32_t part(const rows *r, const cell *c, const double *low, const doub
     return kept;
 }
 
-/* At the mean along the axis, rounded down: the least row is not above it, the largest is. */
+/* Starts a split at the mean along the axis, rounded down: the least row is not above it, the largest is. */
 static void begin_parts(const double *mean, uint32_t axis, double *low, double *high)
 {
     memcpy(low, mean, PALETTE_WIDTH_MOST * sizeof *low);
@@ -93,7 +93,7 @@ static void split(const rows *r, cell *low, cell *high)
     begin_parts(mean, whole.axis, low_mean, high_mean);
     for (int round = 0; round <= ROUNDS; round++) {
         uint32_t kept = part(r, &whole, low_mean, high_mean);
-        if (kept == 0 || kept == whole.count) { /* by rounding, of rows that are nearly equal */
+        if (kept == 0 || kept == whole.count) { /* can happen by rounding, for nearly equal rows */
             begin_parts(mean, whole.axis, low_mean, high_mean);
             kept = part(r, &whole, low_mean, high_mean);
             round = ROUNDS;
@@ -105,8 +105,8 @@ static void split(const rows *r, cell *low, cell *high)
     }
 }
 
-/* Cells whose error is above a bound are split; the bound begins at the whole error and is halved. Of unequal rows of
- * whole numbers the error is at least 1/2. */
+/* Splits cells whose error is above a threshold, which starts at half of the whole error and is halved each round.
+ * Unequal rows of whole numbers have an error of at least 1/2. */
 static uint32_t split_all(const rows *r, uint32_t most, cell *cells)
 {
     uint32_t count = 1;

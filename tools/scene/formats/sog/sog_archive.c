@@ -9,7 +9,7 @@
 
 struct sog_archive {
     zip_t *zip;
-    uint64_t most; /* bytes of a member */
+    uint64_t most; /* largest size of a member in bytes */
 };
 
 sog_archive *sog_archive_open(const uint8_t *bytes, size_t count, char *error, size_t error_bytes)
@@ -50,7 +50,7 @@ uint8_t *sog_archive_read(sog_archive *archive, const char *name, size_t *count,
     uint8_t *bytes = malloc((size_t)about.size + 1);
     zip_file_t *member = bytes == NULL ? NULL : zip_fopen_index(archive->zip, (zip_uint64_t)index, 0);
     const zip_int64_t got = member == NULL ? -1 : zip_fread(member, bytes, about.size);
-    /* a read to the end checks the CRC */
+    /* reading to the end checks the CRC */
     uint8_t more;
     const bool whole = got >= 0 && (uint64_t)got == about.size && zip_fread(member, &more, 1) == 0;
     if (member != NULL) {

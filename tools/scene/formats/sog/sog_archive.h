@@ -7,10 +7,10 @@
 
 typedef struct sog_archive sog_archive;
 
-/* Of bytes that outlive it. NULL with the reason in error[]. */
+/* Opens an archive in memory, which must outlive it. Returns NULL with the reason in error[] on failure. */
 sog_archive *sog_archive_open(const uint8_t *bytes, size_t count, char *error, size_t error_bytes);
-/* A member with a 0 behind it, which `count` leaves out; free() it. It is no larger than the archive and a MiB. NULL
- * with "name: why" in error[]. */
+/* Returns a member, followed by a 0 that `count` excludes; free() it. Members larger than the archive plus 1 MiB are
+ * refused. Returns NULL with "name: why" in error[] on failure. */
 uint8_t *sog_archive_read(sog_archive *archive, const char *name, size_t *count, char *error, size_t error_bytes);
 void sog_archive_close(sog_archive *archive);
 

@@ -5,7 +5,8 @@
 #include "scene/formats/sog/palette.h"
 #include "scene/formats/sog/sog.h"
 
-/* Entries of the palette: as many as Gaussians, or half of them; the more a Gaussian, the larger the file. */
+/* Returns the number of palette entries: as many as Gaussians, or half as many; more entries per Gaussian make the file
+ * larger. */
 static uint32_t entries_of(uint32_t count)
 {
     uint32_t entries = PALETTE_ROWS_MOST;
@@ -15,7 +16,7 @@ static uint32_t entries_of(uint32_t count)
     return entries;
 }
 
-/* Coefficients as the file's axes have them. Distances do not change by a turn, so that means are turned alone. */
+/* Turns coefficients to the file's axes. Rotation preserves distances, so only the means need turning. */
 static void turn(const scene_source *source, palette *made)
 {
     for (uint32_t i = 0; i < made->rows; i++) {
@@ -37,7 +38,7 @@ static int begin_texels(webp_texels *out, uint32_t width, uint32_t height)
     return out->rgba != NULL ? 0 : -1;
 }
 
-/* The codebook of all means, and the picture of their indices. */
+/* Makes the codebook of all means, and the picture of their indices. */
 static int fill_centroids(const palette *made, sog_harmonics *out)
 {
     const size_t count = (size_t)made->rows * made->width;
@@ -54,7 +55,7 @@ static int fill_centroids(const palette *made, sog_harmonics *out)
     codebook_make(values, count, out->codebook);
     free(values);
     for (size_t i = 0; i < count; i++) {
-        /* a row of the picture is SOG_CENTROIDS_A_ROW entries, so that texels follow without a gap */
+        /* a row of the picture holds SOG_CENTROIDS_A_ROW entries, so the texels are contiguous */
         out->centroids.rgba[i / 3 * 4 + i % 3] = codebook_index(out->codebook, made->means[i]);
         out->centroids.rgba[i / 3 * 4 + 3] = 255;
     }
@@ -78,7 +79,7 @@ int sog_harmonics_make(const scene_source *source, const uint32_t *order, uint32
     const scene_file *scene = source->scene;
     palette made;
     *out = (sog_harmonics){0};
-    /* behind degree 0, whose coefficients are colours */
+    /* skips degree 0, whose coefficients are colours */
     if (palette_make(scene->harmonics_q12 + 3, scene->count, scene_file_harmonics_count(scene),
                      3 * harmonics_rest(source->degree), entries_of(scene->count), &made) != 0) {
         return -1;

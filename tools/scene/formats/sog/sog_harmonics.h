@@ -1,4 +1,4 @@
-/* The harmonics of a SOG that is written: a palette of coefficients, and for each Gaussian its entry. */
+/* The harmonics of a SOG to write: a palette of coefficients, and an entry for each Gaussian. */
 #ifndef TRIM3R_TOOLS_SOG_HARMONICS_H
 #define TRIM3R_TOOLS_SOG_HARMONICS_H
 
@@ -8,13 +8,13 @@
 
 typedef struct sog_harmonics {
     uint32_t count;                   /* entries of the palette */
-    webp_texels centroids;            /* of the entries: a texel each coefficient, whose bytes name codebook's values */
-    webp_texels labels;               /* a texel each Gaussian: its entry in 16 bits */
+    webp_texels centroids;            /* palette: a texel per coefficient, whose bytes are indices into the codebook */
+    webp_texels labels;               /* a texel per Gaussian: its palette entry in 16 bits */
     double codebook[CODEBOOK_VALUES]; /* ascending */
 } sog_harmonics;
 
-/* Of a source of degree 1..3 whose Gaussians stand in `order`; labels get this width and height. 0, or -1 without
- * memory; sog_harmonics_free() is due in either case. */
+/* Makes the harmonics of a source of degree 1..3 whose Gaussians are in `order`; labels get this width and height.
+ * Returns 0, or -1 without memory; sog_harmonics_free() is due in either case. */
 int sog_harmonics_make(const scene_source *source, const uint32_t *order, uint32_t width, uint32_t height,
                        sog_harmonics *out);
 void sog_harmonics_free(sog_harmonics *made);

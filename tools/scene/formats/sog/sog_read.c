@@ -12,7 +12,7 @@
 #include "scene/formats/sog/sog_archive.h"
 #include "scene/formats/sog/webp_texels.h"
 
-enum { CENTROIDS_MOST = 65536 }; /* as 16 bits of a label name them */
+enum { CENTROIDS_MOST = 65536 }; /* limit of a label's 16 bits */
 
 typedef struct sog_file {
     uint32_t count, degree;
@@ -37,7 +37,7 @@ static const cJSON *get(const cJSON *object, const char *name)
     return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 
-/* `count` finite numbers of an array. */
+/* Reads `count` finite numbers of an array. */
 static int get_numbers(const reader *r, const cJSON *meta, const char *part, const char *name, int count, double *out)
 {
     const cJSON *array = get(get(meta, part), name), *item;
@@ -55,7 +55,7 @@ static int get_numbers(const reader *r, const cJSON *meta, const char *part, con
     return 0;
 }
 
-/* A whole number of 0..most. */
+/* Reads a whole number of 0..most. */
 static int get_whole(const reader *r, const cJSON *object, const char *name, uint64_t most, uint32_t *out)
 {
     const cJSON *item = get(object, name);
@@ -68,7 +68,7 @@ static int get_whole(const reader *r, const cJSON *object, const char *name, uin
     return 0;
 }
 
-/* The picture that files[index] of a part names, of `least` to `most` texels. */
+/* Reads the picture named by files[index] of a part, of `least` to `most` texels. */
 static int read_picture(const reader *r, const cJSON *meta, const char *part, int index, uint64_t least, uint64_t most,
                         webp_texels *out)
 {
@@ -143,7 +143,7 @@ static int read_meta(const reader *r, const cJSON *meta, uint64_t packed, sog_fi
     if (out->count == 0) {
         return FAIL(r, SOG_META ": the file holds no Gaussians");
     }
-    const uint64_t most = 2 * (uint64_t)out->count + 4096; /* writers fill up rows and columns */
+    const uint64_t most = 2 * (uint64_t)out->count + 4096; /* writers pad rows and columns */
     for (int i = 0; i < SOG_PICTURES; i++) {
         if (read_picture(r, meta, files[i].part, files[i].index, out->count, most, &out->pictures[i]) != 0) {
             return -1;
@@ -178,7 +178,7 @@ static void unpack_harmonics(const sog_file *sog, uint32_t index, scene_row *row
     if (label >= sog->centroid_count) {
         return;
     }
-    /* the picture has the texels of all centroids, and a row is SOG_CENTROIDS_A_ROW of them */
+    /* the picture has all centroids' texels, SOG_CENTROIDS_A_ROW centroids in a row */
     const uint8_t *centroid = sog->centroids.rgba + (size_t)label * rest * 4;
     for (uint32_t i = 0; i < rest; i++) {
         for (int channel = 0; channel < 3; channel++) {

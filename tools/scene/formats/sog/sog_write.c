@@ -1,4 +1,4 @@
-/* Along a Z-order curve, so that neighbours in the pictures are neighbours in the scene. */
+/* Orders Gaussians along a Z-order curve, so that neighbours in the pictures are neighbours in the scene. */
 #include <cjson/cJSON.h>
 #include <inttypes.h>
 #include <math.h>
@@ -20,7 +20,7 @@ static const char *const harmonics_names[] = {"shN_centroids.webp", "shN_labels.
 
 typedef struct sog_file {
     webp_texels pictures[SOG_PICTURES];
-    double low[3], high[3]; /* of the logarithms of positions */
+    double low[3], high[3]; /* bounds of the logarithms of positions */
     double scales[CODEBOOK_VALUES], colours[CODEBOOK_VALUES];
     uint32_t degree; /* 0: no harmonics */
     sog_harmonics harmonics;
@@ -33,7 +33,7 @@ static double logarithm(double position)
     return copysign(log1p(fabs(position)), position);
 }
 
-/* Bounds and codebooks: 0, or -1 without memory. */
+/* Computes bounds and codebooks. Returns 0, or -1 without memory. */
 static int survey(const scene_source *source, sog_file *sog)
 {
     const size_t count = source->scene->count;
@@ -90,7 +90,7 @@ static void put_row(const scene_row *row, const sog_file *sog, uint8_t *texels[S
     put_rotation(texels[SOG_ROTATIONS], row->rotation);
 }
 
-/* As nearly square as sides of multiples of 4 are: 0, or -1 without memory. */
+/* Allocates pictures, as nearly square as sides of multiples of 4 allow. Returns 0, or -1 without memory. */
 static int begin_pictures(sog_file *sog, uint32_t count)
 {
     const uint32_t width = 4 * (uint32_t)ceil(sqrt(count) / 4), height = 4 * ((count + 4 * width - 1) / (4 * width));
@@ -136,7 +136,7 @@ static void add_codebook(cJSON *object, const double values[CODEBOOK_VALUES])
     cJSON_AddItemToObject(object, "codebook", cJSON_CreateDoubleArray(values, CODEBOOK_VALUES));
 }
 
-/* free() it; NULL: out of memory. */
+/* Returns meta.json; free() it. NULL: out of memory. */
 static char *make_meta(const sog_file *sog, uint32_t count)
 {
     cJSON *root = cJSON_CreateObject(), *item = cJSON_AddObjectToObject(root, "asset");
@@ -166,7 +166,7 @@ static char *make_meta(const sog_file *sog, uint32_t count)
     return text;
 }
 
-/* Stored, not deflated: pictures are packed already. `bytes` is the archive's from now on. 0, or -1. */
+/* Adds a member, stored, since pictures are compressed already. The archive takes `bytes`. Returns 0, or -1. */
 static int add_member(zip_t *zip, const char *name, uint8_t *bytes, size_t count)
 {
     zip_source_t *source = zip_source_buffer(zip, bytes, count, 1);
@@ -179,7 +179,7 @@ static int add_member(zip_t *zip, const char *name, uint8_t *bytes, size_t count
         zip_source_free(source);
         return -1;
     }
-    /* one stamp for all: the same scene gives the same bytes */
+    /* a fixed time stamp: the same scene gives the same bytes */
     return zip_set_file_compression(zip, (zip_uint64_t)index, ZIP_CM_STORE, 0) == 0 &&
                    zip_file_set_dostime(zip, (zip_uint64_t)index, 0, 33, 0) == 0
                ? 0

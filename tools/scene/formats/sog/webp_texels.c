@@ -43,7 +43,7 @@ int webp_texels_read(const uint8_t *bytes, size_t count, uint64_t most, webp_tex
     return 0;
 }
 
-/* The bytes under an alpha of 0 are kept, too. */
+/* Encodes exactly, including the bytes of texels with an alpha of 0. */
 static int encode(const webp_texels *texels, WebPMemoryWriter *writer)
 {
     enum { LEVEL = 6 };

@@ -33,7 +33,7 @@ static double position_of(const uint8_t *bytes, uint32_t fraction_bits)
     return ldexp((double)((int32_t)(low << 8) >> 8), -(int)fraction_bits);
 }
 
-/* x y z in bytes; w is what is left. */
+/* Reads x y z from bytes; computes w. */
 static void read_three(const uint8_t *bytes, double rotation[4])
 {
     double left = 1;
@@ -44,8 +44,8 @@ static void read_three(const uint8_t *bytes, double rotation[4])
     rotation[0] = sqrt(fmax(left, 0));
 }
 
-/* The index of the largest of x y z w in the highest two bits, then sign and nine bits of each of the others, the last
- * one lowest. */
+/* Reads the index of the largest of x y z w from the highest two bits, then sign and nine bits of each of the others,
+ * the last one lowest. */
 static void read_smallest(const uint8_t *bytes, double rotation[4])
 {
     uint32_t word = t3r_load_le32(bytes);
@@ -100,7 +100,7 @@ static int make_scene(spz_file *file, scene_file *out, char *error, size_t error
 
 /* ---- containers -------------------------------------------------------------------------------------------------- */
 
-/* The fields that both headers have; `packed` bytes justify the Gaussians. */
+/* Reads the fields that both headers have; the number of Gaussians is limited by `packed` bytes. */
 static int read_header(const uint8_t *bytes, uint64_t packed, spz_layout *out, char *error, size_t error_bytes)
 {
     *out = (spz_layout){.version = t3r_load_le32(bytes + SPZ_VERSION_AT),
@@ -129,7 +129,7 @@ static size_t whole_bytes(const spz_layout *layout)
     return bytes;
 }
 
-/* Unpacks the streams one behind the other. */
+/* Decompresses the streams one after the other. */
 static int unpack_streams(const uint8_t *bytes, size_t count, spz_file *file, uint8_t *whole, char *error,
                           size_t error_bytes)
 {
@@ -186,7 +186,7 @@ int spz_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, 
     return result;
 }
 
-/* Exactly `size` further bytes: 0, or -1. */
+/* Decompresses exactly `size` more bytes. Returns 0, or -1. */
 static int inflate_bytes(z_stream *stream, uint8_t *out, size_t size)
 {
     stream->next_out = out;

@@ -11,9 +11,9 @@
 #include "scene/formats/spz/spz.h"
 
 enum {
-    FRACTION_BITS_MOST = 23, /* 24 bits hold a unit then */
-    PACKING_LEVEL = 9,       /* of Zstandard: hardly any larger than the best, and fast */
-    STEPS_OF_DEGREE_1 = 8,   /* of 1/128: the reference writer keeps 5 bits of degree 1 ... */
+    FRACTION_BITS_MOST = 23, /* 24 bits then still hold one unit */
+    PACKING_LEVEL = 9,       /* Zstandard's level: close to the smallest result, and fast */
+    STEPS_OF_DEGREE_1 = 8,   /* in 1/128: the reference writer keeps 5 bits of degree 1 ... */
     STEPS_BEYOND = 16        /* ... and 4 of the others */
 };
 
@@ -22,7 +22,7 @@ typedef struct packed_stream {
     size_t count;
 } packed_stream;
 
-/* As many fraction bits as the farthest coordinate leaves of 23; -1: it has no place in them. */
+/* Returns as many of 23 fraction bits as the farthest coordinate allows; -1: it does not fit at all. */
 static int choose_fraction(const scene_source *source)
 {
     double farthest = 0;
@@ -46,7 +46,7 @@ static void put_position(uint8_t *bytes, double position, uint32_t fraction_bits
     bytes[2] = (uint8_t)(steps >> 16);
 }
 
-/* The inverse of what spz_read.c says. */
+/* Writes a rotation as spz_read.c reads it. */
 static void put_rotation(uint8_t *bytes, const double rotation[4])
 {
     const double xyzw[4] = {rotation[1], rotation[2], rotation[3], rotation[0]};
@@ -65,7 +65,7 @@ static void put_rotation(uint8_t *bytes, const double rotation[4])
     t3r_store_le32(bytes, word);
 }
 
-/* 128 + 128 x the coefficient, a multiple of `step` steps of 1/128. */
+/* Returns 128 + 128 x the coefficient, rounded to a multiple of `step` steps of 1/128. */
 static uint8_t harmonic_byte(double value, int step)
 {
     return byte_of(nearbyint(value * 128 / step) * step + 128);
@@ -103,7 +103,7 @@ static void put_row(const scene_row *row, const spz_layout *layout, int stream, 
     }
 }
 
-/* One pass over the scene fills all streams, which are packed then: 0, or -1 without memory. */
+/* Fills all streams in one pass over the scene, then compresses them. Returns 0, or -1 without memory. */
 static int pack_streams(const scene_source *source, const spz_layout *layout, int stream_count, packed_stream *out)
 {
     uint8_t *bytes[SPZ_STREAMS] = {NULL};
