@@ -30,7 +30,7 @@
  * The largest value stored is db2's first D, 4^2 x 2040 = 32,640. Roundings move it by less than 8: along a row d
  * is off by at most 1.75 (three roundings of a half and 0.5 of d1's), four such weights and 1 more down the column.
  * Everything else stays below 24,000 and is off by less than 100 after five levels. Sums inside one expression
- * may pass 16 bits (o - 2 e); they wrap and the result is right (tests/unit/test_wavelet.c recomputes the table
+ * may pass 16 bits (o - 2 e); they wrap and the result is right (tests/unit/wavelet/test_wavelet.c recomputes the table
  * and drives every kind with the images that attain it). */
 #ifndef T3R_WAVELET_LEVEL_H
 #define T3R_WAVELET_LEVEL_H

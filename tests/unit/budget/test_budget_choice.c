@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The budget that a loss allows, from made-up evidence: as the formula in doubles, within its bounds at all extremes.
+ */
+#include "unit/unit.h"
+
+#include "loss/budget_choice.h"
+
+static const t3r_budget_evidence plain = {
+    .points = 100000,
+    .trial = 1000,
+    .error_q8 = {300 * 256, 200 * 256}, /* falls by 100 from 1000 to 2000: floor 100, slope 200,000 */
+    .disagreement_q8 = 500 * 256,
+};
+
+/* slope / ((loss + 1/4) / 17 yardstick), rounded up */
+static void as_in_double(void **state)
+{
+    (void)state;
+    assert_int_equal(t3r_predict_budget(&plain, 100000, 128), (uint32_t)ceil(200000 / (0.75 / 17 * 500)));
+    uint64_t seed = 5;
+    for (int turn = 0; turn < 20000; turn++) {
+        t3r_budget_evidence e = {.points = (uint32_t)unit_between(&seed, 1000, 1 << 28)};
+        e.trial = e.points / 100;
+        int64_t range = unit_random(&seed) % 4 == 0 ? 4 * 256 : 1 << 24; /* hardly any error, often enough */
+        e.error_q8[1] = (uint32_t)unit_between(&seed, 0, range);
+        e.error_q8[0] = (uint32_t)unit_between(&seed, e.error_q8[1], range);
+        e.disagreement_q8 = unit_random(&seed) % 4 == 0 ? 0 : (uint32_t)unit_between(&seed, 1, 1 << 24);
+        uint32_t loss_q8 = (uint32_t)unit_between(&seed, 1, T3R_MAX_LOSS_Q8);
+        double fall = e.error_q8[0] - (double)e.error_q8[1], ground = fmax(0, e.error_q8[1] - fall);
+        double yardstick = fmax(e.disagreement_q8 != 0 ? e.disagreement_q8 : ground, 2 * 256);
+        double wanted = fall * 2 * e.trial / ((loss_q8 / 256.0 + 0.25) / 17 * yardstick);
+        if (e.error_q8[1] < 2 * 256) {
+            wanted = fmin(wanted, fall * 2 * e.trial / (2 * 256 - ground));
+        }
+        wanted = fmin(fmax(wanted, e.points / 400), e.points); /* whole points */
+        double got = t3r_predict_budget(&e, e.points, loss_q8);
+        assert_true(got >= wanted * (1 - 1e-12) && got < wanted * (1 + 1e-12) + 1);
+    }
+}
+
+static void more_loss_fewer_gaussians(void **state)
+{
+    (void)state;
+    uint32_t before = UINT32_MAX;
+    for (uint32_t loss_q8 = 1; loss_q8 <= T3R_MAX_LOSS_Q8; loss_q8++) {
+        uint32_t now = t3r_predict_budget(&plain, 100000, loss_q8);
+        assert_true(now <= before && now >= 250);
+        before = now;
+    }
+}
+
+static void extremes(void **state)
+{
+    (void)state;
+    const uint32_t worst = 1 << 24, most_points = 1u << 28;
+    t3r_budget_evidence e = {.points = most_points, .trial = most_points / 100, .error_q8 = {worst, 0}};
+    assert_int_equal(t3r_predict_budget(&e, T3R_MAX_GAUSSIANS, 1), T3R_MAX_GAUSSIANS);
+    e.error_q8[0] = 0; /* gets worse: nothing is gained by more */
+    e.error_q8[1] = worst;
+    assert_int_equal(t3r_predict_budget(&e, T3R_MAX_GAUSSIANS, 1), most_points / 400);
+    assert_int_equal(t3r_predict_budget(&e, 7, 1), 7);
+    /* Just below 2 levels^2 nobody sees the second trial's error, and more than that trial is not needed; a 256th more
+     * is seen, and has to come down to the yardstick's share. */
+    e = (t3r_budget_evidence){.points = 1000, .trial = 10, .error_q8 = {700, 511}, .disagreement_q8 = 1024};
+    assert_int_equal(t3r_predict_budget(&e, 1000, 1), 20);
+    e.error_q8[0]++;
+    e.error_q8[1]++;
+    assert_int_equal(t3r_predict_budget(&e, 1000, 1), 248);
+    e = (t3r_budget_evidence){.points = 2, .trial = 1};
+    assert_int_equal(t3r_predict_budget(&e, 2, T3R_MAX_LOSS_Q8), 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(as_in_double),
+        cmocka_unit_test(more_loss_fewer_gaussians),
+        cmocka_unit_test(extremes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* How many passes pay: as the formula in doubles, within its bounds at all extremes, fewer for more Gaussians and for
+ * views that disagree more. Whole builds are in test_refine.c. */
+#include "unit/unit.h"
+
+#include "refine/fitted_passes.h"
+
+/* sqrt(512 / (share x levels^2)), rounded; a share above a quarter counts as one */
+static double wanted(uint32_t points, uint32_t gaussians, uint32_t disagreement_q8)
+{
+    return sqrt(512.0 * points / fmin(gaussians, ceil(points / 4.0)) / (disagreement_q8 / 256.0));
+}
+
+static void as_in_double(void **state)
+{
+    (void)state;
+    assert_int_equal(t3r_predict_passes(100000, 100000, 512 * 256, 16), 2);
+    assert_int_equal(t3r_predict_passes(100000, 25000, 512 * 256, 16), 2);
+    assert_int_equal(t3r_predict_passes(100000, 20000, 160 * 256, 16), 4);
+    uint64_t seed = 3;
+    for (int turn = 0; turn < 20000; turn++) {
+        const uint32_t points = (uint32_t)unit_between(&seed, 1, 1 << 28);
+        const uint32_t gaussians = (uint32_t)unit_between(&seed, 1 + points / 64, points);
+        const uint32_t disagreement_q8 = (uint32_t)unit_between(&seed, 1, 1 << (8 + turn % 16));
+        const double exact = wanted(points, gaussians, disagreement_q8);
+        const uint32_t got = t3r_predict_passes(points, gaussians, disagreement_q8, T3R_MAX_REFINE);
+        assert_true(got >= fmin(fmax(exact - 0.5001, 1), T3R_MAX_REFINE));
+        assert_true(got <= fmin(fmax(exact + 0.5001, 1), T3R_MAX_REFINE));
+    }
+}
+
+static void fewer_where_less_is_shared(void **state)
+{
+    (void)state;
+    uint32_t by_share = T3R_MAX_REFINE, by_views = T3R_MAX_REFINE;
+    for (uint32_t n = 1; n <= 1000; n++) {
+        const uint32_t share = t3r_predict_passes(1000, n, 100 * 256, T3R_MAX_REFINE);
+        const uint32_t views = t3r_predict_passes(1000, 100, n * 256, T3R_MAX_REFINE);
+        assert_true(share <= by_share && views <= by_views);
+        by_share = share;
+        by_views = views;
+    }
+    assert_int_equal(by_share, 5);
+    assert_int_equal(by_views, 2);
+}
+
+static void extremes(void **state)
+{
+    (void)state;
+    const uint32_t most_points = 1u << 28, worst = 1u << 24;
+    assert_int_equal(t3r_predict_passes(most_points, 1, 0, 16), 16);
+    assert_int_equal(t3r_predict_passes(most_points, most_points, worst, 16), 1);
+    assert_int_equal(t3r_predict_passes(1, 1, 0, 1), 1);
+    assert_int_equal(t3r_predict_passes(0, 0, 100, 16), 1); /* a restored arena may be without points */
+    assert_int_equal(t3r_predict_passes(0, 5, 100, 16), 1);
+    assert_int_equal(t3r_predict_passes(1, 1, UINT32_MAX, 16), 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(as_in_double),
+        cmocka_unit_test(fewer_where_less_is_shared),
+        cmocka_unit_test(extremes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

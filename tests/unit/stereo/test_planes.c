@@ -1,0 +1,303 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Planes where stereo matched nothing: found among noise and strays, continued beyond what was matched, bounded, the
+ * same on views of any side; and outlines that matched outlines. Whole builds are in test_stereo_views.c. */
+#include "unit/unit.h"
+
+#include "stereo/planes/plane_fill.h"
+#include "stereo/planes/plane_outline.h"
+#include "stereo/stereo.h"
+#include "stereo/stereo_fill.h"
+
+enum { W = 96, H = 64, PIXELS = W * H };
+
+/* A view and its planes; depths as some surface has them. */
+typedef struct shot {
+    t3r_view view;
+    double truth[PIXELS];
+    uint16_t depth[PIXELS];
+    uint8_t confidence[PIXELS], colour[3][PIXELS];
+} shot;
+
+static _Alignas(64) uint8_t work[T3R_PLANE_FILL_BYTES(W, H)];
+
+/* A floor, and behind it a wall that turns away, both matched but where x is in from..end - 1. */
+static shot *shoot(uint32_t from, uint32_t end)
+{
+    shot *s = unit_array(1, sizeof *s);
+    s->view = (t3r_view){.width = W,
+                         .height = H,
+                         .colour = {s->colour[0], s->colour[1], s->colour[2]},
+                         .depth = s->depth,
+                         .match_confidence = s->confidence};
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        const double x = i % W - W / 2.0, y = i / W - H / 2.0, wall = (1 + 0.004 * x) / 5000, floor = y / 60000;
+        s->truth[i] = 1 / fmax(wall, floor);
+        s->depth[i] = (uint16_t)lround(s->truth[i]);
+        s->confidence[i] = 200;
+        for (int c = 0; c < 3; c++) {
+            s->colour[c][i] = floor > wall ? 150 : 100;
+        }
+        if (i % W >= from && i % W < end) {
+            s->depth[i] = 0;
+            s->confidence[i] = T3R_STEREO_NONE;
+        }
+    }
+    return s;
+}
+
+/* Share of the filled pixels that are off by more than 2 %. */
+static double off(const shot *s)
+{
+    uint32_t filled = 0, wrong = 0;
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        filled += s->confidence[i] == T3R_STEREO_FILLED;
+        wrong += s->confidence[i] == T3R_STEREO_FILLED && fabs(s->depth[i] / s->truth[i] - 1) > 0.02;
+        assert_int_not_equal(s->depth[i], 0);
+        assert_int_not_equal(s->confidence[i], T3R_STEREO_NONE);
+    }
+    assert_true(filled > 0);
+    print_message("%.2f %% of %u off\n", 100.0 * wrong / filled, filled);
+    return (double)wrong / filled;
+}
+
+static void found(void **state)
+{
+    (void)state;
+    shot *s = shoot(40, 60);
+    t3r_planes planes;
+    t3r_search_planes(&s->view, work, &planes);
+    assert_in_range(planes.count, 2, T3R_PLANES_MOST);
+    uint64_t seed = 5;
+    for (uint32_t i = 0; i < PIXELS; i++) { /* noise of 1 %; one patch in ten anywhere */
+        s->depth[i] = (uint16_t)(s->depth[i] + s->depth[i] * unit_between(&seed, -10, 10) / 1000);
+        if (s->depth[i] != 0 && (i % W / 6 + i / W / 6 * 7) % 10 == 0) {
+            s->depth[i] = (uint16_t)unit_between(&seed, 1000, 60000);
+        }
+    }
+    t3r_plane_fill(&s->view, work);
+    assert_true(off(s) < 0.05);
+    free(s);
+}
+
+/* To the picture's end, where no other side holds a surface; what was matched stays. */
+static void continued(void **state)
+{
+    (void)state;
+    shot *s = shoot(50, W), *before = shoot(50, W);
+    t3r_plane_fill(&s->view, work);
+    assert_true(off(s) < 0.01);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        assert_true(before->depth[i] == 0 || before->depth[i] == s->depth[i]);
+    }
+    shot *plain = shoot(50, W);
+    uint8_t *room = aligned_alloc(64, T3R_STEREO_FILL_BYTES(W, H));
+    t3r_stereo_fill(&plain->view, room);
+    assert_true(off(plain) > 0.1);
+    free(room);
+    free(plain);
+    free(before);
+    free(s);
+}
+
+/* Strays beyond the floor, nearer in the picture than all else: the floor bounds what they fill. */
+static void bounded(void **state)
+{
+    (void)state;
+    shot *s = shoot(50, W);
+    for (uint32_t y = H - 12; y < H; y++) {
+        for (uint32_t x = W - 6; x < W - 2; x++) {
+            s->depth[y * W + x] = 60000;
+            s->confidence[y * W + x] = 80;
+        }
+    }
+    t3r_plane_fill(&s->view, work);
+    assert_true(off(s) < 0.01);
+    free(s);
+}
+
+/* As many planes as there is room for, of twice as many strips; and none where nothing is matched. */
+static void counted(void **state)
+{
+    (void)state;
+    shot *s = shoot(0, W);
+    t3r_planes planes;
+    t3r_search_planes(&s->view, work, &planes);
+    assert_int_equal(planes.count, 0);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        s->depth[i] = (uint16_t)lround(1000 * pow(1.2, i % W * 16 / W));
+        s->confidence[i] = 200;
+    }
+    t3r_search_planes(&s->view, work, &planes);
+    assert_int_equal(planes.count, T3R_PLANES_MOST);
+    free(s);
+}
+
+/* So few samples of a patch are as it says at once: everything is filled at its distance. */
+static void of_a_patch(void **state)
+{
+    (void)state;
+    enum { WIDTH = 33, HEIGHT = 200, COUNT = WIDTH * HEIGHT, DEPTH = 1000 };
+    uint16_t *depth = unit_array(COUNT, 2);
+    uint8_t *confidence = unit_array(COUNT, 1), *grey = unit_array(COUNT, 1);
+    memset(depth, 0, COUNT * sizeof *depth);
+    memset(confidence, T3R_STEREO_NONE, COUNT);
+    memset(grey, 100, COUNT);
+    for (uint32_t y = 65; y < 72; y++) {
+        for (uint32_t x = 13; x < 20; x++) {
+            depth[y * WIDTH + x] = DEPTH;
+            confidence[y * WIDTH + x] = 200;
+        }
+    }
+    const t3r_view view = {
+        .width = WIDTH, .height = HEIGHT, .colour = {grey, grey, grey}, .depth = depth, .match_confidence = confidence};
+    uint8_t *room = aligned_alloc(64, T3R_PLANE_FILL_BYTES(WIDTH, HEIGHT));
+    t3r_plane_fill(&view, room);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        assert_int_equal(depth[i], DEPTH);
+    }
+    free(room);
+    free(depth);
+    free(confidence);
+    free(grey);
+}
+
+/* Stripes so unlike that a way across half a hundred of them is longer than any that counts. */
+static void out_of_reach(void **state)
+{
+    (void)state;
+    enum { MATCHED = 30, REACH = 51 };
+    shot *s = shoot(MATCHED, W);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        for (int c = 0; c < 3; c++) {
+            s->colour[c][i] = i % 2 == 0 ? 1 : 255; /* a step costs 5 + 5 x 254 */
+        }
+    }
+    t3r_plane_fill(&s->view, work);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        const bool reached = i % W < MATCHED + REACH;
+        assert_int_equal(s->depth[i] != 0, reached);
+        assert_int_equal(s->confidence[i] != T3R_STEREO_NONE, reached);
+    }
+    free(s);
+}
+
+/* Black pixels show nothing; what is beyond all steps is a hole; without planes nothing is done. */
+static void left_alone(void **state)
+{
+    (void)state;
+    shot *s = shoot(50, W);
+    for (int c = 0; c < 3; c++) {
+        memset(s->colour[c] + PIXELS - W, 0, W);
+    }
+    s->depth[60] = UINT16_MAX;
+    s->confidence[60] = T3R_STEREO_FILLED;
+    t3r_plane_fill(&s->view, work);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        assert_int_equal(s->depth[i] == 0, i >= PIXELS - W + 50);
+        assert_int_equal(s->confidence[i] == T3R_STEREO_NONE, i >= PIXELS - W + 50);
+    }
+    assert_int_not_equal(s->depth[60], UINT16_MAX);
+    free(s);
+    s = shoot(0, W);
+    s->depth[9] = 500;
+    s->confidence[9] = 90;
+    t3r_plane_fill(&s->view, work);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        assert_int_equal(s->depth[i], i == 9 ? 500 : 0);
+    }
+    free(s);
+}
+
+/* Any depths on views of any side: every depth within its range, the same again. */
+static void anything(void **state)
+{
+    (void)state;
+    static const uint32_t sides[][2] = {{32, 32}, {33, 200}, {500, 40}, {64, 65}};
+    uint64_t seed = 8;
+    for (uint32_t turn = 0; turn < 40; turn++) {
+        const uint32_t width = sides[turn % 4][0], height = sides[turn % 4][1];
+        const size_t pixels = (size_t)width * height;
+        uint16_t *depth[2] = {unit_array(pixels, 2), unit_array(pixels, 2)};
+        uint8_t *confidence[2] = {unit_array(pixels, 1), unit_array(pixels, 1)}, *colour = unit_array(pixels, 1);
+        const int64_t spread = INT64_C(1) << (turn % 17);
+        for (size_t i = 0; i < pixels; i++) {
+            const bool hole = (i % width / 8 + i / width / 8 + turn) % 3 == 0 && turn % 5 != 0;
+            depth[0][i] =
+                hole ? 0 : (uint16_t)unit_between(&seed, turn < 20 ? 1 : 65536 - spread, turn < 20 ? spread : 65535);
+            confidence[0][i] = hole ? T3R_STEREO_NONE : (uint8_t)unit_between(&seed, 1, 255);
+            depth[0][i] = depth[0][i] == 0 && !hole ? 1 : depth[0][i];
+            colour[i] = (uint8_t)unit_random(&seed);
+        }
+        memcpy(depth[1], depth[0], pixels * 2);
+        memcpy(confidence[1], confidence[0], pixels);
+        uint8_t *room = aligned_alloc(64, T3R_PLANE_FILL_BYTES(width, height));
+        for (int k = 0; k < 2; k++) {
+            memset(room, 85 * k, T3R_PLANE_FILL_BYTES(width, height));
+            const t3r_view view = {.width = width,
+                                   .height = height,
+                                   .colour = {colour, colour, colour},
+                                   .depth = depth[k],
+                                   .match_confidence = confidence[k]};
+            t3r_plane_fill(&view, room);
+            for (size_t i = 0; i < pixels; i++) {
+                assert_int_equal(depth[k][i] == 0, confidence[k][i] == T3R_STEREO_NONE);
+            }
+        }
+        assert_memory_equal(depth[0], depth[1], pixels * 2);
+        assert_memory_equal(confidence[0], confidence[1], pixels);
+        free(room);
+        for (int k = 0; k < 2; k++) {
+            free(depth[k]);
+            free(confidence[k]);
+        }
+        free(colour);
+    }
+}
+
+/* Rows that end at the same distance from both of a pair, at another, and nowhere near. */
+static void outlines(void **state)
+{
+    (void)state;
+    enum { SIDE = 40, COUNT = 16, RIGHT = SIDE + COUNT - 1 };
+    uint8_t left[SIDE], right[RIGHT], confidence[2][RIGHT];
+    uint16_t disparity[2][RIGHT];
+    for (int moved = 0; moved < 8; moved++) {
+        memset(left, 90, sizeof left);
+        memset(right, 90, sizeof right);
+        memset(left, 0, 10);
+        memset(right, 0,
+               (size_t)(10 + COUNT - 1 - 5 + moved)); /* disparity 5 leads from end to end, moved by as much */
+        memset(confidence, 70, sizeof confidence);
+        for (int i = 0; i < RIGHT; i++) {
+            disparity[0][i] = disparity[1][i] = 5 << T3R_DISPARITY_BITS;
+        }
+        for (int i = 0; i < RIGHT; i++) { /* as agreement leaves them */
+            confidence[0][i] = i < SIDE && left[i] != 0 && right[i + COUNT - 1 - 5] != 0 ? 70 : 0;
+            const int x = i - (COUNT - 1 - 5);
+            confidence[1][i] = x >= 0 && x < SIDE && right[i] != 0 && left[x] != 0 ? 70 : 0;
+        }
+        const t3r_match match = {.width = SIDE,
+                                 .height = 1,
+                                 .disparities = COUNT,
+                                 .luma = {left, right},
+                                 .disparity = {disparity[0], disparity[1]},
+                                 .confidence = {confidence[0], confidence[1]}};
+        t3r_plane_outline(&match);
+        for (int x = 0; x < SIDE; x++) {
+            /* 16 pixels from the farther of the two ends, if both are within 3 */
+            const int shown = x >= 10 + moved, near = moved <= 3 && x - 10 + 1 < 16;
+            assert_int_equal(confidence[0][x] != 0, shown && !near);
+            assert_int_equal(confidence[1][x + COUNT - 1 - 5] != 0, shown && !near);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(found),      cmocka_unit_test(counted),  cmocka_unit_test(continued),
+        cmocka_unit_test(of_a_patch), cmocka_unit_test(bounded),  cmocka_unit_test(out_of_reach),
+        cmocka_unit_test(left_alone), cmocka_unit_test(anything), cmocka_unit_test(outlines),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
