@@ -11,31 +11,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "trim3r.h"
-
-/* One captured instant, ready for t3r_add_view() once pose and intrinsics are known. */
-typedef struct t3r_capture_frame {
-    uint32_t index;         /* order among the colour images of the source, from 0 */
-    uint32_t sequence;      /* the driver's count, with gaps; in recordings the index */
-    int64_t stamp_ns;       /* time of the colour image, in the source's clock */
-    int64_t depth_stamp_ns; /* time of the depth image; stamp_ns where both are one */
-    bool has_pose;          /* camera's pose is known */
-    bool has_intrinsics;    /* camera's intrinsics are known */
-    t3r_frame frame;        /* frame.depth is NULL when the instant has no depth */
-    t3r_camera camera;
-} t3r_capture_frame;
+#include "recording/captured_frame.h"
 
 typedef struct t3r_capture t3r_capture;
 
-enum {
-    T3R_CAPTURE_LOST = -2,   /* the device is gone, stalled or changed its format: t3r_capture_reopen() */
-    T3R_CAPTURE_FAILED = -1, /* this frame failed; the next one may be good */
-    T3R_CAPTURE_END = 0,     /* there are no more frames */
-    T3R_CAPTURE_FRAME = 1,
-    T3R_CAPTURE_NOTHING = 2, /* no frame by the deadline, or a signal came: ask again */
-};
-
-/* Fetches the next frame. Returns one of the values above; t3r_capture_error() has the reason for LOST and FAILED. */
+/* Fetches the next frame. Returns one of the values of captured_frame.h; t3r_capture_error() has the reason for LOST
+ * and FAILED. */
 int t3r_capture_next(t3r_capture *capture, t3r_capture_frame *frame);
 /* Closes the device and opens it again with the same settings; memory of earlier frames becomes invalid. Returns
  * T3R_CAPTURE_FRAME: go on; T3R_CAPTURE_LOST: the device is not there (yet); T3R_CAPTURE_END: this source cannot be

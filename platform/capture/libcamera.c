@@ -10,7 +10,7 @@
 #include "capture_adapter.h"
 #include "capture_module.h"
 #include "host/reason.h"
-#include "recording/pixel_layout.h"
+#include "messages/pixel_layout.h"
 
 #define FAR_AHEAD 0x80000000u /* a sequence "ahead" by more has gone backwards */
 #define NO_BUFFER UINT32_MAX

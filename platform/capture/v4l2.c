@@ -11,9 +11,9 @@
 
 #include "capture_adapter.h"
 #include "host/reason.h"
+#include "messages/pixel_layout.h"
 #include "mjpeg.h"
 #include "recording/frame_pairing.h"
-#include "recording/pixel_layout.h"
 #include "v4l2_node.h"
 
 #define NS_PER_MS INT64_C(1000000)

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "host/reason.h"
-#include "recording/pixel_layout.h"
+#include "messages/pixel_layout.h"
 
 #define MOST_REFUSED 8u       /* so many EIO in a row are a failure */
 #define FAR_AHEAD 0x80000000u /* a sequence "ahead" by more has gone backwards */

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include "sink.h"
+
+#include <stdbool.h>
 #include <stdio_ext.h>
 #include <sys/stat.h>
-
-#include "recording/recording.h"
 
 static int append(void *user, const void *bytes, size_t count)
 {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "chunk_packer.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 
 #include <lz4frame.h>

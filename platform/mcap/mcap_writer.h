@@ -10,9 +10,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "host/sink.h"
 #include "host/text.h"
 #include "mcap.h"
-#include "recording/recording.h"
 
 typedef struct t3r_mcap_writer {
     t3r_sink sink;

@@ -8,8 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "host/sink.h"
 #include "host/text.h"
-#include "recording/recording.h"
 
 /* ---- reading: the first read past the end, or the first malformed field, sets `failed`; later reads give zeros */
 

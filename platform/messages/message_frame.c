@@ -4,7 +4,7 @@
 #include "core/little_endian.h"
 #include "fixed_camera.h"
 #include "fixed_double.h"
-#include "recording/pixel_layout.h"
+#include "messages/pixel_layout.h"
 
 /* ---- images ---- */
 

@@ -8,7 +8,7 @@
 #include "mcap/reader_limits.h"
 #include "messages/cdr.h"
 #include "messages/message_frame.h"
-#include "pixel_layout.h"
+#include "messages/pixel_layout.h"
 
 #define DEFAULT_UNIT_Q40 1099511628 /* 0.001, for recordings without the metadata "trim3r" */
 

@@ -7,7 +7,7 @@
 #ifndef T3R_PLATFORM_FRAME_READER_H
 #define T3R_PLATFORM_FRAME_READER_H
 
-#include "capture/capture.h"
+#include "captured_frame.h"
 #include "messages/ros_messages.h"
 
 /* Where bytes come from: flash, a card, a debugger's host. */

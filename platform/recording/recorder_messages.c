@@ -4,8 +4,8 @@
 
 #include "core/little_endian.h"
 #include "messages/fixed_double.h"
+#include "messages/pixel_layout.h"
 #include "messages/ros_messages.h"
-#include "pixel_layout.h"
 #include "recorder.h"
 
 static void put_camera_info(t3r_recorder *recorder, int64_t stamp_ns, const t3r_recorded_camera *camera)

@@ -6,10 +6,12 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
 
-#include "capture/capture.h"
+#include "captured_frame.h"
+#include "host/sink.h"
 #include "host/text.h"
+#include "mcap/chunk_packer.h"
+#include "messages/fixed_camera.h"
 
 typedef struct t3r_triplet {
     uint32_t context[2];
@@ -168,34 +170,6 @@ t3r_recorded_pose t3r_recording_pose(const t3r_recording *recording, uint32_t st
 
 /* ---- writing: no heap, one pass, CRC-checked -------------------------------------------------------------- */
 
-typedef struct t3r_sink {
-    /* Appends count bytes. Returns 0 when done. */
-    int (*write)(void *user, const void *bytes, size_t count);
-    void *user;
-    /* Reads `count` of the appended bytes, from `offset` on. Returns 0 when done. NULL: they cannot be read back. */
-    int (*read)(void *user, uint64_t offset, void *bytes, size_t count);
-} t3r_sink;
-
-/* Compresses the records of a chunk, which write() passes piece by piece between begin() and end(). Each returns 0 when
- * done; the output of end() stays valid until the next begin(). Implemented in chunk_packer.h. */
-typedef struct t3r_chunk_packer {
-    const char *name; /* as MCAP names it: "zstd", "lz4" */
-    int (*begin)(void *user);
-    int (*write)(void *user, const void *bytes, size_t count);
-    int (*end)(void *user, const uint8_t **bytes, size_t *count);
-    void *user;
-} t3r_chunk_packer;
-
-/* The camera as the file holds it: doubles, straight from the source. */
-typedef struct t3r_recorded_camera {
-    uint32_t width, height;
-    double fx, fy, cx, cy; /* pixels; pixel (0, 0) is the centre of the top-left pixel */
-    t3r_distortion distortion;
-    double coefficients[5];
-    double position[3]; /* world units */
-    double rotation[4]; /* w x y z, camera to world */
-} t3r_recorded_camera;
-
 typedef struct t3r_recorded_frame {
     int64_t stamp_ns;
     t3r_pixel_format format;
@@ -254,8 +228,5 @@ int t3r_recorder_event(t3r_recorder *recorder, int64_t stamp_ns, t3r_recorder_le
 uint64_t t3r_recorder_offset(const t3r_recorder *recorder);
 uint64_t t3r_recorder_end_bytes(const t3r_recorder *recorder);
 int t3r_recorder_end(t3r_recorder *recorder);
-
-/* Returns a sink that appends to a stdio stream, and reads it back if the stream is a file open for both. */
-t3r_sink t3r_file_sink(FILE *file);
 
 #endif

@@ -8,7 +8,7 @@
 
 #include "host/reason.h"
 #include "messages/message_frame.h"
-#include "pixel_layout.h"
+#include "messages/pixel_layout.h"
 
 /* The frame being read, and where reasons go. */
 typedef struct reading {

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "host/reason.h"
-#include "pixel_layout.h"
+#include "messages/pixel_layout.h"
 #include "recording_index.h"
 
 static void remark_encoding(t3r_recording *recording, t3r_stream *stream, const char *what, t3r_text encoding)

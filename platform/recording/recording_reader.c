@@ -13,7 +13,7 @@
 #include "host/grow.h"
 #include "host/reason.h"
 #include "mcap/reader_limits.h"
-#include "pixel_layout.h"
+#include "messages/pixel_layout.h"
 #include "recording_index.h"
 
 #define IDS 65536u                                  /* schema and channel ids have 16 bits */

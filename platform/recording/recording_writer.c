@@ -8,8 +8,8 @@
 #include "host/fixed_text.h"
 #include "mcap/reader_limits.h"
 #include "messages/fixed_camera.h"
+#include "messages/pixel_layout.h"
 #include "messages/ros_messages.h"
-#include "pixel_layout.h"
 #include "recorder.h"
 
 #define MAX_EVENT_BYTES 1024u

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "cli/work/time_left.h"
+#include "cli/text/time_left.h"
 
 #define EXACT 1e-9
 

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "import/poses/viewpoint.h"
+#include "import/viewpoint.h"
 #include "scratch.h"
 
 #define ONE_Q30 (1 << 30)

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "messages/pixel_layout.h"
 #include "recording/frame_reader.h"
-#include "recording/pixel_layout.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -5,7 +5,7 @@
 
 #include "cli/cli.h"
 #include "core/camera.h"
-#include "import/poses/viewpoint.h"
+#include "import/viewpoint.h"
 #include "memory_file.h"
 #include "reconstruction/replay/replay_expectation.h"
 

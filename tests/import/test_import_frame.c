@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "import/folders/frame.h"
 #include "import/folders/posed_folder.h"
+#include "import/frames/frame.h"
 #include "pictures/picture.h"
 #include "scratch.h"
 

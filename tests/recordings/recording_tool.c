@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "recording/pixel_layout.h"
+#include "messages/pixel_layout.h"
 #include "sample.h"
 #include "seeds.h"
 

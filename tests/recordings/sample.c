@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "mcap/chunk_packer.h"
-#include "recording/pixel_layout.h"
+#include "messages/pixel_layout.h"
 
 #define PADDING 5u /* bytes behind each row in memory, not to be recorded */
 

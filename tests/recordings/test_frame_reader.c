@@ -9,8 +9,8 @@
 #include <cmocka.h>
 
 #include "bag.h"
+#include "messages/pixel_layout.h"
 #include "recording/frame_reader.h"
-#include "recording/pixel_layout.h"
 #include "sample.h"
 
 enum { ROOM = 512 }; /* an image of the sample */

@@ -15,7 +15,7 @@
 #include "mcap/chunk_packer.h"
 #include "mcap/mcap_reader.h"
 #include "messages/fixed_double.h"
-#include "recording/pixel_layout.h"
+#include "messages/pixel_layout.h"
 #include "sample.h"
 
 static bag_bytes sample(t3r_pixel_format format, uint32_t storage)

@@ -9,7 +9,7 @@ source=$2
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 files="host/fixed_text host/text mcap/crc32 mcap/mcap_chunk_writer mcap/mcap_records mcap/mcap_writer messages/cdr
-    messages/fixed_camera messages/fixed_double messages/ros_messages messages/ros_schemas recording/pixel_layout
+    messages/fixed_camera messages/fixed_double messages/ros_messages messages/ros_schemas messages/pixel_layout
     recording/recorder_chunk recording/recorder_messages recording/recorder_summary recording/recording_writer"
 for file in $files; do
     "$compiler" -std=gnu11 -O2 -fno-stack-protector -I "$source/platform" -I "$source/runtime" -I "$source/runtime/include" \

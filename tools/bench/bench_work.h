@@ -11,8 +11,8 @@
 #include "cli/options/processor_options.h"
 #include "host/threads.h"
 #include "planning/bench_views.h"
-#include "reconstruction/options/chosen_head.h"
-#include "reconstruction/replay/stage_times.h"
+#include "reconstruction/chosen_head.h"
+#include "reconstruction/stage_times.h"
 
 #define BENCH_SIDE 256u
 #define BENCH_VIEWS 2u

@@ -6,7 +6,7 @@
 #include "cli/cli.h"
 #include "core/hash.h"
 #include "host/threads.h"
-#include "reconstruction/options/chosen_head.h"
+#include "reconstruction/chosen_head.h"
 #include "room/room.h"
 
 enum { SIDE = 64, VIEWS = 2, BUDGET = 400, SEED = 1, PIXELS = SIDE * SIDE };

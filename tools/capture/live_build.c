@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "messages/pixel_layout.h"
 #include "reconstruction/reconstruction_error.h"
-#include "recording/pixel_layout.h"
 
 /* Returns the bytes of all rows without padding. */
 static size_t all_bytes(const t3r_frame *f)

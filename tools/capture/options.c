@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/files/file_options.h"
+#include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "scene/scene_options.h"
 

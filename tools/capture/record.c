@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "capture/capture_camera.h"
-#include "cli/files/file_guard.h"
+#include "cli/options/file_guard.h"
 #include "host/reason.h"
 
 #define MESSAGE_OVERHEAD 1024u /* bound for a message without its data, a camera_info, a pose or a chunk */

@@ -11,7 +11,7 @@
 #include "capture/capture_camera.h"
 #include "cli/cli.h"
 #include "core/hash.h"
-#include "recording/pixel_layout.h"
+#include "messages/pixel_layout.h"
 #include "scene/scene_file.h"
 
 #define MOST_FAILED 100u /* so many unreadable frames in a row: the source is unusable */

@@ -10,8 +10,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "cli/help/style.h"
-#include "cli/work/time_left.h"
+#include "cli/text/style.h"
+#include "cli/text/time_left.h"
 #include "host/text.h"
 
 #define MESSAGE_BYTES 2048

@@ -10,8 +10,8 @@
 #include "cli/files/recorded_frame.h"
 #include "evaluation/nearest_views.h"
 #include "host/text.h"
+#include "import/estimation/recording_poses.h"
 #include "import/folders/planar_recording.h"
-#include "import/poses/recording_poses.h"
 
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 

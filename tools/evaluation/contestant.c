@@ -6,7 +6,7 @@
 
 #include "cli/cli.h"
 #include "evaluation/evaluation.h"
-#include "reconstruction/options/chosen_head.h"
+#include "reconstruction/chosen_head.h"
 
 static evaluation_contestant *add(evaluation_contestants *chosen, const reconstruction_options *settings,
                                   const char *ablation, const char *label)

@@ -5,11 +5,11 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
+#include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/work/process_pool.h"
 #include "evaluation/cases.h"
-#include "reconstruction/options/chosen_head.h"
+#include "reconstruction/chosen_head.h"
 #include "reconstruction/options/option_names.h"
 #include "reconstruction/options/poses_option.h"
 

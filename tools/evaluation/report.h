@@ -5,8 +5,8 @@
 
 #include <cjson/cJSON.h>
 
+#include "cli/files/csv_file.h"
 #include "cli/files/whole_file.h"
-#include "cli/tables/csv_file.h"
 #include "evaluation/evaluation.h"
 #include "evaluation/resume.h"
 #include "evaluation/settings.h"

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/help/style.h"
 #include "cli/tables/csv_read.h"
+#include "cli/text/style.h"
 #include "host/text.h"
 
 typedef enum shown { NEVER, ALWAYS, RECORDING, PLANAR, TOLD } shown; /* TOLD: where there is a text */

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/help/markup.h"
+#include "cli/text/markup.h"
 #include "pictures/png_bytes.h"
 
 struct html_page {

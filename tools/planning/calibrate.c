@@ -8,8 +8,8 @@
 #include "host/threads.h"
 #include "planning/bench_views.h"
 #include "planning/price_fit.h"
-#include "reconstruction/options/chosen_head.h"
-#include "reconstruction/replay/stage_times.h"
+#include "reconstruction/chosen_head.h"
+#include "reconstruction/stage_times.h"
 #include "room/room.h"
 
 /* Configurations in which each kind of work dominates in one and matters little in another. */

@@ -9,7 +9,7 @@
 #include "cli/tables/json_output.h"
 #include "host/cpu.h"
 #include "planning/calibrate.h"
-#include "reconstruction/options/chosen_head.h"
+#include "reconstruction/chosen_head.h"
 #include "reconstruction/reconstruction_error.h"
 
 #define SHORT_ROUNDS 2u /* rounds of a short calibration: about two seconds */

@@ -4,8 +4,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "cli/help/style.h"
 #include "cli/tables/json_output.h"
+#include "cli/text/style.h"
 
 static double milliseconds_of(const t3r_work_counts *work, const t3r_prices *prices, t3r_stage stage)
 {

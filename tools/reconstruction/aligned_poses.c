@@ -8,7 +8,7 @@
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
 #include "geometry/quaternion.h"
-#include "import/poses/poses_output.h"
+#include "import/estimation/poses_output.h"
 
 /* Returns the angle of the rotation from one quaternion to the other. It uses the vector part of their quotient, which,
  * unlike the scalar part, keeps small angles exact. */

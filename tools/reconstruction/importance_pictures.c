@@ -9,7 +9,7 @@
 
 #include "budget/blue_noise.h"
 #include "cli/cli.h"
-#include "cli/tables/word_list.h"
+#include "cli/text/word_list.h"
 #include "pictures/picture.h"
 
 #define PATH_BYTES 4096

@@ -9,8 +9,8 @@
 #include "host/reason.h"
 #include "import/bags/bag_pictures.h"
 #include "messages/message_frame.h"
+#include "messages/pixel_layout.h"
 #include "recording/frame_pairing.h"
-#include "recording/pixel_layout.h"
 #include "ros/throttle.h"
 
 #define POSES_MOST 256u

@@ -4,7 +4,7 @@
 #include <inttypes.h>
 #include <math.h>
 
-#include "cli/help/markup.h"
+#include "cli/text/markup.h"
 
 /* In pixels of the picture. */
 #define LEFT 52

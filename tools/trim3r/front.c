@@ -10,9 +10,9 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "cli/help/edit_distance.h"
-#include "cli/help/man_page.h"
-#include "cli/help/style.h"
+#include "cli/options/man_page.h"
+#include "cli/text/edit_distance.h"
+#include "cli/text/style.h"
 #include "host/text.h"
 #include "trim3r.h"
 #include "trim3r/commands/commands.h"

@@ -6,8 +6,8 @@
 
 #include <cjson/cJSON.h>
 
-#include "cli/help/markup.h"
 #include "cli/tables/json_output.h"
+#include "cli/text/markup.h"
 
 /* Embedded by the build: page/view.html with marks for the others, such as <!--style-->. The module is empty if there
  * was no compiler for it. */

@@ -8,7 +8,7 @@
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
-#include "import/poses/viewpoint.h"
+#include "import/viewpoint.h"
 #include "reconstruction/developed_frame.h"
 
 #define DEGREES 60 /* horizontal angle for a scene without frames */

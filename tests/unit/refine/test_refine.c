@@ -112,7 +112,7 @@ static double context_psnr(t3r_runtime *rt)
     return 10 * log10(255.0 * 255.0 * 2 * sizeof drawn / sum);
 }
 
-static double refined_psnr(uint32_t refinements, uint32_t gaussians)
+static double refined_psnr(uint32_t refine, uint32_t gaussians)
 {
     t3r_config config = settings(refine);
     config.gaussians = config.max_gaussians = gaussians;

@@ -9,8 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cli/files/file_guard.h"
 #include "cli/files/part_files.h"
+#include "cli/options/file_guard.h"
 #include "host/reason.h"
 
 static int fail(const whole_file *file, char *error, size_t error_bytes)

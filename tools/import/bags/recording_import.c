@@ -10,9 +10,9 @@
 #include "cli/tables/json_output.h"
 #include "host/reason.h"
 #include "import/bags/bag_pictures.h"
+#include "import/estimation/poses_output.h"
+#include "import/estimation/recording_poses.h"
 #include "import/folders/posed_recording.h"
-#include "import/poses/poses_output.h"
-#include "import/poses/recording_poses.h"
 #include "messages/ros_messages.h"
 
 #define ERROR_BYTES 1024

@@ -6,7 +6,7 @@
 
 #include "cli/options/recording_options.h"
 #include "import/bags/bag_options.h"
-#include "import/poses/poses.h"
+#include "import/estimation/poses.h"
 
 typedef struct recording_import_request {
     const char *input, *output, *source; /* source: stored in the new recording as its origin */

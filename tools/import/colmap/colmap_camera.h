@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "import/folders/posed_frame.h"
+#include "import/frames/posed_frame.h"
 
 #define COLMAP_PARAMETERS_MOST 16u
 

@@ -3,7 +3,7 @@
 #ifndef TRIM3R_TOOLS_COLMAP_DEPTH_H
 #define TRIM3R_TOOLS_COLMAP_DEPTH_H
 
-#include "import/folders/posed_frame.h"
+#include "import/frames/posed_frame.h"
 
 /* Sets the frame's depth to the map of that picture, if there is one; a geometric map wins over a photometric one. -1:
  * out of memory. */

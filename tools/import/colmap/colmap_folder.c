@@ -9,7 +9,7 @@
 #include "host/reason.h"
 #include "import/colmap/colmap_depth.h"
 #include "import/colmap/colmap_model.h"
-#include "import/folders/picture_folder.h"
+#include "import/frames/picture_folder.h"
 
 #define PATH_BYTES 8192
 #define MODELS_MOST 100u /* numbered folders of models */

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "import/folders/posed_frame.h"
+#include "import/frames/posed_frame.h"
 
 #define COLMAP_NAME_BYTES 4097u /* a picture's path with its terminating zero */
 

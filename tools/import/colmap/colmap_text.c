@@ -9,7 +9,7 @@
 #include "host/reason.h"
 #include "import/colmap/colmap_camera.h"
 #include "import/colmap/colmap_model.h"
-#include "import/folders/line_reader.h"
+#include "import/frames/line_reader.h"
 #include "mcap/reader_limits.h"
 
 #define BLANKS " \t\r"

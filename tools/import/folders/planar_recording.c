@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "import/folders/frame.h"
+#include "import/frames/frame.h"
 
 #define PLANE_STEPS 2000u /* in thousandths of a unit: two units away */
 

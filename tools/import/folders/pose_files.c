@@ -13,9 +13,9 @@
 
 #include "host/file_bytes.h"
 #include "host/reason.h"
-#include "import/depth/align_depth.h"
-#include "import/folders/frame.h"
 #include "import/folders/pose_layout.h"
+#include "import/frames/align_depth.h"
+#include "import/frames/frame.h"
 #include "import/poses/matrix_text.h"
 #include "import/poses/pose_matrix.h"
 #include "mcap/reader_limits.h"

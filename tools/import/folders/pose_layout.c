@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "import/folders/posed_frame.h"
+#include "import/frames/posed_frame.h"
 
 #define PATH_BYTES 1024
 #define NAMES(...) ((const char *const[]){__VA_ARGS__, NULL})

@@ -12,11 +12,11 @@
 #include "host/reason.h"
 #include "import/colmap/colmap_folder.h"
 #include "import/depth/exr_depth.h"
-#include "import/folders/picture_folder.h"
 #include "import/folders/pose_files.h"
 #include "import/folders/record3d.h"
 #include "import/folders/transforms_json.h"
 #include "import/folders/tum_rgbd.h"
+#include "import/frames/picture_folder.h"
 #include "mcap/reader_limits.h"
 
 static bool has_transforms(const char *directory)

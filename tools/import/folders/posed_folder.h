@@ -6,7 +6,7 @@
 
 #include <stddef.h>
 
-#include "import/folders/posed_frame.h"
+#include "import/frames/posed_frame.h"
 
 /* Reads DIR's lists. Returns 0, or -1 with "file: frame: field: what" in error[]. Call posed_folder_close() in either
  * case. */

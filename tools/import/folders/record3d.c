@@ -14,7 +14,7 @@
 #include "host/file_bytes.h"
 #include "host/reason.h"
 #include "import/depth/exr_depth.h"
-#include "import/folders/picture_folder.h"
+#include "import/frames/picture_folder.h"
 #include "import/poses/pose_check.h"
 #include "mcap/reader_limits.h"
 

@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-#include "import/folders/posed_frame.h"
+#include "import/frames/posed_frame.h"
 
 /* Parses the text of a transforms.json without touching any other file; options may be NULL. Call posed_folder_close()
  * in either case. */

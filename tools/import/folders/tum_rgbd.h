@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-#include "import/folders/posed_frame.h"
+#include "import/frames/posed_frame.h"
 
 /* Reads the three lists of a TUM RGB-D folder. */
 int tum_rgbd_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,

@@ -7,7 +7,7 @@
 
 #include "geometry/quaternion.h"
 #include "host/reason.h"
-#include "import/folders/frame.h"
+#include "import/frames/frame.h"
 #include "messages/fixed_camera.h"
 #include "posing/resection.h"
 

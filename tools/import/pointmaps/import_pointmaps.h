@@ -3,7 +3,7 @@
 #ifndef TRIM3R_TOOLS_IMPORT_POINTMAPS_H
 #define TRIM3R_TOOLS_IMPORT_POINTMAPS_H
 
-#include "import/folders/posed_frame.h"
+#include "import/frames/posed_frame.h"
 #include "import/pointmaps/pointmaps.h"
 #include "pictures/picture.h"
 

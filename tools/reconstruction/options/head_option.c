@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "cli/files/file_options.h"
-#include "reconstruction/options/chosen_head.h"
+#include "cli/options/file_options.h"
+#include "reconstruction/chosen_head.h"
 #include "reconstruction/options/option_names.h"
 
 enum { KEY_HEAD = 0x1a0 };

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "reconstruction/options/chosen_head.h"
+#include "reconstruction/chosen_head.h"
 
 const char *option_head(struct argp_state *state, const char *option, const char *text)
 {

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
+#include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "reconstruction/options/head_option.h"
 #include "reconstruction/options/option_names.h"

@@ -11,8 +11,8 @@
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
-#include "cli/help/style.h"
 #include "cli/tables/json_output.h"
+#include "cli/text/style.h"
 #include "core/hash.h"
 #include "pictures/metrics.h"
 #include "pictures/picture.h"

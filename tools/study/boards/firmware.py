@@ -18,7 +18,7 @@ STAGES = ("image", "depth", "pointmap", "wavelet", "superclusters", "budget", "h
 # What the firmware takes of the platform: the reader of recordings without a heap.
 READER = ("host/fixed_text", "host/text", "mcap/mcap_records", "messages/cdr", "messages/fixed_camera", "messages/fixed_double",
           "messages/message_frame", "messages/ros_messages", "messages/ros_schemas", "recording/frame_reader",
-          "recording/pixel_layout")
+          "messages/pixel_layout")
 INCLUDES = (RUNTIME / "include", RUNTIME, ROOT / "platform", BAREMETAL, ROOT / "quant" / "heads")
 INCLUDE = tuple(word for folder in INCLUDES for word in ("-I", folder))
 FLAGS = ("-std=c11", "-ffunction-sections", "-fdata-sections", "-Wall", "-Wextra", "-Werror",

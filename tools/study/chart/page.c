@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "cli/help/markup.h"
+#include "cli/text/markup.h"
 #include "study/chart/svg.h"
 
 /* What is embedded by the build: page.html with the marks <!--style-->, <!--svg-->, <!--data--> and <!--script-->. */

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/help/markup.h"
+#include "cli/text/markup.h"
 
 /* Pixels. */
 #define WIDTH 1040.0

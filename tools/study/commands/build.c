@@ -4,7 +4,7 @@
 
 #include <argp.h>
 
-#include "cli/files/file_options.h"
+#include "cli/options/file_options.h"
 #include "study/rivals/options.h"
 #include "trim3r/commands/build.h"
 

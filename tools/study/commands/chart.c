@@ -8,10 +8,10 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
 #include "cli/files/whole_file.h"
+#include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
-#include "cli/tables/word_list.h"
+#include "cli/text/word_list.h"
 #include "study/chart/names.h"
 #include "study/chart/page.h"
 #include "study/chart/pictures.h"

@@ -5,10 +5,10 @@
 #include <argp.h>
 
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
-#include "cli/tables/word_list.h"
+#include "cli/options/file_options.h"
+#include "cli/text/word_list.h"
 #include "evaluation/run.h"
-#include "reconstruction/options/chosen_head.h"
+#include "reconstruction/chosen_head.h"
 #include "study/ablation/ablation.h"
 #include "study/rivals/options.h"
 

@@ -11,8 +11,8 @@
 
 #include "calibrate.h"
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
 #include "cli/files/whole_file.h"
+#include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
 #include "float_head.h"

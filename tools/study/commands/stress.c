@@ -9,9 +9,9 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
+#include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
-#include "cli/tables/word_list.h"
+#include "cli/text/word_list.h"
 #include "host/text.h"
 #include "room/room.h"
 #include "study/rivals/options.h"

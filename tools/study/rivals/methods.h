@@ -4,7 +4,7 @@
 #ifndef TRIM3R_TOOLS_RIVALS_METHODS_H
 #define TRIM3R_TOOLS_RIVALS_METHODS_H
 
-#include "cli/tables/word_list.h"
+#include "cli/text/word_list.h"
 #include "reconstruction/method.h"
 #include "study/rivals/kinds.h"
 

@@ -3,8 +3,8 @@
 #ifndef TRIM3R_TOOLS_STRESS_REPORT_H
 #define TRIM3R_TOOLS_STRESS_REPORT_H
 
+#include "cli/files/csv_file.h"
 #include "cli/files/whole_file.h"
-#include "cli/tables/csv_file.h"
 #include "study/stress/measure.h"
 #include "study/stress/page.h"
 

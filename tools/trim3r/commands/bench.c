@@ -15,15 +15,15 @@
 #include "bench/cpu_flags.h"
 #include "bench/spread.h"
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
+#include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/options/processor_options.h"
 #include "cli/tables/json_output.h"
-#include "cli/tables/word_list.h"
+#include "cli/text/word_list.h"
 #include "host/cpu.h"
 #include "planning/calibrate.h"
 #include "planning/machine.h"
-#include "reconstruction/options/chosen_head.h"
+#include "reconstruction/chosen_head.h"
 #include "reconstruction/options/option_names.h"
 
 #define MAX_RUNS BENCH_TURNS_MOST

@@ -7,14 +7,14 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
 #include "cli/files/recorded_frame.h"
-#include "cli/help/style.h"
+#include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
+#include "cli/text/style.h"
 #include "cli/work/work_times.h"
-#include "import/poses/poses_output.h"
-#include "import/poses/recording_poses.h"
+#include "import/estimation/poses_output.h"
+#include "import/estimation/recording_poses.h"
 #include "reconstruction/aligned_poses.h"
 #include "reconstruction/colmap_start.h"
 #include "reconstruction/options/poses_option.h"

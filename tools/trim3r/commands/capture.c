@@ -14,8 +14,8 @@
 #include "capture/run.h"
 #include "capture/source_name.h"
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
 #include "cli/files/part_files.h"
+#include "cli/options/file_options.h"
 
 #define ERROR_BYTES 512
 #define MOST_MOTIONS 3000u           /* frames that an offset is estimated from */

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
 #include "cli/files/whole_file.h"
+#include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 
 /* Of completion.bash and its like (tools/CMakeLists.txt). */

@@ -15,7 +15,7 @@
 #include "bench/self_check.h"
 #include "capture/capture.h"
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
+#include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/options/processor_options.h"
 #include "cli/tables/json_output.h"

@@ -3,7 +3,7 @@
 #include "trim3r/commands/commands.h"
 
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
+#include "cli/options/file_options.h"
 #include "evaluation/run.h"
 
 int command_eval(int argc, char **argv)

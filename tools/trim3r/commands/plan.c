@@ -9,8 +9,8 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
 #include "cli/files/whole_file.h"
+#include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/options/processor_options.h"
 #include "cli/tables/json_output.h"

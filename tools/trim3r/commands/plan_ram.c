@@ -6,7 +6,7 @@
 
 #include "cli/cli.h"
 #include "cli/tables/json_output.h"
-#include "reconstruction/options/chosen_head.h"
+#include "reconstruction/chosen_head.h"
 #include "reconstruction/reconstruction_error.h"
 #include "trim3r.h"
 

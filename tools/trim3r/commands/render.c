@@ -10,13 +10,13 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/files/file_options.h"
 #include "cli/files/recorded_frame.h"
+#include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
 #include "cli/work/work_times.h"
 #include "core/hash.h"
-#include "import/poses/viewpoint.h"
+#include "import/viewpoint.h"
 #include "pictures/picture.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_error.h"

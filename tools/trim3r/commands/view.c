@@ -10,9 +10,9 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "cli/files/file_kind.h"
-#include "cli/files/file_options.h"
 #include "cli/files/whole_file.h"
+#include "cli/options/file_kind.h"
+#include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
 #include "reconstruction/reconstruction.h"

@@ -1,2 +1,2 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "planted_replay.h"
+#include "capture/planted_replay.h"

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Estimates the poses of a folder's frames from their pictures. */
+#ifndef TRIM3R_TOOLS_IMPORT_POSES_H
+#define TRIM3R_TOOLS_IMPORT_POSES_H
+
+#include "import/frames/posed_frame.h"
+#include "posing/estimate.h"
+
+/* Estimates the poses of the frames from pictures of their own size, and stores them in the folder as numbers that a
+ * recording's reader rounds to exactly these: positions in steps of 2^-32, quaternions of 2^-30. The first frame that
+ * can be posed keeps its pose; without one it is the origin. Frames that cannot be posed lose theirs. accounts[]: one
+ * per frame. Returns 0; with a reason in error[], the status of import_frame(), else -1. */
+int import_estimate_poses(const char *directory, posed_folder *folder, poses_source source, pose_account *accounts,
+                          char *error, size_t error_bytes);
+
+#endif

@@ -1,0 +1,362 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "import/frames/frame.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/camera.h"
+#include "host/reason.h"
+#include "image/image.h"
+#include "image/undistort.h"
+#include "import/depth/exr_depth.h"
+#include "import/frames/align_depth.h"
+#include "mcap/reader_limits.h"
+#include "messages/fixed_camera.h"
+#include "pictures/picture.h"
+
+#define MIN_SIDE 2u /* least side of t3r_frame */
+
+_Static_assert(T3R_MAX_POSITION_Q32 == INT64_C(1) << (T3R_LIMIT_POSITION_LOG2 + 32) &&
+                   T3R_MAX_TANGENTIAL_Q24 == T3R_LIMIT_TANGENTIAL << 24 &&
+                   T3R_MAX_DEPTH_UNIT_Q40 == ((uint64_t)T3R_LIMIT_DEPTH_UNIT << 40) - 1,
+               "readers and runtime have the same limits");
+
+/* Returns a b / c rounded to nearest, halves up; sides are at most 2^12, so nothing overflows. */
+static uint32_t share(uint32_t a, uint32_t b, uint32_t c)
+{
+    return (2 * a * b + c) / (2 * c);
+}
+
+import_crop import_largest_crop(uint32_t picture_width, uint32_t picture_height, uint32_t width, uint32_t height)
+{
+    import_crop crop = {.width = picture_width, .height = picture_height};
+    if (picture_width * height > picture_height * width) {
+        crop.width = share(picture_height, width, height);
+    } else {
+        crop.height = share(picture_width, height, width);
+    }
+    crop.width = crop.width == 0 ? 1 : crop.width;
+    crop.height = crop.height == 0 ? 1 : crop.height;
+    crop.x = (picture_width - crop.width) / 2;
+    crop.y = (picture_height - crop.height) / 2;
+    return crop;
+}
+
+import_crop import_crop_in_proportion(const import_crop *crop, uint32_t from_width, uint32_t from_height,
+                                      uint32_t width, uint32_t height)
+{
+    import_crop out = {.x = share(crop->x, width, from_width), .y = share(crop->y, height, from_height)};
+    out.width = share(crop->x + crop->width, width, from_width) - out.x;
+    out.height = share(crop->y + crop->height, height, from_height) - out.y;
+    return out;
+}
+
+void import_crop_camera(t3r_recorded_camera *camera, const import_crop *crop, uint32_t width, uint32_t height)
+{
+    double scale_x = (double)width / crop->width;
+    double scale_y = (double)height / crop->height;
+    camera->fx *= scale_x;
+    camera->fy *= scale_y;
+    /* scaling keeps the corner of the top-left pixel, which is half a pixel before its centre */
+    camera->cx = (camera->cx + 0.5 - crop->x) * scale_x - 0.5;
+    camera->cy = (camera->cy + 0.5 - crop->y) * scale_y - 0.5;
+    camera->width = width;
+    camera->height = height;
+}
+
+/* ---- pictures -------------------------------------------------------------------------------------------------- */
+
+/* Returns the picture's path; synthetic NeRF scenes omit the suffix. */
+static char *find_picture(const char *directory, const char *name)
+{
+    static const char *const endings[] = {".png", ".jpg", ".jpeg"};
+    char *path = posed_path(directory, name);
+    const char *base = path == NULL ? NULL : strrchr(path, '/');
+    if (path == NULL || access(path, F_OK) == 0 || strchr(base != NULL ? base : path, '.') != NULL) {
+        return path;
+    }
+    size_t bytes = strlen(path) + 8;
+    char *longer = malloc(bytes);
+    for (size_t i = 0; longer != NULL && i < sizeof endings / sizeof *endings; i++) {
+        snprintf(longer, bytes, "%s%s", path, endings[i]);
+        if (access(longer, F_OK) == 0) {
+            free(path);
+            return longer;
+        }
+    }
+    free(longer);
+    return path;
+}
+
+static int size_of(const char *directory, const char *name, uint32_t *width, uint32_t *height, char *error,
+                   size_t error_bytes)
+{
+    char *path = find_picture(directory, name);
+    const int status = path == NULL         ? t3r_reason(error, error_bytes, "out of memory")
+                       : exr_depth_is(path) ? exr_depth_size(path, width, height, error, error_bytes)
+                                            : picture_size(path, width, height, error, error_bytes);
+    free(path);
+    return status;
+}
+
+int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
+                        size_t error_bytes)
+{
+    return size_of(directory, frame->image, width, height, error, error_bytes);
+}
+
+int import_depth_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
+                      size_t error_bytes)
+{
+    return size_of(directory, frame->depth, width, height, error, error_bytes);
+}
+
+static int read_colour(const char *path, picture *out, char *error, size_t error_bytes)
+{
+    if (picture_read(path, out, error, error_bytes) != 0) {
+        return -1;
+    }
+    if (out->bits != 8) {
+        return t3r_reason(error, error_bytes, "%s: 16-bit grey, but a colour picture has 8 bits", path);
+    }
+    if (out->width < MIN_SIDE || out->height < MIN_SIDE) {
+        return t3r_reason(error, error_bytes, "%s: %ux%u pixels are too few", path, out->width, out->height);
+    }
+    return 0;
+}
+
+static int read_depth(const char *path, const raw_depth *raw, picture *out, char *error, size_t error_bytes)
+{
+    if ((raw->kind == RAW_DEPTH_EXR    ? exr_depth_read(path, raw->unit, out, error, error_bytes)
+         : raw->kind != RAW_DEPTH_NONE ? raw_depth_read(path, raw, out, error, error_bytes)
+                                       : picture_read(path, out, error, error_bytes)) != 0) {
+        return -1;
+    }
+    if (out->bits != 16 || out->channels != 1) {
+        return t3r_reason(error, error_bytes, "%s: %u-bit %s, but depth is a 16-bit grey PNG", path, out->bits,
+                          out->channels == 1 ? "grey" : "colour");
+    }
+    if (out->width < MIN_SIDE || out->height < MIN_SIDE) {
+        return t3r_reason(error, error_bytes, "%s: %ux%u pixels are too few", path, out->width, out->height);
+    }
+    return 0;
+}
+
+/* Reads a picture of a frame; raw: it is a depth picture. */
+static int read_named(const char *directory, const char *name, const raw_depth *raw, picture *out, char *error,
+                      size_t error_bytes)
+{
+    char *path = find_picture(directory, name);
+    const int status = path == NULL  ? t3r_reason(error, error_bytes, "out of memory")
+                       : raw == NULL ? read_colour(path, out, error, error_bytes)
+                                     : read_depth(path, raw, out, error, error_bytes);
+    free(path);
+    return status;
+}
+
+/* Sets samples that mean "no depth" to 0. */
+static void forget_samples(picture *depth, uint16_t no_depth)
+{
+    uint16_t *samples = depth->samples;
+    for (size_t i = 0; i < (size_t)depth->width * depth->height; i++) {
+        samples[i] = samples[i] == no_depth ? 0 : samples[i];
+    }
+}
+
+/* ---- adapting -------------------------------------------------------------------------------------------------- */
+
+/* Converts the cropped colour picture to interleaved RGB of width x height, with the runtime's own resize. */
+static int develop_colour(const picture *in, const import_crop *crop, uint32_t width, uint32_t height, uint8_t *rgb)
+{
+    t3r_frame frame = {
+        .format = in->channels == 3 ? T3R_PIXEL_RGB24 : T3R_PIXEL_GREY, .width = crop->width, .height = crop->height};
+    frame.stride_bytes[0] = in->width * in->channels;
+    frame.planes[0] =
+        (const uint8_t *)in->samples + (size_t)crop->y * frame.stride_bytes[0] + (size_t)crop->x * in->channels;
+    size_t pixels = (size_t)width * height;
+    uint8_t *memory = malloc(pixels * 3);
+    void *work = malloc(t3r_image_work_bytes(width));
+    int status = memory != NULL && work != NULL && t3r_image_check(&frame) == T3R_OK ? 0 : -1;
+    if (status == 0) {
+        uint8_t *const planes[3] = {memory, memory + pixels, memory + 2 * pixels};
+        t3r_image_colour(&t3r_kernels_c, &frame, width, height, 0, height, planes, work);
+        for (size_t i = 0; i < pixels; i++) {
+            for (size_t c = 0; c < 3; c++) {
+                rgb[i * 3 + c] = planes[c][i];
+            }
+        }
+    }
+    free(work);
+    free(memory);
+    return status;
+}
+
+/* t3r_frame takes depth as little-endian bytes. */
+static void to_little_endian(uint16_t *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint8_t bytes[2] = {(uint8_t)values[i], (uint8_t)(values[i] >> 8)};
+        memcpy(&values[i], bytes, sizeof bytes);
+    }
+}
+
+static int develop_depth(picture *in, const import_crop *crop, uint32_t width, uint32_t height, uint16_t *depth)
+{
+    to_little_endian(in->samples, (size_t)in->width * in->height);
+    uint8_t dummy[2 * 2] = {0};
+    t3r_frame frame = {.format = T3R_PIXEL_GREY,
+                       .width = 2,
+                       .height = 2,
+                       .planes = {dummy},
+                       .stride_bytes = {2},
+                       .depth_width = crop->width,
+                       .depth_height = crop->height,
+                       .depth_unit_q40 = 1};
+    frame.depth_stride_bytes = in->width * 2;
+    frame.depth = (const uint8_t *)in->samples + (size_t)crop->y * frame.depth_stride_bytes + (size_t)crop->x * 2;
+    if (t3r_image_check(&frame) != T3R_OK) {
+        return -1;
+    }
+    t3r_image_depth(&frame, width, height, 0, height, depth);
+    return 0;
+}
+
+/* Whether the lens folds: with some coefficients the runtime cannot invert the distortion within the picture. -1 when
+ * memory is out. */
+static int lens_folds(const t3r_camera *camera, uint32_t width, uint32_t height)
+{
+    if (camera->distortion == T3R_DISTORTION_NONE) {
+        return 0;
+    }
+    int32_t *grid = malloc(T3R_GRID_VALUES(width, height) * sizeof *grid);
+    int folds = grid == NULL ? -1 : t3r_undistort_grid(camera, width, height, grid) != T3R_OK;
+    free(grid);
+    return folds;
+}
+
+/* Checks that build can use the camera that results from cropping and resizing. */
+static int check_camera(const t3r_recorded_camera *camera, const char *name, char *error, size_t error_bytes)
+{
+    t3r_camera fixed;
+    const char *wrong = t3r_fixed_camera(camera, &fixed);
+    if (wrong != NULL) {
+        return t3r_reason(error, error_bytes,
+                          "%s: %s are supported; after resizing fl_x, fl_y, cx, cy are %g, %g, %g, %g", name, wrong,
+                          camera->fx, camera->fy, camera->cx, camera->cy);
+    }
+    int folds = lens_folds(&fixed, camera->width, camera->height);
+    return folds == 0 ? 0
+                      : t3r_reason(error, error_bytes, "%s: %s", name,
+                                   folds < 0 ? "out of memory"
+                                             : "distortion: the coefficients fold more than half of the picture");
+}
+
+int import_check_picture(const char *directory, const posed_frame *frame, char *error, size_t error_bytes)
+{
+    picture colour = {0};
+    const int status = read_named(directory, frame->image, NULL, &colour, error, error_bytes);
+    picture_free(&colour);
+    return status;
+}
+
+int import_check_depth(const char *directory, const posed_frame *frame, char *error, size_t error_bytes)
+{
+    picture depth = {0};
+    const int status = read_named(directory, frame->depth, &frame->depth_raw, &depth, error, error_bytes);
+    picture_free(&depth);
+    return status;
+}
+
+static int adapt(const char *directory, const posed_frame *frame, uint32_t width, uint32_t height, picture *colour,
+                 picture *depth, import_buffers *buffers, t3r_recorded_frame *out, char *error, size_t error_bytes)
+{
+    char reason[256];
+    if (read_named(directory, frame->image, NULL, colour, error, error_bytes) != 0) {
+        return IMPORT_UNREADABLE;
+    }
+    if (posed_frame_camera(frame, colour->width, colour->height, &out->camera, reason, sizeof reason) != 0) {
+        return t3r_reason(error, error_bytes, "%s: %s", frame->image, reason);
+    }
+    bool resize = width != 0;
+    out->format = T3R_PIXEL_RGB24;
+    out->width = resize ? width : colour->width;
+    out->height = resize ? height : colour->height;
+    if (out->width < T3R_MIN_SIDE || out->height < T3R_MIN_SIDE) {
+        return t3r_reason(error, error_bytes, "%s: %ux%u pixels; sides of %u and more are supported, or give --size",
+                          frame->image, out->width, out->height, T3R_MIN_SIDE);
+    }
+    import_crop crop = import_largest_crop(colour->width, colour->height, out->width, out->height);
+    if (crop.width < MIN_SIDE || crop.height < MIN_SIDE) {
+        return t3r_reason(error, error_bytes, "%s: too narrow to crop to that aspect", frame->image);
+    }
+    import_crop_camera(&out->camera, &crop, out->width, out->height);
+    if (check_camera(&out->camera, frame->image, error, error_bytes) != 0) {
+        return -1;
+    }
+    buffers->rgb = malloc((size_t)out->width * out->height * 3);
+    if (buffers->rgb == NULL || develop_colour(colour, &crop, out->width, out->height, buffers->rgb) != 0) {
+        return t3r_reason(error, error_bytes, "%s: out of memory", frame->image);
+    }
+    out->planes[0] = buffers->rgb;
+    out->stride_bytes[0] = out->width * 3;
+    bool made = depth->samples != NULL;
+    if (!made && frame->depth == NULL) {
+        return 0;
+    }
+    if (!made) {
+        if (read_named(directory, frame->depth, &frame->depth_raw, depth, error, error_bytes) != 0) {
+            return IMPORT_UNREADABLE;
+        }
+        if (frame->no_depth != 0) {
+            forget_samples(depth, frame->no_depth);
+        }
+        if (frame->depth_lens.fx != 0 && align_depth(frame, colour, depth, reason, sizeof reason) != 0) {
+            return t3r_reason(error, error_bytes, "%s: its lens: %s", frame->depth, reason);
+        }
+    }
+    /* networks round sides to whole patches, so the two aspect ratios need not agree to the pixel */
+    double aspect = (double)depth->width * colour->height / ((double)depth->height * colour->width);
+    if (made && fabs(aspect - 1) > 0.04) {
+        return t3r_reason(error, error_bytes, "%s: a pointmap of %ux%u pixels, but the picture has %ux%u", frame->image,
+                          depth->width, depth->height, colour->width, colour->height);
+    }
+    const char *name = frame->depth != NULL ? frame->depth : "pointmap";
+    import_crop part = import_crop_in_proportion(&crop, colour->width, colour->height, depth->width, depth->height);
+    if (part.width < MIN_SIDE || part.height < MIN_SIDE) {
+        return t3r_reason(error, error_bytes, "%s: too small to crop", name);
+    }
+    out->depth_width = resize ? width : depth->width;
+    out->depth_height = resize ? height : depth->height;
+    buffers->depth = malloc((size_t)out->depth_width * out->depth_height * sizeof *buffers->depth);
+    if (buffers->depth == NULL ||
+        develop_depth(depth, &part, out->depth_width, out->depth_height, buffers->depth) != 0) {
+        return t3r_reason(error, error_bytes, "%s: out of memory", name);
+    }
+    out->depth = buffers->depth;
+    return 0;
+}
+
+int import_frame(const char *directory, const posed_frame *frame, picture *made, uint32_t width, uint32_t height,
+                 import_buffers *buffers, t3r_recorded_frame *out, char *error, size_t error_bytes)
+{
+    picture colour = {0}, depth = made != NULL ? *made : (picture){0};
+    if (made != NULL) {
+        *made = (picture){0};
+    }
+    *buffers = (import_buffers){0};
+    *out = (t3r_recorded_frame){0};
+    int status = adapt(directory, frame, width, height, &colour, &depth, buffers, out, error, error_bytes);
+    picture_free(&colour);
+    picture_free(&depth);
+    return status;
+}
+
+void import_buffers_free(import_buffers *buffers)
+{
+    free(buffers->rgb);
+    free(buffers->depth);
+    *buffers = (import_buffers){0};
+}

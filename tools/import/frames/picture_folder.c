@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A folder that holds only pictures. */
+#define _GNU_SOURCE /* versionsort() */
+#include "import/frames/picture_folder.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "host/reason.h"
+#include "mcap/reader_limits.h"
+
+static int is_picture(const struct dirent *entry)
+{
+    const char *dot = strrchr(entry->d_name, '.');
+    return entry->d_name[0] != '.' && dot != NULL &&
+           (strcasecmp(dot, ".png") == 0 || strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0);
+}
+
+int picture_folder_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
+                        size_t error_bytes)
+{
+    double numbers[9] = {NAN, NAN, NAN, NAN};
+    struct dirent **entries;
+    memset(out, 0, sizeof *out);
+    out->kind = "pictures";
+    out->depth_unit = 0.001;
+    if (options->intrinsics_count == 0 && !options->without_intrinsics) {
+        return t3r_reason(error, error_bytes, "%s: pictures without intrinsics; give --intrinsics fx,fy,cx,cy",
+                          directory);
+    }
+    memcpy(numbers, options->intrinsics, options->intrinsics_count * sizeof *numbers);
+    int count = scandir(directory, &entries, is_picture, versionsort);
+    if (count < 0) {
+        return t3r_reason(error, error_bytes, "%s: %s", directory, strerror(errno));
+    }
+    out->frames = calloc((size_t)count + 1, sizeof *out->frames);
+    int status = 0;
+    if (count == 0 || count > T3R_LIMIT_FRAMES) {
+        status = t3r_reason(error, error_bytes, "%s: %s", directory,
+                            count == 0 ? "no transforms.json, no rgb.txt and groundtruth.txt, no pictures"
+                                       : T3R_LIMIT_TEXT("more than ", T3R_LIMIT_FRAMES, " pictures"));
+    }
+    for (int i = 0; i < count; i++) {
+        if (status == 0 && out->frames != NULL) {
+            posed_frame *frame = &out->frames[out->frame_count++];
+            frame->image = strdup(entries[i]->d_name);
+            frame->intrinsics = posed_intrinsics_of(numbers);
+            frame->pose = rigid_identity;
+            status = frame->image != NULL ? 0 : t3r_reason(error, error_bytes, "out of memory");
+        }
+        free(entries[i]);
+    }
+    free(entries);
+    return out->frames != NULL ? status : t3r_reason(error, error_bytes, "out of memory");
+}
+
+static int by_text(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* Returns the entry's path as frames spell it, on the heap. */
+static char *spelled(const char *place, const char *name)
+{
+    const size_t bytes = strlen(place) + strlen(name) + 2;
+    char *path = malloc(bytes);
+    if (path != NULL) {
+        snprintf(path, bytes, "%s/%s", place, name);
+    }
+    return path;
+}
+
+int picture_folder_rest(const char *directory, const char *place, const char *why, posed_folder *out, char *error,
+                        size_t error_bytes)
+{
+    struct dirent **entries = NULL;
+    char *folder = posed_path(directory, place);
+    const char **used = malloc((out->frame_count + 1) * sizeof *used);
+    const int count = folder == NULL ? -1 : scandir(folder, &entries, is_picture, versionsort);
+    int status = folder != NULL && used != NULL ? 0 : t3r_reason(error, error_bytes, "out of memory");
+    for (uint32_t i = 0; i < out->frame_count && status == 0; i++) {
+        used[i] = out->frames[i].image;
+    }
+    if (status == 0) {
+        qsort(used, out->frame_count, sizeof *used, by_text);
+    }
+    for (int i = 0; i < count; i++) {
+        char *path = status == 0 ? spelled(place, entries[i]->d_name) : NULL;
+        if (status == 0 && (path == NULL || (bsearch(&path, used, out->frame_count, sizeof *used, by_text) == NULL &&
+                                             text_list_add(&out->left_out, "%s: %s", path, why) != 0))) {
+            status = t3r_reason(error, error_bytes, "out of memory");
+        }
+        free(path);
+        free(entries[i]);
+    }
+    free(entries);
+    free(used);
+    free(folder);
+    return status;
+}

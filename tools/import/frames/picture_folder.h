@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Pictures without poses. */
+#ifndef TRIM3R_TOOLS_PICTURE_FOLDER_H
+#define TRIM3R_TOOLS_PICTURE_FOLDER_H
+
+#include <stddef.h>
+
+#include "import/frames/posed_frame.h"
+
+/* Reads a folder of pictures (.png, .jpg, .jpeg), in the order of their names, with numbers in names by value. */
+int picture_folder_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
+                        size_t error_bytes);
+
+/* Adds to out->left_out, with the reason, every picture in DIR/PLACE that is no frame's image: pictures that the
+ * folder's lists omit. Returns 0, or -1 with a reason in error[]. */
+int picture_folder_rest(const char *directory, const char *place, const char *why, posed_folder *out, char *error,
+                        size_t error_bytes);
+
+#endif

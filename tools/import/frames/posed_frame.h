@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Frames of a posed folder: what every reader fills in, and what is derived from it. */
+#ifndef TRIM3R_TOOLS_POSED_FRAME_H
+#define TRIM3R_TOOLS_POSED_FRAME_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cli/text/text_list.h"
+#include "geometry/rigid.h"
+#include "import/depth/raw_depth.h"
+#include "recording/recording.h"
+
+/* A camera as a folder describes it; missing numbers are NAN. In pixels, with the principal point measured from the
+ * corner of the top-left pixel, whose centre is thus at (0.5, 0.5). */
+typedef struct posed_intrinsics {
+    double width, height;           /* of the picture */
+    double grid_width, grid_height; /* size of the pixel grid of fx ... cy; 0 = the picture's */
+    double fx, fy, cx, cy;
+    double angle_x, angle_y; /* full field of view in radians, the fallback for fx and fy */
+    t3r_distortion distortion;
+    double coefficients[5]; /* in the order of t3r_distortion */
+} posed_intrinsics;
+
+typedef struct posed_frame {
+    char *image;                 /* path relative to the folder, as the folder spells it */
+    char *depth;                 /* likewise; NULL = none */
+    raw_depth depth_raw;         /* storage of depth that is no picture */
+    uint16_t no_depth;           /* a depth sample that means "none", besides 0; 0: there is no other */
+    char *pointmap, *confidence; /* likewise: depth from pointmaps (pointmaps.h) */
+    bool posed;                  /* false: the pose is the identity */
+    posed_intrinsics intrinsics;
+    posed_intrinsics depth_lens; /* lens of the depth camera; fx 0: same view as colour */
+    rigid from_depth;            /* from that camera to colour's, in depth steps; only if depth_lens has an fx */
+    rigid pose;                  /* camera to world, in world units */
+} posed_frame;
+
+typedef struct posed_folder {
+    const char *kind; /* "transforms.json", as in the table of posed_folder.c */
+    posed_frame *frames;
+    uint32_t frame_count;
+    t3r_triplet *triplets;
+    uint32_t triplet_count;
+    double depth_unit; /* world units per step; 0.001 if no frame has depth and none is given */
+    bool depth_unit_given;
+    double exr_length;  /* world units per 1 of depth in OpenEXR; 0: unspecified, taken as 1 */
+    text_list left_out; /* "picture: why", one for each picture that is no frame */
+    text_list remarks;  /* remarks for the user on how the folder was read */
+} posed_folder;
+
+typedef struct posed_folder_options {
+    const double *intrinsics;  /* fx fy cx cy [k1 k2 p1 p2 k3], cx and cy from the top-left pixel's centre: for folders
+                                  without intrinsics */
+    uint32_t intrinsics_count; /* 0, 4 or 9 */
+    double depth_unit;         /* for depth whose step no file gives; 0 = not given */
+    bool without_poses;        /* frames may lack a pose, and a folder may hold only pictures */
+    bool without_intrinsics;   /* frames may lack intrinsics, which are NAN then */
+} posed_folder_options;
+
+void posed_folder_close(posed_folder *folder);
+/* Frees a frame's contents; the frame becomes empty. */
+void posed_frame_free(posed_frame *frame);
+
+/* Makes the frame's camera for a picture of width x height pixels, ready for the recorder: checks sizes, fills gaps
+ * (focal length from the field of view, principal point in the middle), checks that numbers are finite. Pixel (0, 0) is
+ * the centre of the top-left pixel from here on. Returns 0, or -1 with "field: what" in error[]. */
+int posed_frame_camera(const posed_frame *frame, uint32_t width, uint32_t height, t3r_recorded_camera *camera,
+                       char *error, size_t error_bytes);
+
+/* Makes intrinsics from fx fy cx cy [k1 k2 p1 p2 k3]. */
+posed_intrinsics posed_intrinsics_of(const double numbers[9]);
+/* Returns DIR/NAME, or NAME when absolute, on the heap; NULL when out of memory. */
+char *posed_path(const char *directory, const char *name);
+bool posed_exists(const char *directory, const char *name);
+
+#endif

@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "import/viewpoint.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/tables/json_input.h"
+#include "core/camera.h"
+#include "geometry/quaternion.h"
+#include "host/file_bytes.h"
+#include "host/reason.h"
+#include "import/folders/transforms_json.h"
+#include "mcap/reader_limits.h"
+
+#define MAX_POSES_BYTES ((size_t)16 << 20) /* a single pose is parsed twice and printed between */
+
+void viewpoint_list_free(viewpoint_list *list)
+{
+    free(list->items);
+    *list = (viewpoint_list){0};
+}
+
+/* Converts a finite double to fixed point; saturates, so that t3r_camera_check() refuses it. */
+static int32_t to_q(double value, int fraction_bits)
+{
+    double scaled = nearbyint(ldexp(value, fraction_bits));
+    return scaled >= INT32_MAX ? INT32_MAX : scaled <= INT32_MIN ? INT32_MIN : (int32_t)scaled;
+}
+
+static int set_pose(t3r_camera *camera, const double position[3], const double rotation[4])
+{
+    for (int i = 0; i < 3; i++) {
+        if (!(fabs(position[i]) < 1 << T3R_LIMIT_POSITION_LOG2)) {
+            return -1;
+        }
+        camera->position_q32[i] = (int64_t)nearbyint(ldexp(position[i], 32));
+    }
+    const double norm = quaternion_norm(rotation);
+    if (!(norm > 1e-6) || !isfinite(norm)) {
+        return -1;
+    }
+    for (int i = 0; i < 4; i++) {
+        camera->rotation_q30[i] = to_q(rotation[i] / norm, 30);
+    }
+    return t3r_camera_check(camera) == T3R_OK ? 0 : -1;
+}
+
+int viewpoint_from_angle(double degrees, uint32_t width, uint32_t height, viewpoint *out)
+{
+    double focal = width / 2.0 / tan(degrees * M_PI / 360);
+    *out = (viewpoint){.width = width, .height = height};
+    out->camera.fx_q16 = out->camera.fy_q16 = to_q(focal, 16);
+    out->camera.cx_q16 = to_q((width - 1) / 2.0, 16);
+    out->camera.cy_q16 = to_q((height - 1) / 2.0, 16);
+    return set_pose(&out->camera, (double[3]){0}, (double[4]){1, 0, 0, 0});
+}
+
+/* ---- pose files --------------------------------------------------------------------------------------------- */
+
+static int convert_frames(const posed_folder *folder, viewpoint_list *out, char *error, size_t error_bytes)
+{
+    out->items = calloc(folder->frame_count, sizeof *out->items);
+    if (out->items == NULL) {
+        return t3r_reason(error, error_bytes, "out of memory");
+    }
+    for (uint32_t i = 0; i < folder->frame_count; i++) {
+        const posed_frame *frame = &folder->frames[i];
+        const posed_intrinsics *lens = &frame->intrinsics;
+        viewpoint *view = &out->items[i];
+        t3r_recorded_camera camera;
+        if (isnan(lens->width) || isnan(lens->height)) {
+            return t3r_reason(error, error_bytes, "w or h: missing");
+        }
+        if (posed_frame_camera(frame, (uint32_t)lens->width, (uint32_t)lens->height, &camera, error, error_bytes) !=
+            0) {
+            return -1;
+        }
+        *view = (viewpoint){.width = camera.width, .height = camera.height};
+        view->camera.fx_q16 = to_q(camera.fx, 16);
+        view->camera.fy_q16 = to_q(camera.fy, 16);
+        view->camera.cx_q16 = to_q(camera.cx, 16);
+        view->camera.cy_q16 = to_q(camera.cy, 16);
+        if (set_pose(&view->camera, camera.position, camera.rotation) != 0) {
+            return t3r_reason(error, error_bytes,
+                              "the camera is out of range (focal length 8..16384 pixels, position below 2^30)");
+        }
+        out->count++;
+    }
+    return 0;
+}
+
+/* Returns the text of a transforms.json around a single pose, so that one reader checks both; NULL when that is not
+ * needed. */
+static char *wrap_pose(const char *text, size_t bytes)
+{
+    char *wrapped = NULL;
+    cJSON *pose = json_parse(text, bytes, NULL, 0);
+    if (cJSON_IsObject(pose) && cJSON_GetObjectItemCaseSensitive(pose, "frames") == NULL) {
+        cJSON *root = cJSON_CreateObject();
+        cJSON *frames = cJSON_AddArrayToObject(root, "frames");
+        cJSON_DeleteItemFromObjectCaseSensitive(pose, "file_path");
+        cJSON_DeleteItemFromObjectCaseSensitive(pose, "depth_path");
+        cJSON_AddStringToObject(pose, "file_path", "view");
+        cJSON_AddItemToArray(frames, pose);
+        pose = NULL;
+        wrapped = cJSON_PrintUnformatted(root);
+        cJSON_Delete(root);
+    }
+    cJSON_Delete(pose);
+    return wrapped;
+}
+
+int viewpoint_read_pose(const char *path, viewpoint_list *out, char *error, size_t error_bytes)
+{
+    *out = (viewpoint_list){0};
+    size_t count;
+    uint8_t *bytes = t3r_file_bytes(path, MAX_POSES_BYTES, &count, error, error_bytes);
+    if (bytes == NULL) {
+        return -1;
+    }
+    char reason[384] = "";
+    posed_folder folder;
+    char *wrapped = wrap_pose((const char *)bytes, count);
+    const char *text = wrapped != NULL ? wrapped : (const char *)bytes;
+    size_t length = wrapped != NULL ? strlen(wrapped) : count;
+    int result = transforms_json_parse(text, length, NULL, &folder, reason, sizeof reason);
+    if (result == 0) {
+        result = convert_frames(&folder, out, reason, sizeof reason);
+    }
+    posed_folder_close(&folder);
+    cJSON_free(wrapped);
+    free(bytes);
+    if (result != 0) {
+        viewpoint_list_free(out);
+        t3r_reason(error, error_bytes, "%s: %s", path, reason);
+    }
+    return result;
+}
+
+/* ---- trajectories --------------------------------------------------------------------------------------------- */
+
+static int read_line(char *line, const viewpoint *lens, viewpoint *view, char *reason, size_t reason_bytes)
+{
+    double value[8];
+    char *at = line;
+    for (int i = 0; i < 8; i++) {
+        char *end;
+        value[i] = strtod(at, &end);
+        if (end == at || !isfinite(value[i])) {
+            snprintf(reason, reason_bytes, "number %d of `stamp tx ty tz qx qy qz qw` is missing or not finite", i + 1);
+            return -1;
+        }
+        at = end;
+    }
+    if (at[strspn(at, " \t\r")] != '\0') {
+        snprintf(reason, reason_bytes, "more than eight numbers");
+        return -1;
+    }
+    *view = *lens;
+    if (set_pose(&view->camera, &value[1], (double[4]){value[7], value[4], value[5], value[6]}) != 0) {
+        snprintf(reason, reason_bytes, "a quaternion without length or a position of 2^30 or more");
+        return -1;
+    }
+    return 0;
+}
+
+int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint_list *out, char *error,
+                              size_t error_bytes)
+{
+    *out = (viewpoint_list){0};
+    size_t count;
+    char *text = (char *)t3r_file_bytes(path, T3R_LIMIT_TEXT_BYTES, &count, error, error_bytes);
+    if (text == NULL) {
+        return -1;
+    }
+    uint32_t room = 0, line_number = 0;
+    int result = 0;
+    char reason[160] = "";
+    char *next = text;
+    while (result == 0 && next < text + count) {
+        char *line = next;
+        char *end = memchr(line, '\n', (size_t)(text + count - line));
+        next = end != NULL ? end + 1 : text + count;
+        if (end != NULL) {
+            *end = '\0';
+        }
+        line_number++;
+        line += strspn(line, " \t\r");
+        if (*line == '\0' || *line == '#') {
+            continue;
+        }
+        if (out->count == T3R_LIMIT_POSES) {
+            snprintf(reason, sizeof reason, "more than %d poses", T3R_LIMIT_POSES);
+            result = -1;
+            break;
+        }
+        if (out->count == room) {
+            room = room == 0 ? 64 : room * 2; /* a line has at least 16 bytes, so there are below 2^23 */
+            viewpoint *grown = realloc(out->items, room * sizeof *grown);
+            if (grown == NULL) {
+                snprintf(reason, sizeof reason, "out of memory");
+                result = -1;
+                break;
+            }
+            out->items = grown;
+        }
+        result = read_line(line, lens, &out->items[out->count], reason, sizeof reason);
+        out->count += result == 0;
+    }
+    if (result == 0 && out->count == 0) {
+        snprintf(reason, sizeof reason, "no pose in the file");
+        result = -1;
+    }
+    free(text);
+    if (result != 0) {
+        t3r_reason(error, error_bytes, "%s: line %" PRIu32 ": %s", path, line_number, reason);
+        viewpoint_list_free(out);
+    }
+    return result;
+}
