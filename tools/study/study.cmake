@@ -1,4 +1,4 @@
-# What measures the product, and what made its heads: commands beside those of the product, and a main() of its own.
+# The study measures the product and made its heads: additional commands, and a main() of its own.
 t3r_area(study/chart USES pictures)
 t3r_area(study/rivals USES reconstruction)
 t3r_area(study/ablation USES evaluation)
@@ -18,6 +18,6 @@ add_custom_command(
   VERBATIM)
 target_sources(tools_study_chart PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/chart_page.c)
 
-# gcc unrolls loops over eight columns before it sees that they are vectors: without this, half as fast
+# gcc unrolls loops over eight columns before it recognises vectors: without this option they run at half the speed
 set_source_files_properties(study/rivals/splat_differentiate.c study/rivals/splat_draw.c PROPERTIES
   COMPILE_OPTIONS $<$<C_COMPILER_ID:GNU>:--param=max-completely-peel-times=4>)

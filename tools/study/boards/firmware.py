@@ -1,4 +1,4 @@
-"""What the ports of the firmware share: its sources, its build, and what it prints."""
+"""What the firmware's ports share: its sources, its build, and its output."""
 import json
 import pathlib
 import re
@@ -14,7 +14,7 @@ FEATURES = tuple(name.lower() for name in re.findall(
     r"#ifndef T3R_FEATURE_(\w+)", (RUNTIME / "include" / "trim3r_features.h").read_text()))
 BOARDS = {path.parent.name: json.loads(path.read_text()) for path in sorted(BAREMETAL.glob("boards/*/board.json"))}
 STAGES = ("image", "depth", "pointmap", "wavelet", "superclusters", "budget", "head", "refine", "raster")
-# What the firmware takes of the platform: the reader of recordings without a heap.
+# The platform files that the firmware uses: the reader of recordings without a heap.
 READER = ("host/fixed_text", "host/text", "mcap/mcap_records", "messages/cdr", "messages/fixed_camera", "messages/fixed_double",
           "messages/message_frame", "messages/ros_messages", "messages/ros_schemas", "recording/frame_reader",
           "recording/pixel_layout")
@@ -40,7 +40,8 @@ CLOSED_FORM = "analytic" # the head without weights
 
 
 def is_small(options):
-    """Whether the firmware is to be small: it lacks features, reads planes and no recording, and runs plain C."""
+    """Whether to build the small firmware: without some features, fed with planes instead of a recording, in plain
+    C."""
     return bool(left_out(options))
 
 
@@ -95,7 +96,7 @@ def planes(path, options):
 
 
 def words(path, options):
-    """The firmware's command line, but for hashes and the view."""
+    """Returns the firmware's command line, except hashes and the view."""
     width, height = options.size
     return [f"frames={planes(path, options) if is_small(options) else path}", f"width={width}", f"height={height}", f"views={options.views}",
             f"gaussians={options.gaussians}", f"clusters={options.clusters}", f"refinements={options.refine}",
@@ -103,7 +104,7 @@ def words(path, options):
 
 
 def said_by(board, *command):
-    """What the firmware prints, as {name: text}."""
+    """Returns what the firmware prints, as {name: text}."""
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=SECONDS_MOST)
     if done.returncode != 0:
         sys.exit(f"tools/boards: {board}: status {done.returncode}\n{done.stdout}{done.stderr}")
@@ -111,7 +112,7 @@ def said_by(board, *command):
 
 
 def row(board, said, flash_bytes, view):
-    """What each port tells of a run with hashes."""
+    """Returns what each port reports for a run with hashes."""
     hashes = {name[5:]: text for name, text in said.items() if name.startswith("hash ")}
     return {
         "board": board,

@@ -1,4 +1,4 @@
-"""What every board is given, and what this machine makes of it."""
+"""The input of every board, and this machine's result for it."""
 import json
 
 from firmware import run

@@ -1,4 +1,4 @@
-"""The firmware as a WebAssembly module under Node.js: times, as there is nothing that counts instructions."""
+"""The firmware as a WebAssembly module under Node.js. It reports times, because nothing counts instructions there."""
 import json
 
 from firmware import BAREMETAL, STAGES, build, row, run, said_by, words
@@ -11,7 +11,7 @@ ROUNDS = 5
 
 
 def lacks():
-    """What else is absent."""
+    """Returns what else is missing."""
     found = run(*COMPILER, "-print-file-name=libc.a").strip()
     return "wasi-libc" if found == "libc.a" else None
 
@@ -21,7 +21,7 @@ def made_with():
 
 
 def prepare(options):
-    """What all boards share."""
+    """Prepares what all boards share."""
 
 
 def module(board, options):
@@ -32,7 +32,7 @@ def module(board, options):
 
 
 def start(board, made, runs, line):
-    # the optimizing compiler from the first call on: nothing is timed that a faster function replaces later
+    # the optimizing compiler from the first call on, so that no slower code is timed before it is replaced
     return said_by(board, "node", "--no-liftoff", HOST, made, runs, *line)
 
 
@@ -44,7 +44,7 @@ def measure(board, path, options):
 
 
 def native_milliseconds(path, cpu_mask, options):
-    """Of this machine's program, one thread: to build the same scene."""
+    """Returns the time that this machine's program takes to build the same scene with one thread."""
     context = ",".join(map(str, range(options.views)))
     said = json.loads(run(options.program, "build", path, "--context", context, "--head", options.head, "--gaussians",
                           options.gaussians, "--clusters", options.clusters, "--refine", options.refine, "--threads", 1,

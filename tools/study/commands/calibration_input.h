@@ -1,4 +1,4 @@
-/* What a head is calibrated on: recordings and plain images through the runtime, at several budgets. */
+/* Input for calibrating a head: recordings and plain images through the runtime, at several budgets. */
 #ifndef TRIM3R_TOOLS_CALIBRATION_INPUT_H
 #define TRIM3R_TOOLS_CALIBRATION_INPUT_H
 
@@ -13,8 +13,8 @@
     }
 #define CALIBRATION_PAIRS 4u /* context pairs of a recording: of its triplets, else of its frames, evenly spread */
 
-/* A recording (.mcap), or an image as a plane of width x height as `eval --planar` has it. An exit status of cli.h,
- * after a message unless it is CLI_OK. */
+/* Adds a recording (.mcap), or an image as a plane of width x height as in `eval --planar`. Returns an exit status
+ * of cli.h, after a message unless it is CLI_OK. */
 int calibration_input(calibration *c, char *path, uint32_t width, uint32_t height);
 
 #endif

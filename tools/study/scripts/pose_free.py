@@ -1,4 +1,5 @@
-"""Novel views of scenes whose poses nobody gave: the part of tools/study/scripts/poses that needs no depth to choose its pairs."""
+"""Novel views of scenes without given poses: the part of tools/study/scripts/poses that chooses its pairs without
+depth."""
 import json
 import os
 import statistics
@@ -13,7 +14,7 @@ from measured import COLOUR_SCENES, DATA, even_triplets, table
 AXES = np.diag([1.0, -1, -1, 1])  # OpenGL's camera axes and ours
 KEEPS = ("100", "10")
 GIVEN = "given"
-WAYS = {  # of a depth: the poses that it is tried with, and the estimator's source for them
+WAYS = {  # for each kind of depth: the poses to try, and the estimator's source for them
     "stereo": {GIVEN: None, "from colour": "estimate-colour", "from colour, the target's too": "estimate-colour"},
     "sensor": {GIVEN: None, "with depth": "estimate"},
 }
@@ -32,7 +33,7 @@ sensor's depth. Otherwise it is what the depths by stereo of given or of estimat
 
 
 class Case:
-    """One triplet of a scene, as pictures to be drawn with one set of poses or another."""
+    """One triplet of a scene, as pictures to render with one set of poses or another."""
 
     def __init__(self, measurements, scene, context, target):
         self.m, self.scene = measurements, scene
@@ -114,7 +115,7 @@ def nearest_rotation(matrix):
 
 
 def laid_over(given, estimated, metric):
-    """The similarity from the given world to the estimated one: a matrix whose rotation is scaled."""
+    """Returns the similarity from the given world to the estimated one: a matrix whose rotation is scaled."""
     centres = [[p[:3, 3] for p in poses] for poses in (given, estimated)]
     turn = nearest_rotation(sum(e[:3, :3] @ g[:3, :3].T for g, e in zip(given, estimated)))
     apart = [np.linalg.norm(second - first) for first, second in centres]

@@ -1,4 +1,5 @@
-"""The Gaussian head as torch trains it: the layers of runtime/head/weights.h, in float or rounded as quant rounds."""
+"""The Gaussian head for training with torch: the layers of runtime/head/weights.h, in float or rounded as quant
+rounds."""
 import json
 import math
 import struct
@@ -9,7 +10,7 @@ import torch.nn.functional as F
 from torch import nn
 
 FEATURES, OUTPUTS = 9, 9
-FEATURE_STEP = 1 / 64  # of the int8 features, quant/README.md
+FEATURE_STEP = 1 / 64  # of the int8 features, see quant/README.md
 START = (0, 0, math.log2(0.6), math.log2(0.6), 0, 0.96, 0, 0, 0)  # the last layer's bias: the analytic head
 RANGE_LEAST = 1e-3
 
@@ -20,7 +21,7 @@ def _conv(level, sources, inputs, outputs, kernel, stride=1):
 
 
 def _depthwise(level, sources, channels, kernel, stride=1):
-    """Without a nonlinearity: the convolution of kernel 1 behind it completes it."""
+    """Applies no nonlinearity: the convolution of kernel 1 that follows completes the layer."""
     return dict(kind="depthwise", level=level, sources=sources, inputs=channels, outputs=channels, kernel=kernel, stride=stride,
                 phases=1, relu=False)  # fmt: skip
 
@@ -67,7 +68,7 @@ HEADS = {"tiny": small_u_net(8, 8), "small": u_net(20, 28, 20, 20)}
 
 
 def multiply_accumulates(layers, kept=1.0):
-    """A pixel, with this share of the pixels retained."""
+    """Returns the multiply-accumulates per pixel, with this share of the pixels retained."""
     total = 0.0
     for layer in layers:
         area = layer["kernel"] ** 2 * layer["outputs"] * (1 if layer["kind"] == "depthwise" else layer["inputs"])
@@ -111,7 +112,7 @@ class Head(nn.Module):
             self.bias[-1][:] = torch.tensor(START)
 
     def _step(self, n):
-        """What one activation step of source n means, by channel."""
+        """Returns the value of one activation step of source n, for each channel."""
         if n == 0:
             return torch.full((FEATURES,), FEATURE_STEP, device=self.range1.device)
         levels = 255 if self.layers[n - 1]["relu"] else 127
@@ -193,8 +194,9 @@ class Head(nn.Module):
 
 
 def widened(head, layers, seed=0):
-    """A head of the same graph with at least as many channels everywhere, which at first does what `head` does: added
-    channels start at random, what reads them at 0 (Chen et al. 2016, "Net2Net")."""
+    """Returns a head of the same graph with at least as many channels in each layer, which at first computes what
+    `head` does: weights of added channels start at random, weights that read them at 0 (Chen et al. 2016,
+    "Net2Net")."""
     made = Head(layers, seed)
     width = [FEATURES] + [layer["outputs"] for layer in head.layers]
     wide = [FEATURES] + [layer["outputs"] for layer in layers]
@@ -223,7 +225,7 @@ def widened(head, layers, seed=0):
 
 
 def save_safetensors(head, path, name):
-    """The head for `trim3r quantize`: quant/README.md tells the tensors and the metadata."""
+    """Saves the head for `trim3r quantize`; quant/README.md describes the tensors and the metadata."""
     tensors = {}
     for n, _ in enumerate(head.layers, 1):
         tensors[f"layer{n}.weight"] = head.weight[n - 1]

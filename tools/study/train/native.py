@@ -1,4 +1,4 @@
-"""C behind the training: compiled when first asked for, into $TRIM3R_BUILD, else into ~/.cache/trim3r."""
+"""C code of the training, compiled at first use into $TRIM3R_BUILD, else into ~/.cache/trim3r."""
 import ctypes
 import glob
 import hashlib
@@ -12,7 +12,8 @@ HEADS = os.path.join(HERE, "..", "..", "..", "quant", "heads")
 
 
 def build(name, sources, flags, headers=(), folder=None):
-    """The path of the shared library made of `sources`; compiled only where sources, flags or machine changed."""
+    """Returns the path of the shared library made of `sources`; compiles it only if sources, flags or machine
+    changed."""
     folder = folder or os.environ.get("TRIM3R_BUILD") or os.path.expanduser("~/.cache/trim3r")
     command = [os.environ.get("CC", "cc"), *flags, "-shared", "-fPIC"]
     digest = hashlib.sha256(" ".join(command + [os.uname().nodename]).encode())
@@ -45,7 +46,7 @@ def splatter(*more):
 
 
 def preparer():
-    """prepare.c, the runtime that it calls, and what rivals rank with."""
+    """Builds prepare.c, the parts of the runtime that it calls, and the rivals' scores."""
 
     def here(*pattern):
         return sorted(glob.glob(os.path.join(HERE, "..", "..", "..", *pattern), recursive=True))

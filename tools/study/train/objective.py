@@ -1,4 +1,5 @@
-"""What a step minimizes: pictures drawn from a head's splats, plain and refined, in their own and in a third view."""
+"""The loss of a training step: pictures rendered from a head's splats, plain and refined, in their own views and in a
+third view."""
 import numpy as np
 import torch
 
@@ -7,7 +8,7 @@ import perceptual
 import samples
 import splatting
 
-FLOOR = 1e-5  # of the MSE: 50 dB are enough
+FLOOR = 1e-5  # added to the MSE: 50 dB are enough
 REFINEMENTS = 2
 
 
@@ -16,7 +17,8 @@ def as_tensor(image):
 
 
 def neighbours(picture, counts):
-    """A splat a pixel of its own colour wherever `counts` is 0: what another view's splats show there. [n, 9]"""
+    """Returns a splat with the pixel's own colour wherever `counts` is 0, in place of another view's splats there. [n,
+    9]"""
     y, x = (torch.from_numpy(i) for i in np.nonzero(counts == 0))
     variance, none = torch.full((len(x),), 0.36), torch.zeros(len(x))
     centres = torch.stack((x, y), 1).float()
@@ -24,8 +26,8 @@ def neighbours(picture, counts):
 
 
 class Batch:
-    """Prepared pictures as the network and the splatter take them. `covered`, a flag a picture: another view covers
-    what has no depth here, so that splats must end where it begins."""
+    """Prepared pictures as the network and the splatter take them. `covered`, a flag for each picture: another view
+    covers the area without depth here, so that splats must end at its edge."""
 
     def __init__(self, prepared, device, covered=None):
         self.prepared = prepared
@@ -45,13 +47,13 @@ class Batch:
             self.around.append(neighbours(self.pictures[b], self.counts[b] if flag else np.ones((1, 1), np.uint8)))
             if flag:
                 self.counts[b] = 1
-        # a splat reaches a pixel beyond its depth
+        # a splat reaches one pixel beyond its depth
         self.weight = torch.nn.functional.max_pool2d(torch.from_numpy(self.counts).float()[:, None], 3, 1, 1)
         b, y, x = self.index
         self.own_colour = self.pictures[b, :, y, x]
 
     def with_neighbours(self, splats):
-        """The splats of each picture followed by those around them, and where each picture's begin."""
+        """Returns the splats of each picture followed by those around them, and the start of each picture's."""
         parts, start = [], [0]
         for b, around in enumerate(self.around):
             parts += [splats[self.start[b] : self.start[b + 1]], around]
@@ -85,11 +87,11 @@ def planar_loss(head, batch, rng, term, device):
     footprints = batch.footprints(head, device)
     splats, begins = batch.with_neighbours(splatting.planar_splats(*footprints, batch.pixel))
     order = drawing_order(rng, begins)
-    half = (len(batch.prepared) + 1) // 2  # the others are drawn as they are: refining costs as much as the rest
+    half = (len(batch.prepared) + 1) // 2  # the other half is rendered unrefined, because refining costs as much as all the rest
     start, some = begins[: half + 1], slice(0, begins[half])
     first, pictures = splats[some], batch.pictures[:half]
-    # Without momentum, which overshoots an even error: corrections count as constants, so a head would be told the
-    # overshoot alone, and that is the wrong sign.
+    # Without momentum, which overshoots a uniform error: corrections count as constants, so the head would see only the
+    # overshoot, which has the wrong sign.
     corrected = splatting.refine(first, start, order[some], pictures, batch.counts[:half], REFINEMENTS, momentum=False)
     refined = first + (corrected - first).detach()
     loss, seen = 0, []
@@ -105,7 +107,7 @@ def planar_loss(head, batch, rng, term, device):
 
 
 def novel_loss(head, context, target, term, device):
-    """Loss of a third view of the two context views' splats, over what either shows of it."""
+    """Returns the loss of the context splats in a third view, over the area that either view covers."""
     splats, depths = [], []
     for prepared, view in context:
         batch = Batch([prepared], device)
