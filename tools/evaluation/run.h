@@ -1,4 +1,4 @@
-/* An evaluation from end to end: cases, rows, what is written of them. */
+/* A complete evaluation: cases, rows, outputs. */
 #ifndef TRIM3R_TOOLS_EVALUATION_RUN_H
 #define TRIM3R_TOOLS_EVALUATION_RUN_H
 
