@@ -1,4 +1,4 @@
-/* For tests linked with the asserting runtime that misuse nothing: an assertion that fails ends the test. */
+/* For tests that link the asserting runtime and use it correctly: a failed assertion ends the test. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-/* What a firmware's debug build might define: here an assertion that fails is counted. */
+/* An assertion macro as a firmware's debug build might define it: failures are counted. */
 #ifndef T3R_NOTED_ASSERT_H
 #define T3R_NOTED_ASSERT_H
 

@@ -1,4 +1,5 @@
-/* Wide depth holes: depth lent by other views, bridged between what is known, and what other views say against it. */
+/* Wide depth holes: filled from other views, bridged between known depths, and rejected where other views
+ * contradict. */
 #include "rig.h"
 #include "rgbd_frame.h"
 
@@ -50,7 +51,7 @@ static uint32_t of_kind(const rig *s, int v, uint8_t validity)
 
 /* --- one view ----------------------------------------------------------------------------------------------------- */
 
-/* A slanted plane goes on through a hole as wide as a third of the picture: 1 / depth is straight in the picture. */
+/* A slanted plane continues through a hole a third of the picture wide: 1 / depth is linear in the picture. */
 static void planes_go_on(void **state)
 {
     (void)state;
@@ -148,7 +149,7 @@ static void as_defined(void **state)
     free(s);
 }
 
-/* Across an edge no depth is invented, and the farther surface goes on behind the nearer. */
+/* No depth is invented across an edge, and the farther surface continues behind the nearer one. */
 static void edges(void **state)
 {
     (void)state;
@@ -167,7 +168,7 @@ static void edges(void **state)
     free(s);
 }
 
-/* What was never measured up to the border stays unknown but for the corners that diagonals cut. */
+/* An unmeasured area at the border stays unknown, except corners that diagonals cut. */
 static void borders_stay(void **state)
 {
     (void)state;
@@ -181,7 +182,7 @@ static void borders_stay(void **state)
     free(s);
 }
 
-/* A copied arena's planes may hold anything: what is said to be measured at depth 0 is no known pixel. */
+/* A copied arena's planes may hold anything: a pixel marked as measured with depth 0 is not known. */
 static void nothing_is_trusted(void **state)
 {
     (void)state;
@@ -207,7 +208,7 @@ static void nothing_is_trusted(void **state)
 
 /* --- two views ---------------------------------------------------------------------------------------------------- */
 
-/* What the other view measured is exact, in steps of this view, and wanted last where budgets are small. */
+/* Depth that the other view measured is exact, in steps of this view, and ranks last when budgets are small. */
 static void lent(void **state)
 {
     (void)state;
@@ -229,7 +230,7 @@ static void lent(void **state)
     }
 }
 
-/* Of two points of the other view on one pixel the nearer is lent. */
+/* The nearer of two points of the other view on one pixel is used. */
 static void nearest_lent(void **state)
 {
     (void)state;
@@ -242,7 +243,7 @@ static void nearest_lent(void **state)
     free(s);
 }
 
-/* Nothing is lent that is farther than the view's own steps reach. */
+/* Depth beyond the view's own steps is not used. */
 static void out_of_steps_is_not_lent(void **state)
 {
     (void)state;
@@ -254,14 +255,14 @@ static void out_of_steps_is_not_lent(void **state)
     }
     t3r_bridge_lend(s->view, PAIR, 0, 0, &alone);
     assert_int_equal(of_kind(s, 0, T3R_NO_DEPTH), PIXELS);
-    s->depth[1][20 * W + 24] = 3 * UNIT / 2; /* by 10.7 pixels to the right */
+    s->depth[1][20 * W + 24] = 3 * UNIT / 2; /* 10.7 pixels to the right */
     t3r_bridge_lend(s->view, PAIR, 0, 0, &alone);
     assert_int_equal(of_kind(s, 0, T3R_BRIDGED | T3R_MARK_LENT), 1);
     assert_int_equal(s->depth[0][20 * W + 35], 3 * UNIT / 2 * 32);
     free(s);
 }
 
-/* A surface that neither view measured is bridged in the first and covered in the second. */
+/* A surface that neither view measured is bridged in the first view and covered in the second. */
 static void bridged_once(void **state)
 {
     (void)state;
@@ -279,7 +280,8 @@ static void bridged_once(void **state)
     free(s);
 }
 
-/* Nothing is left before what another view measured: 16 times the distance between them above the depth. */
+/* No bridge stays in front of a surface that another view measured: 16 times the views' distance, measured from the
+ * depth. */
 static void seen_through(void **state)
 {
     (void)state;
@@ -299,7 +301,7 @@ static void seen_through(void **state)
     }
 }
 
-/* Of two bridges of one surface the second to settle is covered by the first, whichever view comes first. */
+/* Of two bridges of one surface, the one that is settled second is covered by the first, in either order of views. */
 static void settled_cover(void **state)
 {
     (void)state;
@@ -318,7 +320,7 @@ static void settled_cover(void **state)
     }
 }
 
-/* Later comparisons leave such pixels as they are, and forgetting them gives back the planes as they were. */
+/* Later comparisons keep such pixels, and forgetting them restores the planes. */
 static void forgotten(void **state)
 {
     (void)state;
@@ -392,7 +394,7 @@ static uint32_t reconstruct(uint32_t radius, uint32_t gaussians, uint32_t views,
     return measured;
 }
 
-/* Bridged points compete but add nothing to the budget: exactly Z, and at most what was measured. */
+/* Bridged points compete but do not add to the budget: exactly Z, and at most the number of measured points. */
 static void budgets_hold(void **state)
 {
     (void)state;

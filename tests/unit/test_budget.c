@@ -1,4 +1,4 @@
-/* The budget stage alone: exact quotas in every mode, nested sets, and counts as large as configurations allow. */
+/* The budget stage alone: exact quotas in every mode, nested sets, and the largest counts that configurations allow. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,7 +13,7 @@
 
 enum { SIDE = 96, PIXELS = SIDE * SIDE, CLUSTERS = 40, WORDS = (PIXELS + 31) / 32 };
 
-/* One worker. */
+/* For one worker. */
 static t3r_group_count counts[T3R_MAX_CLUSTERS + 1];
 static const t3r_budget_work alone = {{NULL, 1}, counts, &t3r_kernels_c};
 
@@ -239,7 +239,7 @@ static int by_texture(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The same textures in other places, by the seed; empty clusters stay out of it, ranks and quotas follow. */
+/* The seed moves the textures to other places; empty clusters take no part; ranks and quotas follow. */
 static void textures_are_shuffled(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* A build that is cancelled at any of its steps says so, leaves no scene, and the next one makes what it would have
- * made before. */
+/* A build cancelled at any step reports it and leaves no scene; the next build is the same as without the cancelled
+ * one. */
 #include "unit.h"
 
 #include "rgbd_frame.h"

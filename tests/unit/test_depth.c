@@ -1,4 +1,4 @@
-/* Depth: validity, and holes that are filled or left. */
+/* Depth: validity, and holes that are filled or stay. */
 #include "unit.h"
 
 #include "depth/depth.h"
@@ -53,7 +53,7 @@ static void interpolated(void **state)
 {
     (void)state;
     canvas *c = canvas_new(0);
-    /* a ramp along x with a gap of three, in a row alone */
+    /* a ramp along x with a gap of three, in a single row */
     for (int x = 0; x < W; x++) {
         c->depth[5 * W + x] = (uint16_t)(1000 + 10 * x);
     }
@@ -94,7 +94,7 @@ static void reach(void **state)
     }
 }
 
-/* Holes at the border are bracketed along it only; a hole in the corner not at all. */
+/* Holes at the border are bracketed only along it; a hole in the corner not at all. */
 static void border(void **state)
 {
     (void)state;
@@ -158,7 +158,7 @@ static void agreement(void **state)
     }
 }
 
-/* Of two brackets the narrower; across when they are as wide. */
+/* The narrower of two brackets is used; the one across if both are equally wide. */
 static void nearer_pair(void **state)
 {
     (void)state;
@@ -174,7 +174,7 @@ static void nearer_pair(void **state)
     free(c);
 }
 
-/* Filled pixels seed nothing: every one lies between two measured ones, whose range holds it. */
+/* Filled pixels are no seeds: each is between two measured pixels, and within their range. */
 static void never_seeds(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* How many passes pay: as the formula in doubles, within its bounds at all extremes, fewer for more Gaussians and for
- * views that disagree more. Whole builds are in test_refine.c. */
+/* The fitted number of passes: equal to the formula in doubles, within its bounds at all extremes, lower for more
+ * Gaussians and for views that disagree more. test_refine.c covers whole builds. */
 #include "unit.h"
 
 #include "refine/fitted_passes.h"
@@ -50,7 +50,7 @@ static void extremes(void **state)
     assert_int_equal(t3r_predict_passes(most_points, 1, 0, 16), 16);
     assert_int_equal(t3r_predict_passes(most_points, most_points, worst, 16), 1);
     assert_int_equal(t3r_predict_passes(1, 1, 0, 1), 1);
-    assert_int_equal(t3r_predict_passes(0, 0, 100, 16), 1); /* a restored arena may be without points */
+    assert_int_equal(t3r_predict_passes(0, 0, 100, 16), 1); /* a restored arena may have no points */
     assert_int_equal(t3r_predict_passes(0, 5, 100, 16), 1);
     assert_int_equal(t3r_predict_passes(1, 1, UINT32_MAX, 16), 1);
 }

@@ -1,5 +1,5 @@
-/* The allocation `given`: the points of highest importance and no others, the density that heads are told, and that
- * nothing of it stays behind for the other allocations. The references are made here, by sorting and by counting. */
+/* The allocation `given`: exactly the points of highest importance, the density passed to heads, and no trace left
+ * for the other allocations. The references are made here, by sorting and by counting. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -27,7 +27,7 @@ enum {
     GAP = 5
 };
 
-/* One worker. */
+/* For one worker. */
 static t3r_group_count counts[T3R_MAX_CLUSTERS + 1];
 static const t3r_budget_work alone = {{NULL, 1}, counts, &t3r_kernels_c};
 
@@ -152,7 +152,7 @@ static double log_share(uint32_t retained, uint32_t valid)
     return log_q10 < T3R_LEAST_DENSITY_Q10 ? T3R_LEAST_DENSITY_Q10 : log_q10;
 }
 
-/* Of the 9 x 9 pixels about one, as far as they are in the picture. */
+/* Over the 9 x 9 pixels around a pixel, inside the picture. */
 static double window_share(const t3r_view *view, int x, int y)
 {
     uint32_t retained = 0, valid = 0;
@@ -322,7 +322,7 @@ static void nothing_stays_behind(void **state)
         assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK);
         assert_true(hash_of(&scene) == before);
 
-        /* at once, without an analysis kept, in an arena that was told of the allocation or not, moved in between */
+        /* at once, without a kept analysis, in an arena sized with or without the allocation, moved in between */
         for (int told = 0; told < 2; told++) {
             config.gaussians = config.max_gaussians = 400;
             config.keep_analysis = 0;
@@ -347,7 +347,7 @@ static void nothing_stays_behind(void **state)
     }
 }
 
-/* A copy of a kept analysis goes on with new importances, whatever its masks held. */
+/* A copy of a kept analysis continues with new importances, whatever its masks held. */
 static void a_copy_goes_on(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* Matching: the census against its definition, semi-global matching in blocks against one that keeps everything, and
- * what is done about disparities that are wrong. */
+ * the handling of wrong disparities. */
 #include "unit.h"
 
 #include "stereo/match.h"
@@ -222,7 +222,7 @@ static void blocks(void **state)
     }
 }
 
-/* A texture seen twice, the second time `shift` columns on and through `gain` / 256. */
+/* Draws a texture twice, the second time shifted by `shift` columns and scaled by `gain` / 256. */
 static void seen_twice(pair *p, uint32_t shift, uint32_t gain)
 {
     const uint32_t width = p->m.width, height = p->m.height, right = (uint32_t)T3R_MATCH_RIGHT(width, p->m.disparities);
@@ -247,7 +247,7 @@ static void shifted(void **state)
             pair p = pair_new(64, 40, 32, paths);
             seen_twice(&p, 11, gain);
             t3r_match_all(&p.m, true);
-            /* the last columns' partners lie inside too: all of the left plane is found, to the last pixel */
+            /* the last columns' partners are inside too: all of the left plane is found, to the last pixel */
             for (size_t i = 0; i < p.pixels[0]; i++) {
                 if (p.luma[0][i] != 0) {
                     assert_in_range(p.m.disparity[0][i], 11 * 128 - 64, 11 * 128 + 64);
@@ -277,7 +277,7 @@ static void agreement(void **state)
     const uint32_t right = 55;
     set(&p, 0, 5 * 128, 77);
     set(&p, 1, 5 * 128, 0);
-    p.m.disparity[0][3 * 40 + 20] = 5 * 128 + 128; /* a pixel off is still agreement */
+    p.m.disparity[0][3 * 40 + 20] = 5 * 128 + 128; /* one pixel off still agrees */
     p.m.disparity[0][3 * 40 + 21] = 7 * 128 + 1;   /* more is not */
     p.m.disparity[1][5 * right + 30] = T3R_NO_DISPARITY;
     t3r_match_agree(&p.m);
@@ -404,7 +404,7 @@ static void filling(void **state)
         }
     }
     t3r_match_fill(&p.m, 0);
-    /* nothing leads there from the other picture: hidden, so the farther surface shows */
+    /* nothing in the other picture leads there: the area is hidden, so the farther surface fills it */
     for (uint32_t y = 10; y < 20; y++) {
         for (uint32_t x = 26; x < 34; x++) {
             assert_int_equal(p.m.disparity[0][y * 60 + x], 4 * 128);
@@ -415,7 +415,7 @@ static void filling(void **state)
     for (uint32_t i = 25 * 60; i < 40 * 60; i++) {
         assert_int_equal(p.m.disparity[0][i], T3R_NO_DISPARITY);
     }
-    /* an edge of luma between the hole's nearer half and the farther surface: each half keeps its own */
+    /* an edge of luma between the hole's nearer half and the farther surface: each half keeps its own surface */
     for (uint32_t i = 0; i < 60 * 40; i++) {
         p.luma[0][i] = i % 60 < 30 ? 60 : 160;
     }
@@ -423,7 +423,7 @@ static void filling(void **state)
     for (uint32_t x = 26; x < 34; x++) {
         assert_int_equal(p.m.disparity[0][14 * 60 + x], x < 30 ? 4 * 128 : 10 * 128);
     }
-    /* what shows nothing stays empty */
+    /* black pixels stay empty */
     p.luma[0][15 * 60 + 28] = 0;
     t3r_match_fill(&p.m, 0);
     assert_int_equal(p.m.disparity[0][15 * 60 + 28], T3R_NO_DISPARITY);

@@ -1,5 +1,5 @@
-/* Planes where stereo matched nothing: found among noise and strays, continued beyond what was matched, bounded, the
- * same on views of any side; and outlines that matched outlines. Whole builds are in test_stereo_views.c. */
+/* Planes where stereo matched nothing: found among noise and outliers, continued beyond the matched area, bounded,
+ * the same for views of any side; and outlines that matched outlines. test_stereo_views.c covers whole builds. */
 #include "unit.h"
 
 #include "stereo/planes/plane_fill.h"
@@ -9,7 +9,7 @@
 
 enum { W = 96, H = 64, PIXELS = W * H };
 
-/* A view and its planes; depths as some surface has them. */
+/* A view and its planes; depths as of some surface. */
 typedef struct shot {
     t3r_view view;
     double truth[PIXELS];
@@ -19,7 +19,7 @@ typedef struct shot {
 
 static _Alignas(64) uint8_t work[T3R_PLANE_FILL_BYTES(W, H)];
 
-/* A floor, and behind it a wall that turns away, both matched but where x is in from..end - 1. */
+/* Draws a floor, and a wall that turns away at its end, both matched except at x in from..end - 1. */
 static shot *shoot(uint32_t from, uint32_t end)
 {
     shot *s = unit_array(1, sizeof *s);
@@ -44,7 +44,7 @@ static shot *shoot(uint32_t from, uint32_t end)
     return s;
 }
 
-/* Share of the filled pixels that are off by more than 2 %. */
+/* Returns the share of the filled pixels that are off by more than 2 %. */
 static double off(const shot *s)
 {
     uint32_t filled = 0, wrong = 0;
@@ -78,7 +78,7 @@ static void found(void **state)
     free(s);
 }
 
-/* To the picture's end, where no other side holds a surface; what was matched stays. */
+/* Planes continue to the picture's end, where the other side has no surface; matched pixels stay. */
 static void continued(void **state)
 {
     (void)state;
@@ -114,7 +114,7 @@ static void bounded(void **state)
     free(s);
 }
 
-/* As many planes as there is room for, of twice as many strips; and none where nothing is matched. */
+/* Finds as many planes as there is room for, from twice as many strips, and none without matches. */
 static void counted(void **state)
 {
     (void)state;
@@ -131,7 +131,7 @@ static void counted(void **state)
     free(s);
 }
 
-/* So few samples of a patch are as it says at once: everything is filled at its distance. */
+/* A patch of so few samples is taken as it is: everything is filled at its distance. */
 static void of_a_patch(void **state)
 {
     (void)state;
@@ -160,7 +160,7 @@ static void of_a_patch(void **state)
     free(grey);
 }
 
-/* Stripes so unlike that a way across half a hundred of them is longer than any that counts. */
+/* Stripes so different that a path across some fifty of them exceeds the longest that counts. */
 static void out_of_reach(void **state)
 {
     (void)state;
@@ -180,7 +180,7 @@ static void out_of_reach(void **state)
     free(s);
 }
 
-/* Black pixels show nothing; what is beyond all steps is a hole; without planes nothing is done. */
+/* Black pixels get no plane; planes beyond all steps leave a hole; without planes nothing changes. */
 static void left_alone(void **state)
 {
     (void)state;
@@ -253,7 +253,7 @@ static void anything(void **state)
     }
 }
 
-/* Rows that end at the same distance from both of a pair, at another, and nowhere near. */
+/* Rows that end at the same distance from both of a pair, at a different one, and nowhere near. */
 static void outlines(void **state)
 {
     (void)state;
@@ -270,7 +270,7 @@ static void outlines(void **state)
         for (int i = 0; i < RIGHT; i++) {
             disparity[0][i] = disparity[1][i] = 5 << T3R_DISPARITY_BITS;
         }
-        for (int i = 0; i < RIGHT; i++) { /* as agreement leaves them */
+        for (int i = 0; i < RIGHT; i++) { /* as after the agreement check */
             confidence[0][i] = i < SIDE && left[i] != 0 && right[i + COUNT - 1 - 5] != 0 ? 70 : 0;
             const int x = i - (COUNT - 1 - 5);
             confidence[1][i] = x >= 0 && x < SIDE && right[i] != 0 && left[x] != 0 ? 70 : 0;

@@ -1,5 +1,5 @@
-/* Refinement on the built-in room: it gains what it promises, changes nothing where nothing is missing, can be
- * cancelled anywhere, and neither the arena's size nor the order of parallel work shows in its bits. */
+/* Refinement on the built-in room: it gains what it promises, changes nothing where no residual is left, can be
+ * cancelled anywhere, and its bits depend neither on the arena's size nor on the order of parallel work. */
 #include "unit.h"
 #include "rgbd_frame.h"
 #include "sanitized_cpu.h"
@@ -26,7 +26,7 @@ static t3r_correction solve(const t3r_refine_sums *sums, const t3r_correction *b
 
 typedef struct counter {
     uint32_t calls, cancel_at; /* 0 = never */
-    uint32_t views, last;      /* views refined, each pass for itself; the last of them, from 1 on */
+    uint32_t views, last;      /* views refined, counted in each pass; the last of them, from 1 on */
 } counter;
 
 static int count_refine(void *user, t3r_stage stage, uint32_t done, uint32_t total)
@@ -136,8 +136,7 @@ static void gains_what_it_promises(void **state)
     }
 }
 
-/* The same view twice, its depth up to 3 % off: splats of both lie in each other, and answer every residual together.
- */
+/* Takes the same view twice, with depth up to 3 % off: splats of both overlap and answer every residual together. */
 static void see_it_twice(void)
 {
     uint64_t seed = 7;
@@ -250,7 +249,7 @@ static void extremes_stay_in_range(void **state)
     }
 }
 
-/* Where nothing is missing any more a share of the pass before goes on, and no more than that. */
+/* Without residuals a share of the previous pass's step continues, and no more. */
 static void momentum_fades(void **state)
 {
     (void)state;
@@ -266,14 +265,14 @@ static void momentum_fades(void **state)
         for (int k = 0; k < T3R_REFINE_PARAMETERS; k++) {
             assert_int_equal(c.step_q16[k], t3r_round_shift32(before.step_q16[k] * 3, 4));
         }
-        assert_int_equal(c.share_q14, 1000); /* no curvature: nothing is known of the answer */
+        assert_int_equal(c.share_q14, 1000); /* no curvature: the effect of a step is unknown */
     }
-    sums.weight = 0; /* not seen: nothing moves */
+    sums.weight = 0; /* unseen: nothing moves */
     c = solve(&sums, &c);
     assert_memory_equal(&c, &still, sizeof c);
 }
 
-/* A Gaussian whose parameters do not mix, and which is told of `quarters` of a step. */
+/* Returns sums of a Gaussian whose parameters are independent, with a residual of `quarters` of a step. */
 static t3r_refine_sums told_of(int32_t quarters)
 {
     t3r_refine_sums sums = {.weight = 1 << 15,
@@ -286,14 +285,14 @@ static t3r_refine_sums told_of(int32_t quarters)
     return sums;
 }
 
-/* The next share by how much of the step before, which took 11/64 of it, is asked for again: all of it and half double
- * the share, more is not believed; a quarter takes 4/3 of it; none the same; as much back half, three times as much and
- * more a quarter, again the least that is believed. */
+/* The next share depends on how much of the previous step, which took 11/64, is requested again. All of it, and half
+ * of it, double the share, the maximum; a quarter takes 4/3; none keeps it. As much back halves it; three times as
+ * much and more quarters it, and again gives the minimum. */
 static void share_follows_the_answer(void **state)
 {
     (void)state;
     static const struct {
-        int32_t quarters; /* of what was asked for at first */
+        int32_t quarters; /* of the first request */
         int32_t share_q14;
     } cases[] = {{4, 5632}, {2, 5632}, {1, 3755}, {0, 2816}, {-4, 1408}, {-12, 704}, {-40, 704}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -403,7 +402,7 @@ static void cancelled_anywhere_it_can_be_done_again(void **state)
     }
 }
 
-/* An arena moves at any time: what refinement left of the analysis is not taken for one. */
+/* An arena may move at any time: what refinement overwrote of the analysis is not used as one. */
 static void moves_after_it(void **state)
 {
     (void)state;
@@ -426,7 +425,7 @@ static void moves_after_it(void **state)
     }
 }
 
-/* Another budget refines likewise: the same scene as built with it from the start. */
+/* Another budget refines likewise: the scene equals one built with it from the start. */
 static void rebudget_refines(void **state)
 {
     (void)state;
@@ -447,8 +446,8 @@ static void rebudget_refines(void **state)
     assert_true(hash[0] == hash[1]);
 }
 
-/* As many passes as pay: fewer for all points than for a tenth, the same scene as by that very number, and never more
- * than are allowed. */
+/* Fits the number of passes: fewer for all points than for a tenth, the same scene as with that number given, and
+ * never more than the maximum. */
 static void fits_its_passes(void **state)
 {
     (void)state;
@@ -482,7 +481,7 @@ static void fits_its_passes(void **state)
     assert_int_equal(t3r_refinement_passes(rt), 2);
     free(memory);
 
-    /* a view alone says nothing of noise: 150 levels^2 are taken for it */
+    /* a single view gives no estimate of noise: 150 levels^2 are assumed */
     config = settings(T3R_MAX_REFINEMENTS);
     config.gaussians = config.max_gaussians = BUDGET / 4;
     config.fit_passes = 1;
@@ -508,12 +507,12 @@ static uint64_t hash_with(uint32_t views, uint32_t passes, uint32_t structural)
     return hash;
 }
 
-/* A view with a curve of its own, which no gain levels: the scene keeps to the middle of both, and each view, less its
- * own level, is met as well as if both were alike. */
+/* One view has a tone curve that no gain levels. The scene keeps to the middle of both, and each view, without its
+ * own level, is matched as well as if both were alike. */
 static void structure_passes_over_levels(void **state)
 {
     (void)state;
-    for (uint32_t views = 1; views <= 2; views++) { /* one alone has no level that others lack */
+    for (uint32_t views = 1; views <= 2; views++) { /* a single view has no level of its own */
         assert_true(hash_with(views, 0, 1) == hash_with(views, 0, 0));
         assert_true(hash_with(views, 4, 1) != hash_with(views, 4, 0));
     }
@@ -532,7 +531,7 @@ static void structure_passes_over_levels(void **state)
             t3r_runtime *rt = open_arena(&config, 16);
             t3r_scene scene;
             assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
-            for (uint32_t i = 0; i < sizeof rgb[0]; i++) { /* what it should have met */
+            for (uint32_t i = 0; i < sizeof rgb[0]; i++) { /* the target */
                 rgb[0][i] = (uint8_t)(24 + as_it_is[0][i] * 6 / 8);
                 rgb[1][i] = (uint8_t)(24 + as_it_is[1][i] * 6 / 8);
             }

@@ -1,6 +1,6 @@
-/* What a tile's pixels add to splats of all kinds, small and huge, needles, centred far outside, one behind the other:
- * against sums in double over the rasterizer's own weights, and the same bits whatever is kept between the drawings and
- * however the scene is sliced. */
+/* What a tile's pixels add to splats of all kinds: small and huge, needles, centred far outside, hidden by others.
+ * Compared with sums in double over the rasterizer's own weights; the same bits however much is kept between
+ * drawings and however the scene is sliced. */
 #include "unit.h"
 
 #include "refine/refine_tile.h"
@@ -123,7 +123,7 @@ static void clear_sums(t3r_refine_sums *sums, uint32_t first, uint32_t count)
 static const t3r_refine_band all_tiles = {0};
 static t3r_wanted wanted;
 
-/* Splats that are drawn again: at most so many in one go. */
+/* The most splats drawn again in one go. */
 static uint32_t again_most;
 
 static bool draws_again(void *context, uint32_t count)
@@ -172,7 +172,7 @@ static void neither_room_nor_slices_show(void **state)
     }
 }
 
-/* No tile is drawn for Gaussians that do not reach into it. */
+/* No tile is drawn for Gaussians that do not reach it. */
 static void tiles_without_the_slice_are_left_alone(void **state)
 {
     (void)state;
@@ -185,7 +185,7 @@ static void tiles_without_the_slice_are_left_alone(void **state)
     assert_memory_equal(&wanted, &before, sizeof wanted);
 }
 
-/* What a splat blends in a tile, by its own integers; 0 beyond its rows. */
+/* A splat's blending in a tile, by its own integers; 0 beyond its rows. */
 typedef struct layer {
     double weight[SIDE_OF_TILE][SIDE_OF_TILE], alpha[SIDE_OF_TILE][SIDE_OF_TILE];
     bool draws;
@@ -209,7 +209,8 @@ static void blend_layer(const t3r_splat *s, uint32_t left, uint32_t top, t3r_til
     }
 }
 
-/* A tile in double, from the last layer to the first: the colour behind, and by how much the integers may be off. */
+/* A tile in double, from the last layer to the first: the colour behind a layer, and the error bound of the
+ * integers. */
 typedef struct tile_behind {
     double colour[3][SIDE_OF_TILE][SIDE_OF_TILE], off[SIDE_OF_TILE][SIDE_OF_TILE];
 } tile_behind;
@@ -220,7 +221,8 @@ typedef struct expected {
         gr_off[5];
 } expected;
 
-/* g is right to a unit of w times the largest step, a half of its own, and what the colour behind is off. */
+/* The error of g is at most one unit of w times the largest step, half a unit of its own, and the error of the
+ * colour behind. */
 static void add_pixel(double w, double unit, double dx, double dy, const double step[3], const double lacks[3],
                       double behind_off, const own_axes *axes, expected *sum)
 {
@@ -259,7 +261,7 @@ static double near(double got, double want, double by)
     return fabs(got - want) / by;
 }
 
-/* What the layer's pixels add, and off the tile it goes. */
+/* Returns what the layer's pixels add, and removes the layer from the tile. */
 static expected take_off(const layer *l, const t3r_splat *s, const own_axes *axes, uint32_t left, uint32_t top,
                          const t3r_tile *drawn, double unit, tile_behind *behind)
 {
@@ -354,7 +356,7 @@ static void follows_double(void **state)
     assert_true(accumulated > 5000);
 }
 
-/* What is not before the camera has no footprint there. */
+/* A Gaussian that is not in front of a camera has no footprint there. */
 static void unseen_have_no_footprint(void **state)
 {
     (void)state;

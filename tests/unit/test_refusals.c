@@ -1,4 +1,4 @@
-/* Calls that are refused at the door, and copies of an arena that say what cannot be: each limit from both sides. */
+/* Calls refused on entry, and copies of an arena with impossible fields: each limit from both sides. */
 #include "unit.h"
 
 #include "core/scene_frame.h"
@@ -58,7 +58,7 @@ static void add(t3r_runtime *rt)
     assert_int_equal(t3r_add_view(rt, &frame, &camera), T3R_OK);
 }
 
-/* What a program compiled with another header says of itself. */
+/* Header data of a program compiled with another header. */
 static void another_interface(void **state)
 {
     (void)state;
@@ -223,7 +223,7 @@ static void warm_states_that_cannot_be(void **state)
     DAMAGED(damaged->next_slot = 1); /* the second slot is still empty */
     add(rt);
     assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
-    add(rt); /* in the first one's place */
+    add(rt); /* in place of the first view */
     assert_int_equal(rt->next_slot, 1);
     memcpy(copy, arena, arena_bytes);
     assert_int_equal(t3r_attach(&found, copy, arena_bytes), T3R_OK);
@@ -288,7 +288,7 @@ static void scenes_out_of_range(void **state)
     }
 }
 
-/* A camera too far from the scene's origin for Q20, by each of the three limits that come one after the other. */
+/* A camera too far from the scene's origin for Q20, by each of the three limits in turn. */
 static void cameras_too_far_away(void **state)
 {
     (void)state;
@@ -338,8 +338,8 @@ static void strips(void **state)
     assert_int_equal(rt->views, 1);
     assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, 8, 0, 0), T3R_OK);
     assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, 0, 0, 8),
-                     T3R_ERR_STATE); /* begins nothing, goes on nowhere */
-    t3r_frame lower = frame;         /* as wide as the plane, and resized all the same */
+                     T3R_ERR_STATE); /* starts nothing and continues nothing */
+    t3r_frame lower = frame;         /* as wide as the plane, but still resized */
     lower.height = SIDE / 2;
     assert_int_equal(t3r_add_view(rt, &lower, &camera), T3R_OK);
     config.warm = 1;
@@ -351,7 +351,7 @@ static void strips(void **state)
     config.depth = T3R_DEPTH_STEREO;
     rt = opened(&config);
     frame.depth = NULL;
-    assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, SIDE / 2, 7, 7), T3R_OK); /* depth rows say nothing */
+    assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, SIDE / 2, 7, 7), T3R_OK); /* empty depth rows */
     colour = frame;
     colour.planes[0] = rgb + (size_t)3 * SIDE * (SIDE / 2);
     assert_int_equal(t3r_add_rows(rt, &colour, &camera, SIDE / 2, SIDE / 2, 0, 0), T3R_OK);

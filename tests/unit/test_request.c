@@ -1,5 +1,5 @@
-/* What a build may be asked for: every part of a request alone and with the others gives the scene that a configuration
- * of these values gives, holds for its call alone, and leaves everything as it was when it is refused. */
+/* Requests for a build: each part, alone and with the others, gives the scene of a configuration with these values,
+ * holds for its call alone, and changes nothing when refused. */
 #include "unit.h"
 #include "rgbd_frame.h"
 #include "trim3r_heads.h"
@@ -103,21 +103,21 @@ static void every_combination(void **state)
             .allocation = parts & 4 ? T3R_ALLOCATE_UNIFORM : T3R_ALLOCATE_CONFIGURED,
             .head = parts & 8 ? T3R_HEAD_LEARNED : T3R_HEAD_CONFIGURED,
             .importance = parts & 16 ? planes : NULL,
-            .importance_stride_bytes = parts & 32 || parts & 16 ? SIDE * 2 : 0, /* says nothing without planes */
+            .importance_stride_bytes = parts & 32 || parts & 16 ? SIDE * 2 : 0, /* meaningless without planes */
         };
         t3r_scene scene;
         t3r_runtime *rt;
         if (request.importance != NULL && request.allocation != 0) {
             rt = with_view(&config);
             assert_int_equal(t3r_reconstruct(rt, &request, &scene), T3R_ERR_ARGUMENT);
-            request.allocation = T3R_ALLOCATE_GIVEN; /* says it once more */
+            request.allocation = T3R_ALLOCATE_GIVEN; /* the same again */
         }
         expected_of(&request, &expected);
         assert_true(expected.count <= (request.gaussians != 0 ? request.gaussians : BUDGET));
         rt = with_view(&config);
         assert_int_equal(t3r_reconstruct(rt, &request, &scene), T3R_OK);
         expect_same(&expected, &scene);
-        assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK); /* nothing of the request stays */
+        assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK); /* nothing of the request remains */
         expect_same(&plain, &scene);
         assert_memory_equal(&rt->config, &config, sizeof config);
         assert_int_equal(t3r_rebuild(rt, &request, &scene), T3R_OK);
@@ -199,7 +199,7 @@ static void a_bounded_loss_needs_its_settings(void **state)
     }
 }
 
-/* Switched on, each changes the scene; it outlives a reset; switched off, nothing of it is left. */
+/* Each ablation changes the scene and outlives a reset; switched off, it leaves no trace. */
 static void ablations(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Splats taken off a tile: what is behind the first is what was drawn; the largest values that there can be fit; and
- * the same splats in another scale of brightness, or a tile further, add what they should. */
+/* Splats removed from a tile: behind the first is the picture as drawn; the largest possible values fit; the same
+ * splats at another brightness, or one tile further, add what they should. */
 #include "unit.h"
 
 #include "kernels/scatter_bits.h"
@@ -43,7 +43,7 @@ static t3r_scatter_splat scatter_of(const t3r_tile_splat *span, const t3r_blende
                                .pixels = 256};
 }
 
-/* Every layer's colour is mixed over what was behind it: all of them off, that is the picture. */
+/* Every layer's colour is mixed over the colour behind it: with all layers removed, that is the picture. */
 static void behind_all_is_the_picture(void **state)
 {
     (void)state;
@@ -72,7 +72,7 @@ static void behind_all_is_the_picture(void **state)
     }
 }
 
-/* White on black, all of it, and as much missing: the sums are exact. */
+/* Full white on black, and a residual as large: the sums are exact. */
 static void the_most_there_can_be_fits(void **state)
 {
     (void)state;
@@ -92,7 +92,7 @@ static void the_most_there_can_be_fits(void **state)
         t3r_refine_sums sums = {.area = 256};
         const t3r_scatter_splat splat = {.span = &white, .rows = rows, .origin_q13 = {8192, 8192}, .pixels = 256};
         t3r_scatter_c(&tile, &splat, &sums);
-        /* 256 pixels, a quarter of them counted (area), each 255^2 x 3 levels^2 but for roundings, at x = y = 1 */
+        /* 256 pixels, a quarter of them counted (area), each 255^2 x 3 levels^2 apart from roundings, at x = y = 1 */
         const double most = 64.0 * 3 * 255 * 255 * 128;
         for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
             assert_true(fabs(sums.curvature[k] / most - 1) < 0.03);
@@ -105,7 +105,7 @@ static void the_most_there_can_be_fits(void **state)
     }
 }
 
-/* Weights an eighth of others add an eighth to what is linear in them, and a 64th to what is square. */
+/* Weights an eighth as large add an eighth to what is linear in them, and a 64th to what is square. */
 static void faint_splats_keep_their_bits(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* The state after errors and cancels: refused calls leave what they promise to leave, and a damaged copy is refused. */
+/* The state after errors and cancels: refused calls keep what they promise to keep, and a damaged copy is refused. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,7 +20,7 @@ static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[1 << 20], copy[1 << 20];
 static uint8_t colour[SIDE * SIDE * 3], depth[SIDE * SIDE * 2];
 static size_t arena_bytes;
 static int cancel_at = -1;
-static uint32_t calls_left = UINT32_MAX; /* of refinement, before it is cancelled */
+static uint32_t calls_left = UINT32_MAX; /* calls of refinement until it is cancelled */
 
 static int cancel(void *user, t3r_stage stage, uint32_t done, uint32_t total)
 {
@@ -97,7 +97,7 @@ static void cancelled_rebuild_keeps_the_analysis(void **state)
     assert_true(hash_of(&again) == before);
 }
 
-/* In an arena that keeps little of a tile's splats, refinement asks more often than once for each tile and view. */
+/* In an arena that keeps few of a tile's splats, refinement calls the hook more than once for each tile and view. */
 static void every_call_of_refinement_may_cancel(void **state)
 {
     (void)state;
@@ -112,7 +112,7 @@ static void every_call_of_refinement_may_cancel(void **state)
     for (uint32_t call = 0; call < calls; call += 1 + call / 8) {
         calls_left = call;
         assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_CANCELLED);
-        assert_int_equal(calls_left, UINT32_MAX); /* and nothing was asked after that */
+        assert_int_equal(calls_left, UINT32_MAX); /* and no call after that */
         assert_int_equal(t3r_get_scene(rt, &scene), T3R_ERR_STATE);
     }
     calls_left = UINT32_MAX;
@@ -134,7 +134,7 @@ static void refused_view_gives_no_stale_scene(void **state)
     folded.distortion = T3R_DISTORTION_RADTAN;
     folded.distortion_q24[0] = -(100 << 24);
     assert_int_equal(t3r_add_view(rt, &frame, &folded), T3R_ERR_CAMERA);
-    assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_STATE); /* its planes were written over */
+    assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_STATE); /* its planes were overwritten */
     assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
     assert_true(hash_of(&scene) == before);
 }
@@ -197,7 +197,7 @@ static void order_without_an_end(t3r_runtime *rt)
     t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
     clusters[1].order = clusters[0].order;
 }
-/* A label where there is no depth, and the count along with it. */
+/* Sets a label where there is no depth, and adjusts the count. */
 static void label_without_depth(t3r_runtime *rt)
 {
     ((uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_VALIDITY))[0] = T3R_NO_DEPTH;
@@ -274,8 +274,8 @@ static uint32_t far_labels(const t3r_runtime *rt)
     return count;
 }
 
-/* With labels of nine bits a copy goes on as well, a damaged one is refused, and an analysis of the same planes, which
- * hold the labels of the one before, finds the same. */
+/* With labels of nine bits a copy continues as well, a damaged one is refused, and a new analysis of the same
+ * planes, which still hold the previous labels, finds the same. */
 static void many_clusters_are_checked(void **state)
 {
     (void)state;
@@ -301,7 +301,7 @@ static void many_clusters_are_checked(void **state)
     assert_int_equal(t3r_attach(&rt, copy, arena_bytes), T3R_ERR_EPOCH);
 }
 
-/* A configuration that leaves a choice to t3r_init(): it has the same layout, but stages count on what was chosen. */
+/* A configuration with a choice left to t3r_init(): its layout is the same, but stages rely on the value chosen. */
 static void choices_that_are_still_open_are_refused(void **state)
 {
     (void)state;

@@ -1,4 +1,4 @@
-/* Stereo: depth of a scene that is drawn here, from pairs of every kind. */
+/* Stereo: depth of a scene drawn here, from pairs of every kind. */
 #include "unit.h"
 
 #include "core/camera.h"
@@ -15,7 +15,7 @@ typedef struct shot {
     double depth[PIXELS];
 } shot;
 
-/* A smooth random texture: noise on a lattice of `cell`, four octaves. */
+/* Returns a smooth random texture: noise on a lattice of `cell`, four octaves. */
 static double lattice(int64_t x, int64_t y, int64_t seed)
 {
     uint64_t s = (uint64_t)(x * 73856093) ^ (uint64_t)(y * 19349663) ^ (uint64_t)(seed * 83492791);
@@ -35,7 +35,7 @@ static double texture(double x, double y, int64_t seed)
     return sum / 4;
 }
 
-/* A wall that leans, z = 3 + 0.3 x, and before it a board at z = 2, 1 by 0.8; all at `scale`. */
+/* Draws a leaning wall, z = 3 + 0.3 x, and before it a board at z = 2, 1 by 0.8; all at `scale`. */
 static shot *shoot(double x, double y, double z, const double q[4], double gain, double scale, int64_t seed)
 {
     shot *s = unit_array(1, sizeof *s);
@@ -195,7 +195,7 @@ static void refused(void **state)
     shot_free(b);
 }
 
-/* What lay in the work, and flat or black pictures, do not matter or harm. */
+/* Previous contents of the work memory, and flat or black pictures, make no difference and do no harm. */
 static void repeated(void **state)
 {
     (void)state;
@@ -252,7 +252,7 @@ static void anything(void **state)
     shot_free(b);
 }
 
-/* Without filling: the same matches, nothing between them. */
+/* Without filling: the same matches, and nothing between them. */
 static void unfilled(void **state)
 {
     (void)state;
@@ -282,7 +282,7 @@ static void unfilled(void **state)
     }
 }
 
-/* A channel that is all but dark still shows something. */
+/* A channel that is almost dark still counts. */
 static void dark_is_not_nothing(void **state)
 {
     (void)state;
@@ -325,7 +325,7 @@ static void backwards(void *user, uint32_t count, void (*task)(void *context, ui
     }
 }
 
-/* A picture of fewer rows in the first look than there are workers. */
+/* A picture whose first look has fewer rows than there are workers. */
 static void small_pictures_have_few_workers(void **state)
 {
     (void)state;
@@ -366,9 +366,9 @@ static void small_pictures_have_few_workers(void **state)
     shot_free(s[1]);
 }
 
-/* Two cameras whose first look compares so many disparities that its matching leaves no room for what it draws: that is
- * drawn in bands, each worker's its own; in the larger picture of eight rows, which are the most. Any picture, any
- * number of workers: the same. */
+/* Two cameras whose first look compares so many disparities that its matching leaves no room for the rectified
+ * pictures. They are drawn in bands, one per worker, in the larger picture of eight rows, the maximum. The result is
+ * the same for any picture and any number of workers. */
 static void bands_where_nothing_is_kept(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Who stays in a stream's map: against sorting; what stays grows and nothing else changes; moves are exact. */
+/* Which Gaussians stay in a stream's map, against sorting; those that stay grow and change in nothing else; moves
+ * are exact. */
 #include "unit.h"
 
 #include "budget/budget.h"
@@ -22,7 +23,7 @@ static void fill(site *s, uint64_t *seed, uint32_t key_range)
     memset(s, 0, sizeof *s);
     s->map = (t3r_map){s->gaussians, s->records, (uint32_t)unit_between(seed, 0, MOST)};
     for (uint32_t i = 0; i < s->map.count; i++) {
-        s->gaussians[i].position_q20[0] = (int32_t)i; /* who it is */
+        s->gaussians[i].position_q20[0] = (int32_t)i; /* its identity */
         s->gaussians[i].factor[0] = 1000;
         s->gaussians[i].factor_exponent = -20;
         s->records[i].key = (uint16_t)(T3R_MAP_KEY_LEAST + unit_between(seed, 0, key_range));
@@ -50,7 +51,7 @@ static uint32_t key_of(const t3r_map_record *r)
     return T3R_MIN((uint32_t)r->key + r->faded_q10, 65535u);
 }
 
-/* One that competes: the order of staying is key, then points, then Gaussians from the newest on. */
+/* A competing Gaussian: the order is key, then points, then the newest Gaussians first. */
 typedef struct rival {
     uint32_t key, rank;
     int gaussian; /* -1: a point */
@@ -108,7 +109,7 @@ static double size_of(const t3r_gaussian *g)
     return ldexp(g->factor[0], g->factor_exponent);
 }
 
-/* A quarter of the density is twice the width; no thinning, no change; nobody ever narrows. */
+/* A quarter of the density doubles the width; without thinning nothing changes; no Gaussian ever narrows. */
 static void widens_by_density(void **state)
 {
     (void)state;
@@ -160,7 +161,7 @@ static void fades_by_half_life(void **state)
     }
 }
 
-/* However long nobody sees a Gaussian, its counts stay at their most. */
+/* The counts of a Gaussian that stays unseen saturate at their maximum. */
 static void counts_are_held(void **state)
 {
     (void)state;
@@ -181,7 +182,8 @@ static void counts_are_held(void **state)
     }
 }
 
-/* What a head put at the end of the range or beyond is not taken over; what is, keeps its own pixel's record. */
+/* Gaussians that a head put at the end of the range or beyond are not added; the others keep their own pixel's
+ * record. */
 static void what_is_out_of_range_is_left_out(void **state)
 {
     (void)state;
@@ -234,7 +236,7 @@ static void moves_are_exact(void **state)
         }
     }
     t3r_map_move(&s.map, (int64_t[3]){0, 0, -((int64_t)500 << 20)});
-    assert_int_equal(s.map.count, 2); /* the one at -1,000 would be at -1,500 */
+    assert_int_equal(s.map.count, 2); /* the one at -1,000 would move to -1,500 */
     assert_int_equal(s.gaussians[0].position_q20[2], 500 << 20);
     assert_int_equal(s.gaussians[1].position_q20[2], 7 - (500 << 20));
     t3r_map_move(&s.map, (int64_t[3]){0, 0, (int64_t)500 << 20});

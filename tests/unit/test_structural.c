@@ -1,5 +1,5 @@
-/* What structural similarity asks for: as in doubles for tiles of all contrasts with pixels that do not count, and
- * within bounds. */
+/* The residual of structural similarity: equal to doubles for tiles of all contrasts with pixels that do not count,
+ * and within bounds. */
 #include "unit.h"
 
 #include "core/fixed.h"
@@ -92,8 +92,8 @@ static void as_in_double(void **state)
     assert_true(worst < 0.25);
 }
 
-/* A level that a whole tile lacks is no structure; what is missing of a weak contrast counts more than of a strong one;
- * pixels that do not count change nothing in others. */
+/* A level missing in a whole tile is no structure; errors of a weak contrast count more than errors of a strong one;
+ * pixels that do not count have no effect on others. */
 static void structure_alone(void **state)
 {
     (void)state;

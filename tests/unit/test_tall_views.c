@@ -1,11 +1,11 @@
-/* Depth by stereo of pictures as tall as a block of 8, 16, 32 and 64 rows is for: a wall two metres away. */
+/* Depth by stereo for pictures of the heights that blocks of 8, 16, 32 and 64 rows are for: a wall two metres away. */
 #include "unit.h"
 
 #include "rgbd_frame.h"
 
 enum { W = 48, SHIFT = 4, BUDGET = 200 };
 
-/* A camera that looks at the wall from `index` eighths of a metre to the right sees it 4 pixels to the left. */
+/* Adds a camera `index` eighths of a metre to the right, which sees the wall 4 pixels further left for each. */
 static void add(t3r_runtime *rt, uint32_t height, uint32_t index, const uint8_t *wall, uint8_t *rgb)
 {
     const t3r_camera camera = {.fx_q16 = 64 << 16,

@@ -1,4 +1,4 @@
-/* What views of one surface tell of each other: points sought in another view, flying pixels, redundancy, exposure. */
+/* Comparisons of views of one surface: points located in another view, flying pixels, redundancy, exposure. */
 #include "rig.h"
 #include "rgbd_frame.h"
 
@@ -48,14 +48,14 @@ static void shifted_by_the_disparity(void **state)
             }
         }
     }
-    /* a camera that looks the other way sees nothing of it */
+    /* a camera that looks the other way does not see the plane */
     s->view[0].pose.rotation_q30[0] = s->view[0].pose.rotation_q30[8] = -(1 << 30);
     t3r_projected_pixel projected;
     assert_false(t3r_reproject(&one, 20, 20, &zero, &projected));
     free(s);
 }
 
-/* Any pose, against the same in double: the nearest pixel, but for ties that the roundings decide. */
+/* Any pose, against double: the nearest pixel, except for ties decided by rounding. */
 static void as_in_double(void **state)
 {
     (void)state;
@@ -122,7 +122,7 @@ static void between_two_surfaces(void **state)
     free(s);
 }
 
-/* A surface aslant, up to 1/16 a pixel, is no depth edge. */
+/* A slanted surface, up to 1/16 a pixel, is no depth edge. */
 static void slanted_surfaces_stay(void **state)
 {
     (void)state;
@@ -150,7 +150,7 @@ static void seen_through(void **state)
                                             : flies          ? T3R_MEASURED | T3R_MARK_DOUBTFUL
                                                              : T3R_MEASURED);
     }
-    /* an object that both see is none, nor one seen a pixel off, nor what the other view has no depth for */
+    /* not flying: an object that both see, one seen a pixel off, and one where the other view has no depth */
     for (int off = -1; off <= 1; off++) {
         t3r_reset_comparison(s->view, 2);
         block(s, 0, 0, 0, W, H, 2);
@@ -161,7 +161,7 @@ static void seen_through(void **state)
     block(s, 0, 0, 0, W, H, 2);
     memset(s->validity[0], T3R_NO_DEPTH, PIXELS);
     assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false, &alone), 0);
-    /* guesses bear witness against guesses, not against what was measured */
+    /* guesses count against guesses, not against measured depth */
     memset(s->validity[0], T3R_FILLED, PIXELS);
     assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false, &alone), 0);
     t3r_reset_comparison(s->view, 2);
@@ -173,7 +173,7 @@ static void seen_through(void **state)
 
 /* --- redundancy --------------------------------------------------------------------------------------------------- */
 
-/* As good as each other: the earlier view stays whole, the later one keeps what it alone sees. */
+/* Equally good views: the earlier one stays whole, the later one keeps what it alone sees. */
 static void the_earlier_of_two(void **state)
 {
     (void)state;
@@ -219,7 +219,7 @@ static void the_nearer_of_two(void **state)
     }
 }
 
-/* A later view that is only a little nearer does not take over; the earlier one is kept whole. */
+/* A later view that is only slightly nearer does not take over; the earlier one is kept whole. */
 static void a_little_nearer_is_as_good(void **state)
 {
     (void)state;
@@ -246,7 +246,7 @@ static void other_surfaces_stay(void **state)
     free(s);
 }
 
-/* Whatever the depths: every covered pixel has one that covers it, measured and itself retained. */
+/* For any depths: every covered pixel has a pixel that covers it, measured and itself retained. */
 static void no_surface_is_lost(void **state)
 {
     (void)state;
@@ -286,7 +286,7 @@ static void no_surface_is_lost(void **state)
 
 /* --- scale -------------------------------------------------------------------------------------------------------- */
 
-/* The median depth is brought to 1..2 scene units as far as exponents go, and what is beyond is held there. */
+/* The median depth is scaled to 1..2 scene units within the range of exponents, and clamped there. */
 static void scale_of_depths(void **state)
 {
     (void)state;
@@ -312,7 +312,8 @@ static void scale_of_depths(void **state)
 
 /* --- exposure ----------------------------------------------------------------------------------------------------- */
 
-/* A texture on the plane, seen by view v through a gain a channel; every fifth pixel shows something else. */
+/* Paints a texture on the plane, as view v sees it with a gain for each channel; every fifth pixel shows something
+ * else. */
 static void paint(rig *s, int v, int disparity, const double gain[3])
 {
     for (int i = 0; i < PIXELS; i++) {
@@ -331,7 +332,8 @@ static double gain_of(const uint16_t gain_q14[3], int c)
     return gain_q14[c] / 16384.0;
 }
 
-/* A view 0.8 as bright is found out within 1 %, each channel apart, and both are brought to their (geometric) mean. */
+/* A view 0.8 times as bright is detected within 1 %, each channel separately, and both are brought to their
+ * geometric mean. */
 static void gain_recovered(void **state)
 {
     (void)state;
@@ -373,7 +375,7 @@ static void gains_are_held(void **state)
     }
 }
 
-/* A view that shares too little keeps its colours and moves no other's. */
+/* A view that shares too little keeps its colours and does not affect the others. */
 static void unlinked_views_stay(void **state)
 {
     (void)state;
@@ -430,7 +432,7 @@ static int count_calls(void *user, t3r_stage stage, uint32_t done, uint32_t tota
     return stage == T3R_STAGE_POINTMAP && t->calls == t->cancel_at;
 }
 
-/* Two frames of the plane with a floating block, the second darker. */
+/* Adds two frames of the plane with a floating block, the second one darker. */
 static void add_frames(t3r_runtime *rt)
 {
     static uint8_t rgb[PIXELS * 3], depth[PIXELS * 2];
@@ -491,11 +493,11 @@ static void in_the_pipeline(void **state)
         assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
         assert_int_equal(first.calls, comparisons);
 
-        /* few: nothing that is covered or floats */
+        /* few: no covered or floating points */
         assert_int_equal(scene.count, 300);
         assert_int_equal(scene.valid_points, all);
         assert_int_equal(of_view(&scene, 0, 255) + of_view(&scene, 1, 255), 300);
-        /* many: the covered ones compete, the floating block still does not; all: it comes last */
+        /* many: the covered points compete, the floating block still does not; all: it comes last */
         assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = all - 36}, &scene), T3R_OK);
         assert_int_equal(scene.count, all - 36);
         assert_int_equal(of_view(&scene, 1, 64), 0);
@@ -558,8 +560,8 @@ static void paint_sure(rig *s, int v, int disparity, const double gain[3])
     }
 }
 
-/* A wall whose colours differ by 9 levels in red and by nothing else: 27 a channel, whatever the exposure; what has
- * other depth, is doubtful or was not measured does not count. */
+/* A wall whose colours differ only by 9 levels in red: 27 a channel, for any exposure; pixels of other depth,
+ * doubtful or unmeasured ones do not count. */
 static void colours_that_differ(void **state)
 {
     (void)state;

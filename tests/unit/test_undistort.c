@@ -1,4 +1,4 @@
-/* The undistortion grid against double, and the sampling through it. */
+/* The undistortion grid against double, and sampling through it. */
 #include "unit.h"
 
 #include "trim3r.h"
@@ -164,7 +164,7 @@ static void sampling(void **state)
                                (uint32_t)floor(fmin(fmax(p[0], 0), width - 1) + 0.5);
             near_misses += out.depth[at] != in.depth[nearest];
         }
-        /* a position within 0.1 of the middle between two pixels may go either way */
+        /* a position within 0.1 of the middle between two pixels may be rounded either way */
         assert_true(!c->realistic || near_misses < width * height / 5);
         planes_free(in);
         planes_free(out);
@@ -172,7 +172,7 @@ static void sampling(void **state)
     }
 }
 
-/* No distortion, or one without coefficients: the image itself. */
+/* No distortion, or one without coefficients: the image is unchanged. */
 static void identity(void **state)
 {
     (void)state;
@@ -205,7 +205,7 @@ static void identity(void **state)
     }
 }
 
-/* A polynomial that folds: beyond the fold there is nothing, not a mirrored image. */
+/* A polynomial that folds: nothing is visible beyond the fold, no mirrored image. */
 static void fold(void **state)
 {
     (void)state;

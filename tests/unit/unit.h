@@ -1,4 +1,4 @@
-/* What the unit tests share: cmocka's includes and repeatable noise. */
+/* Shared by the unit tests: cmocka's includes and repeatable noise. */
 #ifndef T3R_TESTS_UNIT_H
 #define T3R_TESTS_UNIT_H
 
