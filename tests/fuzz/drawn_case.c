@@ -17,7 +17,7 @@ static uint32_t take_working_side(input *in, uint32_t least)
     return least + extra + below(in, FREQUENT_SIDES);
 }
 
-/* From a few of the points to more than there are of them in a small picture; blending takes the time of them all. */
+/* From a few of the points to more than a small picture has; the time of blending grows with the number. */
 static uint32_t take_gaussians(input *in, uint32_t points)
 {
     const uint32_t shift = below(in, 8), share_q7 = 1 + take8(in), drawn = 1 + (points >> shift) * share_q7 / 128;
@@ -30,7 +30,7 @@ static t3r_allocation take_allocation(input *in, bool streams)
     return streams && drawn == T3R_ALLOCATE_GIVEN ? T3R_ALLOCATE_DENSITY : drawn;
 }
 
-/* What the head needs at least, or more, or by a default. */
+/* The head's minimum, more, or the default. */
 static uint32_t take_head_column_bytes(input *in, const drawn_case *c, uint32_t width)
 {
     const uint32_t kind = below(in, 3), more = below(in, 256);
