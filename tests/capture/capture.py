@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""capture.py TRIM3R: the command as a user has it: sources, signals, files that roll over, poses, events, --build."""
+"""capture.py TRIM3R: the command as users run it: sources, signals, files that roll over, poses, events, --build."""
 import json
 import os
 import pty
@@ -27,7 +27,7 @@ def of_topic(path, topic):
 
 
 def copies():
-    """A recording of a recording is the same to the last bit of its frames."""
+    """Checks that a recording of a recording has identical frames, to the last bit."""
     room = capture("replay:room.mcap", "--hash", "-o", "copy.mcap")
     again = capture("replay:copy.mcap", "--hash")
     check(room["frames"] == again["frames"] == 12 and room["paired"] == 12, "all frames")
@@ -63,7 +63,7 @@ def builds():
 
 
 def bare():
-    """A recording without poses and intrinsics, as a camera alone makes it."""
+    """Makes a recording without poses and intrinsics, as a bare camera does."""
     with open("far.txt", "w", encoding="ascii") as file:
         file.write("9000 0 0 0 0 0 0 1\n9000.1 0 0 0 0 0 0 1\n")
     told = capture("replay:room.mcap", "--poses", "far.txt", "-o", "bare.mcap")
@@ -111,7 +111,8 @@ def rolls_over():
 
 
 def spares_what_it_reads():
-    """Neither the first file nor one that it rolls over to replaces the recording or the poses, by whatever name."""
+    """Checks that neither the first file nor one that it rolls over to replaces the recording or the poses, under any
+    name."""
     with open("spare-1.mcap", "wb") as file:
         file.write(read("room.mcap"))
     os.symlink("spare-1.mcap", "link-2.mcap")
@@ -125,7 +126,7 @@ def spares_what_it_reads():
 
 
 def stops(number):
-    """A signal: exit status 0, a recording that is whole."""
+    """Checks that a signal gives exit status 0 and a complete recording."""
     command = [TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "--json", "-o",
                "signal.mcap"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
@@ -254,7 +255,7 @@ def refusals():
 
 
 def events():
-    """What is counted stands in the recording, too, level and all."""
+    """Checks that counted events are in the recording, too, with their level."""
     run("capture", "--source", "replay:room.mcap", "-o", "quiet.mcap", "--quiet")
     schemas = [content for opcode, content in mcap_read.records(read("quiet.mcap")) if opcode == 0x03]
     check(any(b"rcl_interfaces/msg/Log" in content for content in schemas), "the topic of events")

@@ -1,9 +1,10 @@
-"""A reader of MCAP records and of the few ROS 2 messages that these tests look at, by the formats' documentation."""
+"""A reader of MCAP records and of the few ROS 2 messages that these tests check, written from the formats'
+documentation."""
 import struct
 
 
 def whole_records(data, at):
-    """(opcode, content) of whole records from `at` on, those of chunks that are not compressed among them."""
+    """Returns (opcode, content) of complete records from `at` on, including those of uncompressed chunks."""
     while at + 9 <= len(data) and data[at:at + 8] != b"\x89MCAP0\r\n":
         opcode, size = struct.unpack_from("<BQ", data, at)
         content = data[at + 9:at + 9 + size]

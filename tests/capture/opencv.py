@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""opencv.py TRIM3R: pictures and films by OpenCV's VideoCapture against the very samples they were made of, and the
-Gaussians of them against those of a recording made without OpenCV. Skipped without the adapter or numpy and cv2."""
+"""opencv.py TRIM3R: pictures and films by OpenCV's VideoCapture against the samples that they were made of, and their
+Gaussians against those of a recording made without OpenCV. Skipped without the adapter or numpy and cv2."""
 import functools
 import http.server
 import json
@@ -37,7 +37,7 @@ class Server(http.server.SimpleHTTPRequestHandler):
 
 
 def keeps_secrets(film):
-    """Of a stream's URL neither user nor password nor query is recorded or told."""
+    """Checks that neither user nor password nor query of a stream's URL is recorded or printed."""
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Server, directory=os.getcwd())) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         place = f"127.0.0.1:{server.server_port}/{film}"

@@ -1,7 +1,7 @@
-"""JPEGs whose decoded samples are known exactly: every block has one colour. Baseline, 4:2:2 (ITU-T T.81)."""
+"""JPEGs with exactly known decoded samples: every block has one colour. Baseline, 4:2:2 (ITU-T T.81)."""
 import struct
 
-STEP = 8  # of quantization: with it a block's coefficient is its sample less 128 (T.81, A.3.3: DC = 8 x the mean)
+STEP = 8  # quantization step with which a block's coefficient is its sample less 128 (T.81, A.3.3: DC = 8 x the mean)
 DC_LENGTHS = (0, 1, 5, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0)  # T.81, table K.3
 DC_CODES = {0: "00", 1: "010", 2: "011", 3: "100", 4: "101", 5: "110", 6: "1110", 7: "11110", 8: "111110"}
 END_OF_BLOCK = "0"  # the only code of the table for AC
@@ -19,7 +19,8 @@ def headers(width, height):
 
 
 def coded(difference):
-    """T.81, F.1.2.1: the number of bits, then the bits, of a negative difference those of itself less one."""
+    """Returns the code of T.81, F.1.2.1: the number of bits, then the bits; for a negative difference those of the
+    difference less one."""
     size = abs(difference).bit_length()
     bits = difference if difference >= 0 else difference + (1 << size) - 1
     return DC_CODES[size] + (f"{bits:0{size}b}" if size else "") + END_OF_BLOCK
@@ -40,7 +41,7 @@ def jpeg(width, height, blocks):
 
 
 def rgb(luma, cb, cr):
-    """A pixel as libjpeg decodes it: JFIF's matrix in 16 bits of fraction (jdcolor.c)."""
+    """Returns a pixel as libjpeg decodes it: JFIF's matrix in 16 bits of fraction (jdcolor.c)."""
     def fix(x):
         return int(x * 65536 + 0.5)
     cb, cr, half = cb - 128, cr - 128, 1 << 15

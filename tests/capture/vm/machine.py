@@ -1,5 +1,5 @@
-"""A virtual machine with Debian's kernel, drivers of it, and one program to be run in it. No root is needed; with KVM
-where that works, without where not."""
+"""A virtual machine with Debian's kernel, drivers of it, and one program to run. Needs no root; uses KVM where it
+works."""
 import glob
 import gzip
 import lzma
@@ -13,7 +13,7 @@ import tarfile
 sys.path[:0] = [os.path.join(os.path.dirname(os.path.abspath(__file__)), up) for up in ("..", "../..")]
 from checks import skip  # noqa: E402
 
-# what insmod is given, in the order of their needs
+# arguments of insmod, in the order of their dependencies
 CAPTURE = [f"media/{name}" for name in (
     "mc/mc v4l2-core/videodev common/videobuf2/videobuf2-common common/videobuf2/videobuf2-memops "
     "common/videobuf2/videobuf2-v4l2 common/videobuf2/videobuf2-vmalloc").split()]
@@ -65,7 +65,7 @@ def kernel_version():
 
 
 def package(folder, name):
-    """The path of a package, downloaded once; it is not installed."""
+    """Returns the path of a package, downloaded once and not installed."""
     need("dpkg-deb", "apt-get")
     os.makedirs(folder, exist_ok=True)
     if not glob.glob(f"{folder}/{name}_*.deb"):
@@ -87,7 +87,7 @@ def unpack_kernel(folder):
             subprocess.run(["tar", "-x", "-C", folder, *wanted], stdin=files.stdout, check=True)
         with open(f"{folder}/boot/vmlinuz-{version}", "rb") as file:
             packed = file.read()
-        # an ELF, to be booted by PVH: a decompressor in an emulated processor would take its time
+        # an ELF, booted by PVH: a decompressor would be slow in an emulated processor
         with open(vmlinux + ".part", "wb") as file:
             file.write(lzma.LZMADecompressor().decompress(packed[packed.find(b"\xfd7zXZ\0"):]))
         os.rename(vmlinux + ".part", vmlinux)
@@ -175,7 +175,7 @@ def initramfs(folder, modules, programs, job, files=(), data=None):
 
 
 def boot(folder, vmlinux, image, accelerator, seconds, megabytes=768):
-    """Whether the machine came to its end; what it said, where its second serial port went."""
+    """Returns whether the machine shut down, its output, and the output of its second serial port."""
     out = f"{folder}/out.tar"
     machine = ["-accel", "kvm", "-cpu", "host"] if accelerator == "kvm" else ["-accel", "tcg", "-cpu", "max"]
     command = ["qemu-system-x86_64", "-M", "q35", *machine, "-smp", "1", "-m", str(megabytes), "-nodefaults",
@@ -192,7 +192,7 @@ def boot(folder, vmlinux, image, accelerator, seconds, megabytes=768):
         try:
             process.wait(5)
         except subprocess.TimeoutExpired:
-            late += ", and the machine cannot be ended"  # a KVM that does not work may hold it
+            late += ", and the machine cannot be ended"  # a broken KVM may block it
     with open(f"{folder}/console", "rb") as console:
         return console.read().decode(errors="replace") + late, out
 

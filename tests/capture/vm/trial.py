@@ -1,4 +1,4 @@
-"""What the scripts of this folder share: one job in a virtual machine, and a look at what it left."""
+"""Shared by the scripts of this folder: one job in a virtual machine, and a check of its files."""
 import json
 import os
 import time
@@ -10,7 +10,7 @@ OUT_OF_TIME = 600  # seconds: a machine without KVM on a busy processor
 
 
 class Trial:
-    """The files that `job` left in the machine's folder out; `told` are those that a failure shows besides its log."""
+    """The files that `job` left in the machine's folder out; a failure shows those in `told` besides its log."""
 
     def __init__(self, folder, programs, job, driver, told=(), **options):
         self.start, self.told = time.monotonic(), told
