@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""eval_ablate.py TRIM3R: `trim3r eval --ablate` on the built-in room, small: which rows, what each of them is, the table."""
+"""eval_ablate.py TRIM3R: `trim3r eval --ablate` on the small built-in room: the rows, their meaning, the table."""
 import csv
 import json
 import math
@@ -46,7 +46,7 @@ def tells(cell, psnr, ssim):
 
 
 def what_each_row_is(room, one):
-    """Every row against the evaluation with that setting, where an option for it exists."""
+    """Compares every row with the evaluation with that setting, where an option for it exists."""
     rows = rows_of(*one, "--ablate", "--keep", ",".join(map(str, KEEPS)))
     check([(r["ablation"], r["keep"]) for r in rows] == [(n, k) for n in NAMES for k in KEEPS], "all, in order")
     by = {(r["ablation"], r["keep"]): r for r in rows}
@@ -86,7 +86,7 @@ def what_each_row_is(room, one):
 
 
 def closed_forms(one):
-    """Without adaptation the head `analytic` is the head `none`; what has no weights has no mask to hide."""
+    """Checks that without adaptation `analytic` equals `none`, and that a head without weights has no mask to hide."""
     for refine in ("0", "1"):
         rows = rows_of(*one, "--keep", "100,10", "--ablate=no-adaptation", "--head", "analytic", "--refine", refine)
         none = rows_of(*one, "--keep", "100,10", "--head", "none", "--refine", refine)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""eval_methods.py TRIM3R: how `trim3r eval` takes methods and ablations: what it refuses, and --views and --scene with
+"""eval_methods.py TRIM3R: methods and ablations of `trim3r eval`: what it refuses, and --views and --scene with
 them."""
 import json
 import sys

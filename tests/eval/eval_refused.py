@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""eval_refused.py TRIM3R: of several cases those whose frames are refused are left out, told with their reason and
-counted, on one process and on several; alone each is an error; where nothing is left the exit status is 1."""
+"""eval_refused.py TRIM3R: of several cases, those with refused frames are left out, reported with their reason and
+counted, with one process and with several; a single one is an error; if none remains the exit status is 1."""
 import csv
 import json
 import os
@@ -16,7 +16,7 @@ SIDE = 64
 UNLIKE = ("scene", "build_ms", "render_ms")  # between runs on two recordings
 NO_DEPTH, IN_PLACE, BESIDE = 3, 4, 5  # frames: without depth; where frame 0 was; where NO_DEPTH was
 MEASURED = [((0, 2), 1), ((1, BESIDE), 2)]
-NO_PAIR = ((0, IN_PLACE), 1)  # as far as stereo goes
+NO_PAIR = ((0, IN_PLACE), 1)  # beyond the reach of stereo
 
 
 def png(path, depth, colour_type, rows):
@@ -30,7 +30,8 @@ def png(path, depth, colour_type, rows):
 
 
 def wall(shift):
-    """Colours of a wall two units away, whose pattern does not repeat, seen `shift` pixels further to the right."""
+    """Returns the colours of a wall two units away with a pattern that does not repeat, `shift` pixels further to the
+    right."""
     def sample(x, y):
         return zlib.crc32(bytes([(x // 3) & 255, y // 3])) & 0xffffff
 
@@ -38,7 +39,7 @@ def wall(shift):
 
 
 def recorded(name, triplets):
-    """Frames beside each other, a pixel of the wall's a tenth of a unit."""
+    """Records frames beside each other; a pixel of the wall is a tenth of a unit."""
     frames = []
     os.makedirs("wall", exist_ok=True)
     for i, place in enumerate([0, 2, 4, 6, 0, 6]):
@@ -66,7 +67,7 @@ def named(case):
 
 
 def goes_on(recording, alone, refused, reasons, *options):
-    """The refused cases, in their order, and nothing else is left out: the rest is as it is without them."""
+    """Checks that exactly the refused cases are left out, in their order; the rest is the same as without them."""
     options = ["--keep", "40,10", "--refine", 1, *options]
     call = [trim3r, "eval", recording, *options]
     plain = json.loads(run(trim3r, "eval", alone, *options, "--csv", "alone.csv", "--json").stdout)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""eval_resume.py TRIM3R: `trim3r eval` on several processes gives the rows of one; a table cut off anywhere is made
-whole by --resume, without making again what stands in it; tables of other times or columns are refused."""
+"""eval_resume.py TRIM3R: `trim3r eval` on several processes gives the rows of one; --resume completes a table truncated
+anywhere, without repeating its rows; tables of other times or columns are refused."""
 import csv
 import os
 import sys

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""eval_scene.py TRIM3R: `trim3r eval --scene` gives a file the scores of what `render` draws from it, with
-its harmonics."""
+"""eval_scene.py TRIM3R: `trim3r eval --scene` gives a file the scores of `render`'s pictures of it, with its
+harmonics."""
 import json
 import os
 import struct

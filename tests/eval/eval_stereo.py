@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""eval_stereo.py TRIM3R: scenes from colours alone: the built-in room, with and without the depth it was recorded with;
-more views; pairs that cannot be matched, and what is said of them."""
+"""eval_stereo.py TRIM3R: scenes from colours alone: the built-in room, with and without its recorded depth; more views;
+pairs that cannot be matched, and the messages about them."""
 import csv
 import json
 import os
@@ -31,7 +31,7 @@ def rows_of(*words):
 
 
 def posed_folder(name, frames):
-    """A folder as import reads it, without depth: (picture, rotation w x y z and translation world to camera)."""
+    """Makes a folder for import, without depth: (picture, rotation w x y z and translation world to camera)."""
     os.mkdir(name)
     listed = []
     for i, (picture, q, t) in enumerate(frames):
