@@ -1,5 +1,5 @@
-"""Hostile files: each a name, what kind of input it is, what writes it, and words that its refusal must say ("" where any
-will do, None where it may also be read)."""
+"""Hostile files: each has a name, a kind of input, a function that writes it, and words that its refusal must contain
+("" = any, None = it may also be read)."""
 import gzip
 import json
 import os
@@ -14,7 +14,7 @@ CASES = []
 
 
 def case(kind, name, why=""):
-    """The function below gives the file's bytes, or makes a folder at the path that it takes."""
+    """Registers a case; the function below returns the file's bytes, or makes a folder at the path that it takes."""
     def note(make):
         CASES.append((kind, name, why, make))
         return make
@@ -41,13 +41,13 @@ def filled(codec, mib, chunks=1, others=()):
 
 
 def attachment(mib):
-    """What no frame needs: bytes that let chunks unpack to more."""
+    """Returns an attachment that no frame needs: its bytes let chunks unpack to more."""
     return f.record(9, struct.pack("<QQ", 0, 0) + f.text("a") + f.text("b") + struct.pack("<Q", mib * MIB) + bytes(mib * MIB) +
                     struct.pack("<I", 0))
 
 
 def poses(count):
-    """A chunk of as many poses, each the same bytes."""
+    """Returns a chunk of so many poses, all with the same bytes."""
     unit = f.message(4, 10**9, f.pose(10**9))
     return f.mcap(f.channels(), attachment(6), f.chunk("lz4", f.lz4_repeated(unit, count), len(unit) * count))
 
@@ -110,7 +110,7 @@ given("recording", "escapes-in-schema.mcap",
 
 
 def bag(*messages, kind="tf2_msgs/msg/TFMessage", topic="/tf"):
-    """Two frames without poses, and messages of another topic."""
+    """Returns two frames without poses, and messages of another topic."""
     return f.mcap(f.channels(names=("image", "camera_info")), f.channel(9, topic, kind), *[f.message(9, 10**9, m) for m in messages],
                   *[f.message(1, 10**9 + i, f.image(10**9 + i)) + f.message(2, 10**9 + i, f.camera_info(10**9 + i)) for i in (0, 1)])
 
@@ -339,7 +339,7 @@ def circle(path):
 
 
 def colmap(path, cameras=f.colmap_cameras(), images=f.colmap_images()):
-    """A model of COLMAP in text or bytes."""
+    """Makes a COLMAP model in text or bytes."""
     os.makedirs(f"{path}/sparse/0")
     for name, content in (("cameras", cameras), ("images", images)):
         binary = isinstance(content, bytes)
@@ -403,7 +403,7 @@ def colmap_pipe(path):
 
 
 def dense(path, data):
-    """A model with one dense map."""
+    """Makes a model with one dense map."""
     colmap(path)
     for name, content in (("images/a.png", f.png(16, 16)), ("stereo/depth_maps/a.png.geometric.bin", data)):
         os.makedirs(os.path.dirname(f"{path}/{name}"))
@@ -427,7 +427,7 @@ def long_map(path):
 
 
 def pose_files(path, pose="1 0 0 0 0 1 0 0 0 0 1 0", lens="20 0 8 0 20 8 0 0 1", name="0"):
-    """A folder of one pose, as ScanNet has them."""
+    """Makes a folder with one pose, like ScanNet's."""
     for folder, file, content in (("pose", f"{name}.txt", pose), ("intrinsic", "intrinsic_color.txt", lens)):
         os.makedirs(f"{path}/{folder}")
         with open(f"{path}/{folder}/{file}", "w", encoding="utf-8") as text:
@@ -465,7 +465,7 @@ def far_depth(path):
 
 
 def seven_scenes(path, pose, name="frame-0"):
-    """A sequence of one frame, as 7-Scenes has them."""
+    """Makes a sequence of one frame, like those of 7-Scenes."""
     os.makedirs(path)
     for file, content in (("camera-intrinsics.txt", b"20 0 8 0 20 8 0 0 1"), (f"{name}.pose.txt", pose), (f"{name}.color.png", f.png(16, 16))):
         with open(f"{path}/{file}", "wb") as out:
@@ -490,7 +490,7 @@ def many_poses(path):
 
 
 def record3d(path, depth=b"", **changes):
-    """A folder of one frame, as Record3D has them."""
+    """Makes a folder with one frame, like Record3D's."""
     os.makedirs(f"{path}/rgbd")
     for name, content in (("0.png", f.png(16, 16)), ("0.depth", depth)):
         with open(f"{path}/rgbd/{name}", "wb") as file:
@@ -535,7 +535,7 @@ def many_record3d_poses(path):
 
 
 def exr_depth(path, depth):
-    """A folder of one frame, as nerfstudio has them, whose depth is OpenEXR. Builds without the library refuse it."""
+    """Makes a folder with one frame, like nerfstudio's, with OpenEXR depth. Builds without the library refuse it."""
     os.makedirs(path)
     for name, content in (("0.png", f.png(16, 16)), ("0.exr", depth)):
         with open(f"{path}/{name}", "wb") as file:
