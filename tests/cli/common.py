@@ -1,4 +1,4 @@
-"""What scripts of this folder share; the program is their first argument."""
+"""Shared by the scripts of this folder; the program is their first argument."""
 import os
 import subprocess
 import sys
@@ -10,7 +10,7 @@ TRIM3R = os.path.abspath(sys.argv[1])
 
 
 def run(*command, expect=0, words=""):
-    """What the program prints; `words` must stand in its messages."""
+    """Returns what the program prints; its messages must contain `words`."""
     ended = subprocess.run([TRIM3R, *map(str, command)], capture_output=True, text=True, timeout=300)
     check(ended.returncode == expect and words in ended.stderr, f"{command}: {ended.returncode} {ended.stderr}")
     return ended.stdout

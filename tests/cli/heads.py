@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""heads.py TRIM3R: `--head`: each gives another scene and is named; weights that are refused say why. `--preset`."""
+"""heads.py TRIM3R: `--head`: each gives another scene and is named; refused weights get a reason. `--preset`."""
 import json
 import os
 import struct
@@ -32,7 +32,7 @@ def heads():
     # the closed forms never see weights, networks the same bits however many bytes and threads there are
     check(len({expect_json(*base, "--head", "wide.t3w", "--arena", arena, "--threads", threads)["hash"]
                for arena, threads in (("min", 1), ("full", 3))}) == 1, "arena or threads change a learned scene")
-    # weights that are refused say why
+    # refused weights get a reason
     for name, content, why in [("cut.t3w", whole[:-4], "not as long as it says"), ("foreign.t3w", b"RIFF" + whole[4:], "not a weight file"),
                                ("empty.t3w", b"", "not a weight file"), ("bit.t3w", whole[:-1] + bytes([whole[-1] ^ 1]), "CRC"),
                                ("epoch.t3w", whole[:6] + b"\xff\xff" + whole[8:], "epoch")]:

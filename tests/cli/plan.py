@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""plan.py TRIM3R: what `trim3r plan` refuses and tells."""
+"""plan.py TRIM3R: refusals and results of `trim3r plan`."""
 import sys
 import xml.dom.minidom
 
@@ -47,7 +47,7 @@ PARTS = ("arena_bytes", "strip_bytes", "target_bytes", "stack_bytes", "program_b
 
 
 def presets():
-    """A size of RAM leads to settings, and all that they take is within it."""
+    """Checks that a size of RAM gives settings whose total need is within it."""
     before = 0
     for text, ram in SIZES.items():
         found = expect_json("plan", "--preset", text)
@@ -97,7 +97,7 @@ def plan():
     check(all((f"| {b['name']} | {b['bytes']} |" in table) == (b['bytes'] > 0) for b in found["buffers"]),
           "the Markdown table is to have all buffers that have bytes")
     check(str(found["min_bytes"]) in expect(0, *base), "the table lacks the least bytes")
-    # the inverse: the most Gaussians that so many bytes hold
+    # the inverse: the most Gaussians for so many bytes
     within = ["plan", "--size", "96x96", "--within"]
     least = expect_json(*within[:-1], "--gaussians", 900)["min_bytes"]
     most = expect_json(*within, least)["gaussians"]
@@ -123,7 +123,7 @@ def plan():
     # the settings are those of build
     check(expect_json(*base, "--refine", 0)["arena_bytes"] <= found["arena_bytes"], "refinement saves bytes")
     expect_json(*base, "--levels", 3, "--bridge-radius", 0, "--allocate", "paper")
-    # a head needs what plan says: one with wider activations more, and a closed form nothing
+    # a head needs what plan reports: more with wider activations, nothing for a closed form
     small, wide, analytic = (expect_json(*base, "--head", head) for head in ("small", "wide.t3w", "analytic"))
     check(small["arena_bytes"] == found["arena_bytes"], "the default arena holds small")
     check(analytic["head_column_bytes"] == 0 and small["head_column_bytes"] > 0, "a closed form plans a network")
