@@ -87,7 +87,7 @@ def planar_loss(head, batch, rng, term, device):
     footprints = batch.footprints(head, device)
     splats, begins = batch.with_neighbours(splatting.planar_splats(*footprints, batch.pixel))
     order = drawing_order(rng, begins)
-    half = (len(batch.prepared) + 1) // 2  # the other half is rendered unrefined, because refining costs as much as all the rest
+    half = (len(batch.prepared) + 1) // 2  # the other half stays unrefined: refining costs as much as all the rest
     start, some = begins[: half + 1], slice(0, begins[half])
     first, pictures = splats[some], batch.pictures[:half]
     # Without momentum, which overshoots a uniform error: corrections count as constants, so the head would see only the
