@@ -93,7 +93,7 @@ static void finish(fake_node *node)
     }
 }
 
-/* All images that are due. */
+/* Makes all images that are due. */
 static void run_node(fake_node *node, int64_t now_ns)
 {
     while (node->streaming && node->next_ns <= now_ns) {
@@ -453,7 +453,7 @@ static int fake_close(void *user, int fd)
         return fail(EBADF);
     }
     node->opened--;
-    /* it is plugged in again, the driver has recovered */
+    /* plugged in again, or the driver has recovered */
     if (!node->stays) {
         node->unplug_at = node->gone ? UINT32_MAX : node->unplug_at;
         node->fatal_at = node->number >= node->fatal_at ? UINT32_MAX : node->fatal_at;

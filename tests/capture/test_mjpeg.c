@@ -25,7 +25,7 @@ static uint8_t rgb_of(uint32_t number, uint32_t x, uint32_t y, uint32_t channel)
     return (uint8_t)(x * 3 + number * 4 + y * 2 + channel * 20);
 }
 
-/* A JPEG of 4:2:2, as webcams make it; returns its bytes. */
+/* Makes a JPEG of 4:2:2, as webcams do; returns its bytes. */
 static uint32_t compress(uint32_t number, uint8_t *out, uint32_t room)
 {
     struct jpeg_compress_struct jpeg;
@@ -60,7 +60,7 @@ static uint32_t compress(uint32_t number, uint8_t *out, uint32_t room)
     return (uint32_t)bytes;
 }
 
-/* Takes the segments DHT out: many cameras send none, the tables being those of the standard. */
+/* Removes the DHT segments: many cameras send none and rely on the tables of the standard. */
 static uint32_t without_tables(uint8_t *jpeg, uint32_t bytes)
 {
     uint32_t removed = 0;

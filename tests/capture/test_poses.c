@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Trajectories: what is read, what lies between two poses, and the offset of two clocks found from moving pictures. */
+/* Trajectories: parsing, interpolation between poses, and the offset of two clocks found from moving pictures. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -109,7 +109,7 @@ enum { WIDTH = 80, HEIGHT = 60, FRAMES = 150 };
 #define FOCAL 75.0
 #define DISTANCE 3.0
 
-/* Where the camera looks and stands at a time, in radians and metres. */
+/* The camera's direction and place at a time, in radians and metres. */
 typedef struct motion {
     double yaw, pitch, x;
 } motion;
@@ -126,12 +126,12 @@ static motion still(double s)
     return (motion){0.1, 0, 0};
 }
 
-static motion shaking(double s) /* the same every 0.4 s: no telling which of the swings it was */
+static motion shaking(double s) /* periodic with 0.4 s: the swings cannot be distinguished */
 {
     return (motion){0.05 * sin(s * 5 * 3.141592653589793), 0, 0};
 }
 
-/* A wall of smooth noise. */
+/* Returns a wall of smooth noise. */
 static double wall(double x, double y)
 {
     double v = 128;
@@ -154,7 +154,8 @@ static void picture(const motion *m, uint32_t frame, uint8_t pixels[HEIGHT][WIDT
     }
 }
 
-/* Poses at 100 Hz, of a clock that is ahead; x right, y down: to look right is to turn about y, up about x. */
+/* Makes poses at 100 Hz of a clock that is ahead; x right, y down: looking right is a turn about y, looking up one
+ * about x. */
 static void track(motion (*path)(double), double ahead_s, trajectory *t)
 {
     t->count = 800;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A recording whose process is killed, 200 times at random moments, however it stores its messages: every frame that
- * was whole is there, and those read back are those that were written. Files that roll over keep within their bytes. */
+/* A recording whose process is killed, 200 times at random moments, with every way of storing messages: every
+ * complete frame is there, and the frames read equal those written. Files that roll over stay within their size
+ * limit. */
 #include <setjmp.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -56,7 +57,7 @@ static t3r_capture_frame make_frame(uint32_t number)
     };
 }
 
-/* In the child: records without end, telling what is whole. */
+/* Records without end in the child and reports how much is complete. */
 static void record_for_ever(const char *path, const recording_options *how, volatile uint32_t *whole)
 {
     static capture_record record;
@@ -130,7 +131,7 @@ static void a_killed_process_loses_at_most_the_message_it_was_writing(void **sta
             fail_msg("%s", error);
         }
         uint32_t count = t3r_recording_frame_count(recording);
-        assert_in_range(count, told, told + 1); /* the one that was being told may be whole */
+        assert_in_range(count, told, told + 1); /* the one being reported may be complete */
         for (uint32_t i = count > 3 ? count - 3 : 0; i < count; i++) {
             check_frame(recording, i);
         }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The whole way of a frame, from a driver to a recording and to Gaussians, asks for no memory once it runs: the
- * allocator of this program counts. And what it delivers live is what its recording replays, bit for bit. */
+/* A frame's whole path, from a driver to a recording and to Gaussians, allocates no memory once it runs: this
+ * program's allocator counts. And the live results equal those of the recording's replay, bit for bit. */
 #include <errno.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -151,7 +151,7 @@ static trajectory path_of_room(void)
 
 /* ---- tests ---- */
 
-/* The allocations while frames from `from` on came in: capture_run() tells by the source when it has begun. */
+/* Counts the allocations while frames from `from` on arrive: the source shows when capture_run() has begun. */
 typedef struct counted_source {
     t3r_capture capture;
     t3r_capture *inner;
@@ -289,10 +289,10 @@ static void a_recording_replays_what_was_live(void **state)
         assert_int_equal(replayed.frames_hash, live.frames_hash);
         assert_int_equal(replayed.scene_hash, live.scene_hash);
 
-        /* and `trim3r build` makes of it what was made live */
+        /* and `trim3r build` makes the same of it as was made live */
         t3r_recording *bag = t3r_recording_open(recording, error, sizeof error);
         assert_non_null(bag);
-        /* every pair, the image without depth, and why it has none */
+        /* every pair, the image without depth, and the reason */
         uint64_t told = 0;
         for (uint32_t k = 0; k < t3r_recording_stream_count(bag); k++) {
             t3r_stream_info stream = t3r_recording_stream(bag, k);
@@ -309,7 +309,7 @@ static void a_recording_replays_what_was_live(void **state)
     }
 }
 
-/* The first image has no depth: the room for kept frames is that of the first one that is kept. */
+/* The first image has no depth: the first frame that is kept sets the room for kept frames. */
 static void a_build_begins_with_the_first_frame_that_it_uses(void **state)
 {
     (void)state;
@@ -346,7 +346,7 @@ static void a_build_begins_with_the_first_frame_that_it_uses(void **state)
     }
 }
 
-/* Of a frame no more is read than its rows: behind the last one's samples lies memory that faults. */
+/* Only the rows of a frame are read: memory after the last row's samples faults. */
 static void kept_frames_are_read_by_their_rows(void **state)
 {
     (void)state;
@@ -385,7 +385,7 @@ static void kept_frames_are_read_by_their_rows(void **state)
     munmap(memory, whole + page);
 }
 
-/* Between a frame's stamp and its replay lies no latency, however lately it was recorded. */
+/* No latency is added between a frame's stamp and its replay, however recently it was recorded. */
 static void a_replay_has_no_latency(void **state)
 {
     scratch *s = *state;
@@ -435,7 +435,7 @@ static void a_repeated_recording_ends_with_its_clock(void **state)
     assert_int_equal(capture_record_end(&record), 0);
     t3r_capture *replay = t3r_replay_open_repeated(recording, UINT32_MAX, error, sizeof error);
     assert_non_null(replay);
-    for (int i = 0; i < 6; i++) { /* a third turn's length on is 3e18 ns, more than 2^61 */
+    for (int i = 0; i < 6; i++) { /* a third turn's length further is 3e18 ns, more than 2^61 */
         assert_int_equal(t3r_capture_next(replay, &frame), T3R_CAPTURE_FRAME);
         assert_int_equal(frame.stamp_ns, 1000 + i * span_ns);
     }
@@ -445,7 +445,8 @@ static void a_repeated_recording_ends_with_its_clock(void **state)
     t3r_capture_close(replay);
 }
 
-/* Opened again and again it never gives a frame: that, too, has an end, and the recording is whole. */
+/* A camera that never gives a frame, although it is reopened again and again, is given up in the end, and the
+ * recording is complete. */
 static void a_camera_that_stands_still_for_good_is_given_up(void **state)
 {
     scratch *s = *state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a source is called: never by a password, a token or a folder. */
+/* A source's name never contains a password, a token or a folder. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* V4L2 capture over a driver that lives in this process: what it agrees on, what it hands on, and every way to fail. */
+/* V4L2 capture over a driver in this process: negotiation, delivery, and every way to fail. */
 #include <errno.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -131,7 +131,7 @@ static void every_format_comes_as_it_is_and_without_a_copy(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         fake_v4l2 fake;
         fake_start(&fake);
-        fake.node[0].formats[0] = V4L2_PIX_FMT_SBGGR8; /* not one that is read */
+        fake.node[0].formats[0] = V4L2_PIX_FMT_SBGGR8; /* none that is supported */
         fake.node[0].formats[1] = cases[i].fourcc;
         fake.node[0].padding = i % 2 == 0 ? 0 : 24;
         t3r_capture *capture = open_small(&fake);
@@ -241,7 +241,7 @@ static void a_call_that_fails_while_opening_is_told_and_leaves_nothing(void **st
         fake.faults[0] = (fake_fault){cases[i].call, 0, 1, cases[i].error};
         refused(&fake, &settings, cases[i].words);
     }
-    /* what need not be there */
+    /* optional calls */
     static const unsigned long optional[] = {VIDIOC_ENUM_FRAMESIZES, VIDIOC_ENUM_FRAMEINTERVALS, VIDIOC_G_PARM,
                                              VIDIOC_SUBSCRIBE_EVENT};
     for (size_t i = 0; i < sizeof optional / sizeof optional[0]; i++) {
@@ -304,7 +304,7 @@ static void gaps_are_the_drivers_or_the_callers(void **state)
     assert_int_equal(t3r_capture_counts_of(capture).dropped_driver, 3);
     assert_string_equal(events.text[0], "3 dropped by the driver before colour 1");
     take(capture);
-    /* four buffers, one of them ours: three more images fit */
+    /* four buffers, one of them held here: three more images fit */
     fake_sleep(&fake, 33333333 * INT64_C(10));
     take(capture);
     take(capture);
@@ -358,7 +358,7 @@ static void every_wait_ends(void **state)
     assert_int_equal(t3r_capture_next(capture, &frame), T3R_CAPTURE_LOST);
     finish(&fake, capture);
 
-    /* a driver that says "ready" and has nothing does not make us spin */
+    /* a driver that reports ready and has nothing does not cause a busy loop */
     fake_start(&fake);
     capture = open_with(&fake, &settings);
     fake.node[0].ready_lies = true;
@@ -386,12 +386,12 @@ static void lost_devices_are_told_and_come_back(void **state)
             got = t3r_capture_next(capture, &frame);
         }
         assert_int_equal(got, T3R_CAPTURE_LOST);
-        assert_int_equal(frames, i == 1 ? 2 : 3); /* a queue in error keeps what was finished in it */
+        assert_int_equal(frames, i == 1 ? 2 : 3); /* a queue in error keeps its finished buffers */
         if (strstr(t3r_capture_error(capture), words[i]) == NULL) {
             fail_msg("'%s' does not say '%s'", t3r_capture_error(capture), words[i]);
         }
         assert_int_equal(events.kind[events.count - 1], T3R_EVENT_LOST);
-        assert_int_equal(node->opened, 0); /* a device can be unplugged only when it is let go */
+        assert_int_equal(node->opened, 0); /* a device can be unplugged only after it is closed */
         assert_int_equal(node->mapped, 0);
         fake.faults[0] = (fake_fault){FAKE_OPEN, 0, 2, ENOENT};
         assert_int_equal(t3r_capture_reopen(capture), T3R_CAPTURE_LOST);
@@ -430,7 +430,7 @@ static void passing_errors_cost_no_frame_but_are_told(void **state)
     assert_int_equal(got, T3R_CAPTURE_LOST);
     finish(&fake, capture);
 
-    /* buffers that are never taken back end the capture when the last is gone */
+    /* buffers that are never requeued end the capture once the last is gone */
     fake_start(&fake);
     capture = open_small(&fake);
     fake.faults[0] = (fake_fault){VIDIOC_QBUF, 0, 100000, EINVAL};
@@ -454,7 +454,7 @@ static void stamps_without_a_clock_are_taken_on_arrival(void **state)
     fake.node[0].jitter_ns[0] = 777777777777;
     assert_int_equal(take(capture).stamp_ns, 5000000000);
     finish(&fake, capture);
-    /* a stamp that no recording holds */
+    /* a stamp beyond the range of recordings */
     fake_start(&fake);
     fake.node[0].jitter_ns[1] = INT64_C(3000000000000000000);
     capture = open_small(&fake);
@@ -493,7 +493,7 @@ static void images_of_one_instant_are_paired(void **state)
             assert_true(gap > -2000 && gap < 2000);
         }
         assert_int_equal(t3r_capture_counts_of(capture).paired, 100);
-        assert_int_equal(events.count, 100); /* every decision is told */
+        assert_int_equal(events.count, 100); /* every decision is reported */
         assert_int_equal(events.kind[99], T3R_EVENT_PAIRED);
         finish(&fake, capture);
     }
@@ -528,7 +528,7 @@ static void images_without_companions_are_told(void **state)
     assert_int_equal(counts.alone, 2);
     assert_int_equal(counts.paired, paired);
     assert_int_equal(counts.dropped_driver, 2);
-    assert_int_equal(counts.depth_dropped, 1 + 2); /* the one that was lost, the two whose colour was */
+    assert_int_equal(counts.depth_dropped, 1 + 2); /* the lost one, and the two whose colour was lost */
     assert_int_equal(counts.corrupted, 1);
     uint32_t told = 0;
     for (uint32_t i = 0; i < events.count; i++) {
@@ -623,7 +623,7 @@ static void no_failed_call_hangs_leaks_or_loses_a_frame_untold(void **state)
                 if (got == T3R_CAPTURE_LOST) {
                     assert_true(t3r_capture_error(capture)[0] != '\0');
                     assert_int_equal(t3r_capture_reopen(capture), T3R_CAPTURE_FRAME);
-                    last = UINT32_MAX; /* what a closed device did not give is told by LOST */
+                    last = UINT32_MAX; /* LOST reports what a closed device did not give */
                 }
                 if (got == T3R_CAPTURE_FRAME) {
                     unseen += last == UINT32_MAX ? 0 : frame.sequence - last - 1;

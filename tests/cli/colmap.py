@@ -63,7 +63,8 @@ def project(image, xyz):
 
 
 def check_model(folder, sizes, count):
-    """What holds of every model; returns it and the distance of each observation from its point's projection."""
+    """Checks what holds for every model; returns the model and the distance of each observation from its point's
+    projection."""
     images, points = read_model(folder)
     check(len(points) == count and all(0 <= c <= 255 for p in points.values() for c in p[1]), "a point a Gaussian")
     apart = []
@@ -117,7 +118,7 @@ def retained_pixels(recording, folder, sizes, context):
 
 
 def other_views(folder, images, points):
-    """A point of one view shows up in the other with its colour: the poses belong together."""
+    """Checks that a point of one view appears in the other with its colour: the poses fit together."""
     for number, image in images.items():
         own = [p for p in points.values() if p[3] and p[3][0][0] != number]
         picture = cv2.imread(f"{folder}/pixels/images/{image[0]}")[..., ::-1].astype(float)
@@ -164,7 +165,7 @@ def elsewhere(recording, folder, sizes):
 
 
 def lens_recording(folder):
-    """Two frames through a lens with distortion, rolled and far from the origin."""
+    """Makes two frames through a lens with distortion, rolled and far from the origin."""
     made = f"{folder}/lens"
     os.mkdir(made)
     random = numpy.random.default_rng(2)
@@ -185,7 +186,7 @@ def lens_recording(folder):
 
 
 def moved_recording(folder):
-    """Two frames of a smooth wall with a step, the second's pose rolled by half a degree."""
+    """Makes two frames of a smooth wall with a step, the second's pose rolled by half a degree."""
     made = f"{folder}/moved"
     os.mkdir(made)
     random = numpy.random.default_rng(3)
@@ -212,7 +213,8 @@ def moved_recording(folder):
 
 
 def aligned(recording, folder):
-    """Where a build corrects poses, the model has the corrected ones, and the report tells by how much."""
+    """Checks that the model has the corrected poses where a build corrects them, and that the report says by how
+    much."""
     told = json.loads(run("build", recording, "--context", "0,1", "--keep", "5%", "-o", f"{folder}/a.ply", "--json"))["aligned"]
     turned = sum(view["degrees"] for view in told)
     check(0.3 < turned < 0.7, f"corrected by {turned} of half a degree")

@@ -28,7 +28,7 @@ def diff():
     code, out, _ = run("diff", "scene.ply", "exact.ply", "--json")
     found = json.loads(out)
     check(code == 1 and found["gaussians"][1] == 777 and found["position"] > 0, "diff of scenes is wrong")
-    # one opacity changed: one Gaussian differs, and it is named
+    # one opacity changed: one Gaussian differs, and its index is printed
     scene = bytearray(open("scene.ply", "rb").read())
     row = scene.index(b"end_header\n") + 11 + 5 * 17 * 4
     scene[row + 9 * 4:row + 10 * 4] = struct.pack("<f", -3.0)

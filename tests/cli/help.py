@@ -29,7 +29,7 @@ def options_of(text):
 
 
 def findings(name, text):
-    """What is wrong with the text of an option or of a command."""
+    """Returns what is wrong with the text of an option or of a command."""
     if text[0].isupper() and not re.match(PROPER, text):
         yield f"{name} begins with a capital: {text}"
     if text.endswith("."):
@@ -39,7 +39,7 @@ def findings(name, text):
 
 
 def prose(name, text):
-    """What is wrong with any text of a command's help, its examples apart."""
+    """Returns what is wrong with any text of a command's help, except its examples."""
     for found in re.finditer(BANNED, text):
         yield f"{name}: '{found[0]}' in: {text[max(0, found.start() - 30):found.end() + 30]!r}"
     for line in text.splitlines():

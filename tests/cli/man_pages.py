@@ -22,7 +22,7 @@ def pages():
 
 
 def words_of(text):
-    """Of a command's help, but what argp adds to it."""
+    """Returns the words of a command's help, without what argp adds."""
     own = re.sub(r"(?m)^( *Usage:| +or: | +-\?, --help| +--usage).*", "", text)
     own = re.sub(r"(?s)Mandatory or optional.*?short options\.", "", own)
     return re.findall(r"[A-Za-z]{3,}", own)

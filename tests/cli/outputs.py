@@ -13,7 +13,7 @@ import sys
 
 from program import TRIM3R, check, expect, in_scratch, room, run, write
 
-# What each kind of file begins with.
+# The first bytes of each kind of file.
 CONTENT = {
     "a recording": b"\x89MCAP0\r\n" + bytes(99), "a scene": b"ply\nformat ascii 1.0\n",
     "a PNG picture": b"\x89PNG\r\n\x1a\n" + bytes(99), "an SVG picture": b"<svg xmlns='http://www.w3.org/2000/svg'/>",
@@ -52,7 +52,7 @@ def remove(*paths):
 
 
 def other_names(path):
-    """The path by other names of the same file, what has to be removed after that, and whether it is there."""
+    """Yields other names of the same file, what has to be removed afterwards, and whether the name exists."""
     folder = os.path.basename(os.getcwd())
     yield path, (), True
     yield f"../{folder}/{path}", (), True
@@ -82,7 +82,7 @@ def refused(command, output, other):
 
 
 def all_are_named():
-    """No option that takes a file is missing in the tables' listing."""
+    """Checks that the tables' listing has every option that takes a file."""
     seen = 0
     for command in commands():
         listed = {row["option"] for row in table(command)}
@@ -126,11 +126,11 @@ def to_standard_output():
 
 
 def other_kinds():
-    """What is there is of another kind, a pipe, or a link to nothing."""
+    """Checks existing outputs of another kind: a pipe, a link to nothing."""
     write("shut.bin", CONTENT["a file of another kind"])
     for command in commands():
         for row in (row for row in table(command) if row["writes"]):
-            line = [command, *given(row, "there"), "absent"] # no command goes on with that
+            line = [command, *given(row, "there"), "absent"] # no command continues with that
             for kind, content in CONTENT.items():
                 write("there", content)
                 code, _, message = run(*line)
@@ -173,7 +173,7 @@ def strange_inputs():
 
 
 def missing_folders():
-    """Of a path through a folder that is not there, that folder is named; inputs that are not there are, too."""
+    """Checks that a missing folder in a path is named, and missing inputs, too."""
     os.makedirs("is/here")
     write("is/file", "")
     rows = 0
@@ -200,7 +200,7 @@ def missing_folders():
 
 
 def in_folders():
-    """Names that are made of an option's value, and files in a folder that is read."""
+    """Checks names made from an option's value, and files in an input folder."""
     recording = room()
     expect(0, "build", recording, "--keep", 10, "-o", "scene.ply")
     write("path.txt", "0 0 0 0 0 0 0 1\n1 0 0 0.1 0 0 0 1\n")
@@ -217,7 +217,7 @@ def in_folders():
     expect(1, "eval", "--planar", "photo.png", "--keep", 50, "--size", "32x32", "--images", "images",
            err="the argument photo.png, too")
     check(open("images/photo/target.png", "rb").read() == before, "eval wrote over its image")
-    # what a folder of pictures holds, but not the report that lies beside them
+    # the contents of a folder of pictures, but not the report next to them
     expect(0, "eval", recording, "--keep", 10, "--images", "pictures", "--csv", "scores.csv")
     picture = os.path.join("pictures", "1", "target.png")
     before = open(picture, "rb").read()
@@ -231,7 +231,8 @@ def in_folders():
 
 
 def names_of_others():
-    """What one command writes as a table, the next one reads: a name that is too long is cut between two characters."""
+    """Checks that a command reads the tables that another writes: a name that is too long is cut between two
+    characters."""
     for spare in range(2):
         name = "x" * spare + "\u00e9" * 110 + ".mcap"
         os.makedirs("one", exist_ok=True)

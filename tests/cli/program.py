@@ -42,7 +42,7 @@ def expect(code, *arguments, err=None, out=None):
 
 
 def fill_disk():
-    """In the child: no file grows beyond 64 bytes, as on a full disk."""
+    """Limits files in the child process to 64 bytes, like a full disk."""
     resource.setrlimit(resource.RLIMIT_FSIZE, (64, resource.RLIM_INFINITY))
 
 

@@ -16,7 +16,7 @@ ROWS = re.compile(r"\r(\d+) of (\d+) rows(?:, (\d+) (s|min) left)?")
 
 
 def on_terminal(*command, expect=0):
-    """What the program writes to stderr where that is a terminal."""
+    """Returns what the program writes to stderr on a terminal."""
     ours, theirs = pty.openpty()
     said = []
 
@@ -40,7 +40,7 @@ def on_terminal(*command, expect=0):
 
 
 def told(text):
-    """[(rows done, rows in all, whether a time left is told)]"""
+    """Returns [(rows done, rows in all, whether the time left is printed)]."""
     return [(int(count), int(total), left != "") for count, total, left, _ in ROWS.findall(text)]
 
 

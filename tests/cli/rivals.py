@@ -7,7 +7,7 @@ from program import check, expect, expect_json, in_scratch, room, write
 
 
 def vertices(path, count=68):
-    """The rows of a scene file, as a set, or the first `count` bytes of them: 12 are the positions."""
+    """Returns the rows of a scene file as a set, or their first `count` bytes: 12 are the positions."""
     body = open(path, "rb").read().split(b"end_header\n", 1)[1]
     return {body[i:i + count] for i in range(0, len(body), 68)}
 

@@ -47,7 +47,7 @@ def check_scene(told, edges, path):
     expected, _ = numpy.histogram(numpy.clip(scales, edges[0], numpy.nextafter(edges[-1], 0)), edges)
     counts = numpy.array(told["scale_counts"])
     check(counts.sum() == len(scales), "every Gaussian is in a bin")
-    # what lies on an edge may fall to either side of it once it is rounded to the scene's integers
+    # a value on an edge may fall to either side of it once it is rounded to the scene's integers
     check(numpy.abs(counts - expected).sum() <= 2 + 0.01 * len(scales), f"bins: {counts} and {expected}")
     return scales
 

@@ -115,7 +115,7 @@ static void fits_find_the_prices(void **state)
     for (uint32_t k = 0; k < 3; k++) {
         assert_true(fabs(found[k] - wanted[k]) < 1e-12 + 1e-4 * wanted[k]);
     }
-    /* no price is below 0, and the error that is left is told */
+    /* no price is below 0, and the remaining error is reported */
     fit = (price_fit){.kinds = 1, .times = 2, .units = {{1}, {1}}, .seconds = {1, 4}};
     assert_true(price_fit_solve(&fit, found) > 0.3 && found[0] > 1 && found[0] < 4);
     fit = (price_fit){.kinds = 2, .times = 2, .units = {{1, 1}, {1, 2}}, .seconds = {2, 1}};

@@ -20,7 +20,7 @@
 #define COUNT 2000u
 #define ROW_FLOATS 17
 
-static const char *path; /* in a folder of the test's own */
+static const char *path; /* in the test's own folder */
 
 static int make_path(void **state)
 {

@@ -101,7 +101,7 @@ with tempfile.TemporaryDirectory() as folder:
             mask = random.random((height, width)) < 0.5
             for name, image in zip(names, (target, render, numpy.where(mask, 255, 0).astype(numpy.uint8))):
                 cv2.imwrite(name, image)
-            # OpenCV writes what it takes for B, G, R
+            # OpenCV writes B, G, R
             error = flip(target[..., ::-1], render[..., ::-1])
             ours = json.loads(run(sys.argv[1], *names[:2]).stdout)["flip"]
             near(ours, error.mean(), 1e-6, f"kind {kind}, {width}x{height}")

@@ -35,7 +35,7 @@ def rows(*command):
 
 
 class Choice:
-    """What `--auto` took of a view's points, and what of its PSNR that cost."""
+    """The Gaussians that `--auto` took of a view's points, and the loss of PSNR."""
 
     def __init__(self, whole, chosen):
         self.share = chosen["gaussians"] / whole["gaussians"] * 100
@@ -46,9 +46,9 @@ class Choice:
 
 
 def choices(command, *options):
-    """For each loss a Choice of every view; the more may be lost, the fewer are taken."""
+    """Returns a Choice for every view and each loss; the larger the loss allowed, the fewer Gaussians."""
     whole = rows(command, *options, "--keep", "100")
-    every = ["--keep", "100"] if command == "stress" else []  # its --keep stands for what is not --auto's
+    every = ["--keep", "100"] if command == "stress" else []  # its --keep applies to the methods without --auto
     found = []
     for most in LOSSES:
         chosen = rows(command, *options, *every, "--auto", "--max-loss", str(most))

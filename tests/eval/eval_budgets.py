@@ -61,7 +61,7 @@ def poses():
         check(posed["settings"] == f"poses-{source}" and posed["psnr"] != given["psnr"], f"{source}: nothing changes")
         check(source != "estimate" or posed["psnr"] > given["psnr"] - 1, f"{posed['psnr']} dB, given {given['psnr']} dB")
         near(posed["psnr_all"], built("--gaussians", 500, "--poses", source), 0.05, f"{source} is not that of build")
-    # what is a context view of one case is the target of another, with its recorded pose
+    # a context view of one case is the target of another, with its recorded pose
     alone = {r["target"]: r["psnr"] for r in rows("--gaussians", 500, "--poses", "estimate")}
     check(alone["1"] == rows(*ONE, "--gaussians", 500, "--poses", "estimate")[0]["psnr"], "cases change each other")
 

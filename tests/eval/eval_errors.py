@@ -94,7 +94,7 @@ with tempfile.TemporaryDirectory() as folder:
             check(not [name for name in os.listdir(folder) if "full" in name], "half a page is left")
         elif option == "--csv":
             os.remove(f"{folder}/full")
-    # told before the work: no row is printed
+    # reported before the work: no row is printed
     result = run(trim3r, "eval", *one, "--keep", "10", "--html", folder, expect=INPUT)
     check("not a regular file" in result.stderr and result.stdout == "", "a folder as page")
     os.environ["TMPDIR"] = below

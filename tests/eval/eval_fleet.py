@@ -28,7 +28,7 @@ exec "{trim3r}" "$@"
 """
 
 
-# in the place of a cluster's: notes what was asked for, starts the job script and comes back
+# a stand-in for a cluster's command: notes the request, starts the job script and returns
 SUBMIT = """#!/bin/sh
 for script; do :; done
 echo "$*" >>"{folder}/submitted"
@@ -76,13 +76,13 @@ def on_a_cluster(folder):
         submitted = file.read().splitlines()
     check(all(line.startswith("-c 1 --mem 1000 ") for line in submitted), f"what jobs ask for: {submitted}")
     count = {rule: sum(f".{rule}." in line for line in submitted) for rule in ("eval", "replay", "report", "scores")}
-    # what died is tried again by Snakemake's process within the job, or submitted anew
+    # Snakemake's process within the job retries what died, or submits it again
     check(3 <= count.pop("eval") <= 6 and all(map(os.path.exists, met)), f"each eval dies once: {submitted}")
     check(count == {"replay": 3, "report": 1, "scores": 0}, f"tables are merged here: {submitted}")
 
 
 def finds_its_program(folder):
-    """That of the checkout it lies in, else the PATH's, else an error that says what to do."""
+    """Checks that the program is the checkout's, else the PATH's, else an error that says what to do."""
     os.makedirs(f"{folder}/checkout/tools/study/fleet")
     shutil.copy(snakefile, f"{folder}/checkout/tools/study/fleet")
     dry = ("-s", "checkout/tools/study/fleet/Snakefile", "-d", "fresh", "-c", "1", "-n", "-p", "--config",

@@ -19,7 +19,7 @@ random = numpy.random.default_rng(4)
 
 
 def gaussians(path):
-    """A scene as rows of floats, x y z first."""
+    """Returns a scene as rows of floats, x y z first."""
     data = open(path, "rb").read()
     head, body = data.split(b"end_header\n", 1)
     fields = [line for line in head.split(b"\n") if line.startswith(b"property")]
@@ -68,7 +68,7 @@ def pictures_choose(folder, room):
 
 
 def no_more_than_needed(folder, room, names):
-    """--auto: as many of the given points as the loss asks for, the same in all commands."""
+    """Checks --auto: as many of the given points as the loss needs, the same in all commands."""
     pictures = ["--allocate", "given", "--importance", ",".join(names)]
     auto = [*pictures, "--auto", "--max-loss", "3"]
     scene = build(room, *auto, out=f"{folder}/auto.ply")

@@ -71,7 +71,7 @@ def exact_counts(folder, room, theirs, ply):
 
 
 def as_good_as_direct(folder, room, theirs, ply):
-    text = [room, *CASE, "--keep", "100,10", "--fit-passes", "off"]  # a file's points are refined so in any case
+    text = [room, *CASE, "--keep", "100,10", "--fit-passes", "off"]  # a file's points are always refined in this way
     direct = {row["keep"]: row for row in evaluate(*text)}
     rows = evaluate(*text, "--prune", theirs, "--methods", "trim3r,random,eagles", "--images", f"{folder}/pictures")
     by = {(row["method"], row["keep"]): row for row in rows}
@@ -112,7 +112,8 @@ def moved_cameras(folder, room, ply):
 
 
 def unseen_do_not_count(folder, room, theirs, ply):
-    """Means behind the cameras and faint ones before everything change nothing; a scene that no view sees is refused."""
+    """Checks that means behind the cameras and faint ones in front change nothing; a scene that no view sees is
+    refused."""
     at = [ply.names.index(name) for name in "xyz"]
     opacity = ply.names.index("opacity")
     told = build(room, *CONTEXT, "--prune", theirs, "--gaussians", "500", out=f"{folder}/plain.ply")
@@ -138,7 +139,7 @@ def unseen_do_not_count(folder, room, theirs, ply):
                         ["eval", room, *CASE, "--keep", "10"]):
             error = run(trim3r, *command, "--prune", path, expect=1).stderr
             check(f"{name}.ply: frame 0 of {room} sees none of its {len(rows)} Gaussians" in error, error)
-    right = SIDE * SIDE // 2 + SIDE - 1  # of the first view's middle row, outside the second
+    right = SIDE * SIDE // 2 + SIDE - 1  # from the first view's middle row, outside the second view
     one = ply.write(f"{folder}/one.ply", ply.rows[right:right + 1])
     check("frame 2" in run(trim3r, "build", room, *CONTEXT, "--keep", "10", "--prune", one, "-o", f"{folder}/no.ply",
                            expect=1).stderr, "the view is told that sees none")

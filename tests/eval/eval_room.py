@@ -138,7 +138,7 @@ def evaluate_names(folder, room):
 
 
 def evaluate_one_target_twice(folder):
-    """Two triplets of a recording may meet the same frame from other ones."""
+    """Checks two triplets of a recording with the same target and different contexts."""
     made = f"{folder}/made"
     os.mkdir(made)
     random = numpy.random.default_rng(1)
@@ -163,7 +163,7 @@ def evaluate_one_target_twice(folder):
 
 
 def evaluate_variants(folder, room):
-    """What must not matter does not; what must, does."""
+    """Checks that settings have an effect exactly where they should."""
     common = [trim3r, "eval", room, "--context", "0,2", "--target", "1", "--keep", "20", "--json"]
 
     def row(*more):
@@ -182,7 +182,7 @@ def evaluate_variants(folder, room):
 
 
 def evaluate_heads(folder, room):
-    """Rows a head, each as if it had been evaluated alone; weight files beside shipped heads."""
+    """Checks that each head's rows equal those of that head alone; weight files next to shipped heads."""
     heads = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "quant", "heads")
     for bits in ("8", "16"):
         run(trim3r, "quantize", f"{heads}/tiny.safetensors", "--calibrate", room, "--name", "mine", "--weights", "8",

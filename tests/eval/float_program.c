@@ -16,7 +16,7 @@
 #include "host/file_bytes.h"
 
 static const double scale[T3R_HEAD_OUTPUTS] = {16384, 16384, 8192, 8192, 16384, 32768, 8192, 8192, 8192};
-static const float_plane *outputs; /* of the view in work */
+static const float_plane *outputs; /* of the current view */
 
 t3r_head_rows __real_t3r_head_learned, __wrap_t3r_head_learned;
 void __wrap_t3r_network_points(const t3r_network *net, uint32_t y, uint32_t count, const uint32_t *x,

@@ -36,7 +36,7 @@ def tables(text):
 
 
 def filled(rows):
-    """The rows with the first column repeated where it is left empty."""
+    """Returns the rows with the first column repeated where it is empty."""
     title = ""
     for row in rows[2:]:
         title = row[0] or title
@@ -150,7 +150,7 @@ with tempfile.TemporaryDirectory() as folder:
     for picture in ("paper.svg", "paper-scales.svg"):
         xml.dom.minidom.parse(f"{out}/{picture}")
 
-    # a table that was cut off goes on, the others stand
+    # a truncated table is continued, the others stay
     path, rows = rows_of(cache, "apc_shelf.first.*.csv")
     with open(path, encoding="utf-8") as file:
         lines = file.readlines()

@@ -19,7 +19,7 @@ MIDDLE, DISTANCE = numpy.array([0.0036, 0.0686, -0.0093]), 0.2
 
 
 def pose(angle):
-    """A camera around the middle that looks at it, `angle` radians to the side, from a little above."""
+    """Returns a camera around the middle that looks at it, `angle` radians to the side, from slightly above."""
     z = numpy.array([numpy.sin(angle), 0.25, numpy.cos(angle)])
     z /= numpy.linalg.norm(z)
     x = numpy.cross([0, 1, 0], z)

@@ -22,7 +22,7 @@ static void assert_near(double a, double b, double bound)
     }
 }
 
-/* A picture with structure in all channels. */
+/* Makes a picture with structure in all channels. */
 static void fill_picture(uint8_t *rgb, uint32_t seed)
 {
     for (uint32_t i = 0; i < PIXELS * 3; i++) {
@@ -68,7 +68,7 @@ static void test_ssim_of_flat_pictures(void **state)
     uint8_t a[PIXELS * 3], b[PIXELS * 3];
     memset(a, 50, sizeof a);
     memset(b, 200, sizeof b);
-    /* no variance: the luminance term alone */
+    /* no variance: only the luminance term */
     double c1 = 0.01 * 255 * 0.01 * 255;
     assert_near(metric_ssim(a, b, NULL, SIDE, SIDE), (2 * 50.0 * 200 + c1) / (50.0 * 50 + 200.0 * 200 + c1), 1e-9);
 }
@@ -119,7 +119,7 @@ static void test_flip_is_symmetric_and_grows(void **state)
     }
 }
 
-/* What the authors' own evaluator gives, in single precision, for this pair at 67 pixels a degree. */
+/* Compares with the authors' own evaluator, in single precision, for this pair at 67 pixels a degree. */
 static void test_flip_of_a_published_evaluator(void **state)
 {
     (void)state;
@@ -138,7 +138,7 @@ static void test_mask_leaves_pixels_out(void **state)
     memset(all, 1, sizeof all);
     for (uint32_t i = 0; i < PIXELS; i++) {
         left[i] = i % SIDE < SIDE / 2 ? 200 : 0;
-        if (i % SIDE >= SIDE / 2 + 6) { /* further than the window of the mask's last column */
+        if (i % SIDE >= SIDE / 2 + 6) { /* beyond the window of the mask's last column */
             b[3 * i] ^= 0xff;
         }
     }

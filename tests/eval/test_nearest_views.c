@@ -46,7 +46,7 @@ static void test_distance(void **state)
     t3r_camera rolled = {.rotation_q30 = {0, 0, 0, ONE_Q30}};
     view_place e = view_place_of(&rolled);
     assert_true(view_distance(&a, &e, 2) == 0);
-    /* as far apart as positions go */
+    /* as far apart as positions can be */
     view_place least = a, most = a;
     least.position_q32[0] = 1 - (INT64_C(1) << 62);
     most.position_q32[0] = (INT64_C(1) << 62) - 1;
@@ -90,11 +90,11 @@ static void test_nearest_frames(void **state)
     assert_int_equal(nearest_views(places, count, 2, 2, 5, context, 2), 5);
     const uint32_t expected[] = {0, 3, 4, 1, 5};
     assert_memory_equal(context, expected, sizeof expected);
-    /* a far scene: what is turned comes last; of equal ones the first */
+    /* a far scene: turned cameras come last; the first of equal ones */
     assert_int_equal(nearest_views(places, count, 2, 1000, 8, context, 0), 5);
     const uint32_t turned[] = {1, 3, 0, 4, 5};
     assert_memory_equal(context, turned, sizeof turned);
-    /* no more than asked for; what is there stays */
+    /* no more than requested; existing ones stay */
     context[0] = 5;
     assert_int_equal(nearest_views(places, count, 2, 2, 1, context, 1), 1);
     assert_int_equal(context[0], 5);

@@ -21,7 +21,7 @@
 typedef struct plan {
     uint32_t fails, dies, refused; /* items */
     uint32_t taken[3 * ITEMS], count;
-    uint32_t ended; /* parts whose large tail was whole */
+    uint32_t ended; /* parts whose large tail was complete */
 } plan;
 
 static void wait_ms(long ms)

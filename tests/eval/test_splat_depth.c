@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Depth of a scene's means: which of them a pixel has, and in which steps. */
+/* Depth from a scene's means: which mean a pixel gets, and in which steps. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -39,7 +39,7 @@ static void begin(stage *s)
                              .rotation_q30 = {759250125, 0, -759250125, 0}};
 }
 
-/* A mean `depth` world units away that is seen at column x, row y. */
+/* Places a mean `depth` world units away, seen at column x, row y. */
 static void place(stage *s, double x, double y, double depth, uint16_t opacity_q15)
 {
     double right = (x - (WIDTH - 1) / 2.0) / FOCAL * depth, down = (y - (HEIGHT - 1) / 2.0) / FOCAL * depth;
@@ -110,7 +110,7 @@ static void nearest_wins(void **state)
     }
 }
 
-/* Of one surface the mean nearest to the pixel's centre, but not of one behind it. */
+/* The mean of a surface nearest to the pixel's centre is used, but none from behind the surface. */
 static void surface_is_sampled_at_the_centre(void **state)
 {
     (void)state;
@@ -184,7 +184,7 @@ static void nothing_is_seen(void **state)
     free(s.depth.steps);
 }
 
-/* One stray mean does not cost the others their resolution. */
+/* A single stray mean does not reduce the others' resolution. */
 static void far_ones_are_brought_near(void **state)
 {
     (void)state;

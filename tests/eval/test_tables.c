@@ -173,7 +173,7 @@ static void test_means_group_by_settings(void **state)
     rows[2].wavelet = "haar"; /* beside "a", db2 */
     assert_int_equal(evaluation_means(rows, 5, false, means), 4);
     rows[2].wavelet = "db2";
-    rows[2].ablation = "k-5"; /* beside "a", nothing ablated */
+    rows[2].ablation = "k-5"; /* next to "a", without ablation */
     assert_int_equal(evaluation_means(rows, 5, false, means), 4);
     assert_true(means[0].value[EVALUATION_PSNR] == 20);
     assert_string_equal(means[2].ablation, "k-5");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What fuzzers of the C interface share: bytes to numbers, frames, cameras, Gaussians and pictures, wild ones among
- * them. Whatever is read or written lies in memory of exactly the bytes that the interface names. */
+/* Shared by fuzzers of the C interface: bytes to numbers, frames, cameras, Gaussians and pictures, including wild
+ * ones. All memory read or written has exactly the bytes that the interface names. */
 #ifndef T3R_FUZZ_ARGUMENTS_H
 #define T3R_FUZZ_ARGUMENTS_H
 
@@ -30,7 +30,7 @@ uint8_t take8(input *in);
 uint32_t take32(input *in);
 /* Below the bound, which is not 0: a byte of input, or two. */
 uint32_t below(input *in, uint32_t bound);
-/* A size near the small ones, or one that must be refused. */
+/* Returns a size near the small ones, or one that must be refused. */
 uint32_t take_side(input *in);
 
 /* The settings from the `first` on, each in its range, at most that of `most`; nothing is drawn of one with no choice.
@@ -55,13 +55,13 @@ typedef struct held_frame {
 } held_frame;
 
 held_frame take_frame(input *in);
-/* The least bytes of a colour plane, whose rows are as far apart as the frame says, and of one of its rows. */
+/* Returns the minimum bytes of a colour plane with the frame's stride, and of one row. */
 uint64_t plane_bytes(const t3r_frame *frame, int plane, uint32_t *row);
 void free_frame(held_frame *held);
 
 t3r_gaussian take_gaussian(input *in);
 
-/* A target with all its planes, `padding` elements between rows. */
+/* A target with all its planes, with `padding` elements between rows. */
 typedef struct picture {
     t3r_target target;
     size_t bytes[3];

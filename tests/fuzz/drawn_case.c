@@ -18,7 +18,7 @@ static uint32_t take_working_side(input *in, uint32_t least)
     return least + extra + below(in, FREQUENT_SIDES);
 }
 
-/* From a few of the points to more than there are of them in a small picture; blending takes the time of them all. */
+/* From a few of the points to more than a small picture has; the time of blending grows with the number. */
 static uint32_t take_gaussians(input *in, uint32_t points)
 {
     const uint32_t shift = below(in, 8), share_q7 = 1 + take8(in), drawn = 1 + (points >> shift) * share_q7 / 128;

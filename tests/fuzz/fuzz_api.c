@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Bytes to a sequence of calls of the C interface: wild settings, frames, cameras, Gaussians and targets, in any
- * order, in arenas of any size, with copies and cancellations in between. Whatever comes, every call answers with a
- * documented status, stays inside the memory it was given, and a copied arena draws the same picture. */
+/* Turns bytes into calls of the C interface: wild settings, frames, cameras, Gaussians and targets, in any order, in
+ * arenas of any size, with copies and cancellations in between. Every call returns a documented status and stays
+ * inside its memory, and a copied arena draws the same picture. */
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -103,7 +103,7 @@ static void call_render(session *s, input *in)
     if (status == T3R_OK) {
         REQUIRE(width <= s->config.render_width && height <= s->config.render_height);
         REQUIRE(t3r_render_passes(s->rt) >= 1);
-        /* the same from a copy, elsewhere; hooks are left behind */
+        /* the same from a copy elsewhere, without hooks */
         uint8_t *copy = allocate_arena(s->arena_bytes);
         memcpy(copy, s->arena, s->arena_bytes);
         t3r_runtime *rt;
@@ -139,7 +139,7 @@ static void call_add_view(session *s, input *in)
     free_frame(&held);
 }
 
-/* A frame in strips, some out of order; planes begin where the strip does. */
+/* Adds a frame in strips, some out of order; planes begin where the strip does. */
 static void call_add_rows(session *s, input *in)
 {
     t3r_camera camera = take_camera(in);
@@ -171,7 +171,7 @@ static void call_add_rows(session *s, input *in)
     free_frame(&held);
 }
 
-/* A keyframe or a few, in an arena for streams or in one that refuses them. */
+/* Adds one or more keyframes, in an arena for streams or in one that refuses them. */
 static void call_stream(session *s, input *in)
 {
     for (uint32_t n = 1 + below(in, 3); n > 0; n--) {
@@ -236,7 +236,7 @@ static bool take_importance(const session *s, input *in, uint16_t *planes[T3R_MA
     return kind != 1 && kind != 2;
 }
 
-enum { BUDGET = 1, LOSS = 2, ALLOCATION = 4, HEAD = 8, IMPORTANCE = 16 }; /* what a request asks for */
+enum { BUDGET = 1, LOSS = 2, ALLOCATION = 4, HEAD = 8, IMPORTANCE = 16 }; /* parts of a request */
 
 /* First or again, by a request of any parts. */
 static void call_build(session *s, input *in, uint32_t parts)
@@ -267,7 +267,7 @@ static void call_all(session *s, input *in)
     call_render(s, in);
 }
 
-/* A head, one cut short, or none. */
+/* Binds a head, a truncated one, or none. */
 static void call_bind(session *s, input *in)
 {
     static uint8_t *weights;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Bytes to damages of an arena that was stored, and to what is done with it once it is attached. Damages are of a kind
- * that a look at single fields does not find: labels, counts, depths, order and the state's numbers change together and
- * still agree, or agree but for one. t3r_attach() may refuse such an arena. Whatever it takes must be safe in every
- * call: documented statuses, no access beyond the arena, layout and configuration untouched, scenes within their budget
- * and with every field in range. */
+/* Turns bytes into damages of a stored arena, and into calls once it is attached. Checks of single fields do not
+ * find these damages: labels, counts, depths, order and the state's numbers change together and still agree, or
+ * agree except one. t3r_attach() may refuse such an arena. An accepted arena must be safe in every call: documented
+ * statuses, no access beyond the arena, layout and configuration unchanged, scenes within their budget and with
+ * every field in range. */
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -62,7 +62,7 @@ static t3r_camera camera_at(uint32_t place)
                         .rotation_q30 = {1 << 30}};
 }
 
-/* A wall of noise as the camera at that place sees it, a step in it and a few holes. */
+/* Draws a wall of noise as the camera at that place sees it, with a step in it and a few holes. */
 static void draw_frame(uint32_t place, uint8_t colour[HEIGHT][WIDTH][3], uint16_t depth[HEIGHT][WIDTH])
 {
     for (uint32_t y = 0; y < HEIGHT; y++) {
@@ -110,7 +110,7 @@ static stored make(base which)
 
 /* ---- damages ------------------------------------------------------------------------------------- */
 
-/* A number at the borders of what may be, or any. */
+/* Returns a number at the limits of its range, or any. */
 static uint32_t take_number(input *in, uint32_t bound)
 {
     const uint32_t known[] = {0, 1, bound - 1, bound, bound + 1, UINT32_MAX, bound / 2};
@@ -231,7 +231,7 @@ static void damage_depth(t3r_runtime *rt, input *in)
     }
 }
 
-/* Planes lie one behind the other: those of all views as those of one. */
+/* Returns all views as one: their planes are stored one after the other. */
 static t3r_view all_views(const t3r_runtime *rt)
 {
     return (t3r_view){.validity = t3r_buffer_at(rt, T3R_BUFFER_VALIDITY),
@@ -310,7 +310,7 @@ static void damage_records(t3r_runtime *rt, input *in)
     }
 }
 
-/* Whatever says the same twice is made to agree, some of it or all. */
+/* Makes redundant fields agree, some or all. */
 static void mend(t3r_runtime *rt, uint32_t what)
 {
     uint8_t *validity = t3r_buffer_at(rt, T3R_BUFFER_VALIDITY);
@@ -348,7 +348,7 @@ static void damage(t3r_runtime *rt, input *in)
         switch (below(in, 10)) {
         case 0:
             damage_bytes(rt, in, true);
-            return; /* what the others rely on may be gone */
+            return; /* fields that others rely on may be gone */
         case 1:
             damage_bytes(rt, in, false);
             return;
@@ -458,7 +458,7 @@ static void call_export(const t3r_runtime *rt)
         size_t bytes = 0;
         FILE *file = open_memstream(&text, &bytes);
         REQUIRE(file != NULL);
-        /* it is only read */
+        /* only read */
         const scene_file made = {
             .frame = scene.frame, .gaussians = (t3r_gaussian *)(uintptr_t)scene.gaussians, .count = scene.count};
         const scene_source source = {.scene = &made, .turn = scene_turn_to(SCENE_AXES_AS_THEY_ARE, SCENE_UP_UNKNOWN)};

@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 extern volatile uint32_t fuzz_bag_sum;
 volatile uint32_t fuzz_bag_sum;
 
-enum { MOST_FRAMES = 4 }; /* those behind are read as these are */
+enum { MOST_FRAMES = 4 }; /* later ones are read in the same way */
 
 static void touch_depth(const t3r_frame *frame)
 {

@@ -17,7 +17,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* The page's data is one JSON value, which has no word for numbers that are none. */
+/* The page's data is one JSON value, which cannot hold NaN or infinity. */
 static void check_data(const char *text)
 {
     static const char begin[] = "id=\"data\">", end[] = "</script>";

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A recording of one compressed chunk: a byte names the codec, four say how much it unpacks to, the rest is packed. An
- * error, or frames that can be asked for. */
+/* A recording with one compressed chunk: a byte names the codec, four bytes give the unpacked size, the rest is
+ * packed. Gives an error, or frames that can be read. */
 #include <stdlib.h>
 #include <string.h>
 

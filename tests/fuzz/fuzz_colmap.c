@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A model of COLMAP, text or binary by the first byte, its cameras and its images with a marker between them: an error,
- * or poses within the limits and lenses of finite numbers. */
+/* A COLMAP model, text or binary by the first byte, with a marker between cameras and images. Gives an error, or
+ * poses within the limits and lenses of finite numbers. */
 #define _GNU_SOURCE /* memmem() */
 #include <math.h>
 #include <stdio.h>
@@ -19,7 +19,8 @@ typedef int (*reader)(FILE *file, colmap_model *model, char *error, size_t error
 static int read_part(reader read, const uint8_t *data, size_t size, colmap_model *model)
 {
     char error[256] = "";
-    FILE *file = size > 0 ? fmemopen((void *)(uintptr_t)data, size, "rb") : tmpfile(); /* none of nothing */
+    FILE *file =
+        size > 0 ? fmemopen((void *)(uintptr_t)data, size, "rb") : tmpfile(); /* fmemopen() refuses a size of 0 */
     if (file == NULL) {
         abort();
     }

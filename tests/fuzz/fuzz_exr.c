@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Any bytes as depth of OpenEXR: an error, or samples of the sides that its header gave. */
+/* Any bytes as OpenEXR depth: an error, or samples of the size in the header. */
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             abort();
         }
         void *copy = malloc(bytes);
-        memcpy(copy, depth.samples, bytes); /* every one of them is there */
+        memcpy(copy, depth.samples, bytes); /* all of them are readable */
         free(copy);
     }
     picture_free(&depth);

@@ -25,7 +25,7 @@ static int read_bytes(void *user, uint64_t offset, void *bytes, size_t count)
 {
     const input *from = user;
     if (offset > from->count || count > from->count - offset) {
-        abort(); /* it may ask for what there is alone */
+        abort(); /* may request only bytes that exist */
     }
     memcpy(bytes, from->bytes + offset, count);
     return 0;
@@ -65,7 +65,7 @@ static void touch_frame(t3r_frame_reader *reader, t3r_frame *f)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    /* On the heap, so that the sanitizer sees what lies beyond. */
+    /* On the heap, so that the sanitizer sees accesses beyond. */
     uint8_t *colour = malloc(ROOM), *depth = malloc(ROOM);
     t3r_frame_reader reader;
     input from = {data, size};

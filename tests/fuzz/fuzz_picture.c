@@ -28,7 +28,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (status == 0) {
             size_t bytes = (size_t)p.width * p.height * p.channels * (p.bits / 8);
             void *copy = malloc(bytes);
-            memcpy(copy, p.samples, bytes); /* every one of them is there */
+            memcpy(copy, p.samples, bytes); /* all of them are readable */
             free(copy);
         }
         picture_free(&p);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A .npz or .npy, whatever it is: an error, or maps whose views are finite, in any order, or say why not. */
+/* Any .npz or .npy: an error, or maps whose views are finite, in any order, or give a reason why not. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A text with a matrix: an error, or numbers whose pose, if it is one, lies within the limits. */
+/* A text with a matrix: an error, or numbers whose pose, if it is one, is within the limits. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 extern volatile uint32_t fuzz_recording_sum;
 volatile uint32_t fuzz_recording_sum;
 
-/* Reads every byte that a frame lends, so that a sanitizer sees one that is not there. */
+/* Reads every byte of a frame, so that a sanitizer sees an invalid one. */
 static uint32_t touch(const uint8_t *rows, uint32_t stride, uint32_t row_bytes, uint32_t count)
 {
     uint32_t sum = 0;

@@ -11,7 +11,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* The heading of this program's tables, and the bytes behind it. */
+/* Returns the heading of this program's tables, followed by the bytes. */
 static uint8_t *with_heading(const uint8_t *data, size_t size, size_t *count)
 {
     size_t room = 1;
@@ -42,7 +42,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         abort();
     }
     for (uint32_t i = 0; code == CLI_OK && i < resume.count; i++) {
-        /* a row without a budget is like no other, itself included */
+        /* a row without a budget equals no other, not even itself */
         if (evaluation_resume_find(&resume, &resume.rows[i]) == NULL && !isnan(resume.rows[i].value[EVALUATION_KEEP])) {
             abort();
         }

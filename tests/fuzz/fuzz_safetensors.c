@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A float head, made up or damaged in a few places: refused with a reason, or quantized to a file that its reader
- * takes, or refused by the quantizer with a reason. */
+ * accepts, or refused by the quantizer with a reason. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,7 +24,7 @@ static void quantize(const float_head *head, uint32_t bits)
         return;
     }
     uint8_t *file = weight_file_make(&quantized, &count);
-    /* the one thing that only the whole file can break */
+    /* the only error that requires the whole file */
     if (weight_info_read(&info, file, count, error, sizeof error) != 0 && strstr(error, "over 16 MiB") == NULL) {
         abort();
     }

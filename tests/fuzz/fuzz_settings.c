@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Bytes to a case (drawn_case.h) and to a way of running it, in which everything differs that must not matter: the
- * arena's size, its place, what was in it and what it was used for before, the room that settings leave, the number of
- * workers and the order of their tasks, the processor's variants, strips instead of whole frames, bytes between rows,
- * and a call that was cancelled and came again. The plain way is that of a firmware: plain C, one worker, all in order.
- * Both give the same statuses, hashes of stages, scenes and pictures; a difference is printed and ends the program. */
+/* Turns bytes into a case (drawn_case.h) and a way of running it that varies everything without influence on
+ * results: the arena's size, place, previous contents and use, the room that settings leave, the number of workers
+ * and the order of their tasks, the processor's variants, strips instead of whole frames, bytes between rows, and a
+ * call that was cancelled and repeated. The plain way is a firmware's: plain C, one worker, all in order. Both give
+ * the same statuses, hashes of stages, scenes and pictures; a difference is printed and ends the program. */
 #include <stddef.h>
 #include <string.h>
 
@@ -17,22 +17,22 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 enum { MOST_CALLS = 32, MOST_WORKERS_DRAWN = 8, FULL_Q8 = 255 };
 
-/* All 0 but `workers` and `arena_q8` in the plain way. A part that is drawn as 0 is plain as well. */
+/* In the plain way all are 0 except `workers` and `arena_q8`. A part drawn as 0 is plain as well. */
 typedef struct way {
     uint8_t arena_q8;   /* 0 = the least; FULL_Q8 = for full speed */
     uint8_t beyond;     /* bytes beyond that */
-    uint8_t fill;       /* what the memory holds before */
-    uint8_t moves;      /* a bit a call, modulo 8: the arena lies elsewhere from then on */
+    uint8_t fill;       /* previous contents of the memory */
+    uint8_t moves;      /* one bit per call, modulo 8: the arena moves before it */
     uint8_t workers;    /* 1..MOST_WORKERS_DRAWN */
-    uint8_t order;      /* of tasks: a seed */
+    uint8_t order;      /* seed of the tasks' order */
     uint8_t cpu;        /* chooses among the processor's features, another choice for each call */
-    uint8_t strips;     /* a bit a view: it comes in strips */
-    uint8_t heights[2]; /* of strips, less 1, of colour and depth */
-    uint8_t abandons;   /* a bit a view: a strip of it comes before the whole */
+    uint8_t strips;     /* one bit per view: added in strips */
+    uint8_t heights[2]; /* heights of strips, less 1, of colour and depth */
+    uint8_t abandons;   /* one bit per view: a strip of it comes before the whole */
     uint8_t padding;    /* bytes, or elements, between rows */
     uint8_t room;       /* bits of ROOM_ */
     uint8_t cancels;    /* number of the call, from 1 on; 0 = none */
-    uint8_t cancels_q8; /* after how much of it */
+    uint8_t cancels_q8; /* share of the call that runs before it is cancelled */
     uint8_t before;     /* calls of the same case that a reset ends, before it begins */
 } way;
 
@@ -46,7 +46,7 @@ enum {
     ROOM_TILE = 16,
     ROOM_WARM = 32,
     ROOM_VIEWS = 64,
-    ROOM_REQUEST = 128, /* what a request leaves open is asked for */
+    ROOM_REQUEST = 128, /* requests fields that a request leaves open */
 };
 
 static way take_way(input *in)
@@ -63,12 +63,12 @@ static way take_way(input *in)
     w.room = take8(in);
     w.cancels = (uint8_t)below(in, 12);
     w.cancels_q8 = take8(in);
-    const uint32_t before = below(in, 32); /* it takes its time */
+    const uint32_t before = below(in, 32); /* this takes time */
     w.before = (uint8_t)(before < 8 ? before : 0);
     return w;
 }
 
-/* X(bytes of a way, what they change), to tell which of them a difference takes. */
+/* X(bytes of a way, what they change), to find which of them a difference needs. */
 #define PARTS(X)                                                                                                       \
     X(arena_q8, "the arena's size")                                                                                    \
     X(beyond, "bytes beyond the arena for full speed")                                                                 \
@@ -110,7 +110,7 @@ typedef struct trace {
     uint32_t count;
     uint8_t *memory;
     size_t bytes, room;
-    uint32_t steps[MOST_CALLS]; /* that each call reported */
+    uint32_t steps[MOST_CALLS]; /* reported by each call */
 } trace;
 
 static void add_note(trace *t, note n, const void *data)
@@ -127,7 +127,7 @@ static void add_note(trace *t, note n, const void *data)
     t->notes[t->count++] = n;
 }
 
-/* Forgets what came after so many notes. */
+/* Drops all notes but the first `count`. */
 static void rewind_to(trace *t, uint32_t count)
 {
     t->bytes = count < t->count ? t->notes[count].at : t->bytes;
@@ -206,7 +206,7 @@ static void describe_difference(const trace *t, const trace *expected)
 typedef struct run {
     const drawn_case *drawn;
     way goes;
-    const trace *expected; /* of the plain way; NULL: this is it */
+    const trace *expected; /* of the plain way; NULL: this is the plain way */
     trace *seen;
     t3r_config config;
     uint8_t *arena;
@@ -277,7 +277,7 @@ static uint32_t features_of(const way *goes, uint32_t call)
     return has & masks[choice];
 }
 
-/* A part is 0 where it doesn't differ: only what the library's own documents allow is given away. */
+/* A part is 0 where it does not differ: only differences that the library's own documents allow are drawn. */
 static t3r_config config_of(const drawn_case *c, const way *goes)
 {
     t3r_config k = c->config;
@@ -294,7 +294,7 @@ static t3r_config config_of(const drawn_case *c, const way *goes)
     return k;
 }
 
-/* What does not outlive a move, or a call that was cancelled. */
+/* Binds again what a move or a cancelled call loses. */
 static void bind(run *r)
 {
     const t3r_hooks hooks = {.user = r,
@@ -322,7 +322,7 @@ static void move(run *r)
 
 typedef t3r_status action(run *r);
 
-/* A call, whose status is a note. Where it may be cancelled, the call that comes after that does the whole work. */
+/* Performs a call, whose status is a note. If it may be cancelled, the next call does the whole work. */
 static t3r_status perform(run *r, const char *name, action *act, bool may_be_cancelled)
 {
     r->name = name;
@@ -370,7 +370,7 @@ static t3r_status add_strips(run *r, const t3r_frame *f)
             part.planes[1] += (size_t)(row / 2) * f->stride_bytes[1];
         }
         part.depth += (size_t)depth_row * f->depth_stride_bytes;
-        const bool counts = now > 0 || r->config.depth == T3R_DEPTH_SENSOR; /* stereo ignores depth that is left */
+        const bool counts = now > 0 || r->config.depth == T3R_DEPTH_SENSOR; /* stereo ignores remaining depth */
         if (counts) {
             status = t3r_add_rows(r->rt, &part, &r->drawn->camera[r->index], row, now, depth_row, depth_now);
         }
@@ -380,14 +380,14 @@ static t3r_status add_strips(run *r, const t3r_frame *f)
     return status;
 }
 
-/* All of it never, so that no view is added. */
+/* Never adds all of it, so that no view is added. */
 static void abandon_strip(run *r, const t3r_frame *f)
 {
     const uint32_t rows = T3R_MIN(rows_of_strip(r, f), f->height - 2);
     (void)t3r_add_rows(r->rt, f, &r->drawn->camera[r->index], 0, rows, 0, 0);
 }
 
-/* With `warm` a view in strips may replace none. */
+/* With `warm` a view in strips may not replace another one. */
 static t3r_status add_view(run *r)
 {
     held_frame held = frame_of(r->drawn, r->index, r->goes.padding);
@@ -451,7 +451,7 @@ static t3r_status rebuild(run *r)
     return build_with(r, t3r_rebuild);
 }
 
-/* Rows alone: what lies between them stays as it was. */
+/* Notes the rows alone, and checks that the bytes between them do not change. */
 static void see_plane(run *r, const char *what, const void *plane, size_t row, size_t stride)
 {
     for (uint32_t y = 0; y < r->drawn->eye_height; y++) {
@@ -518,7 +518,7 @@ static void build_and_look(run *r, bool follows)
     }
 }
 
-/* At most so many calls for frames. */
+/* Makes at most so many calls for frames. */
 static void go_through(run *r, uint32_t most)
 {
     const drawn_case *c = r->drawn;

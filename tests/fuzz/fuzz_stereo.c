@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Bytes to two cameras, settings and pictures: whatever passes the check of cameras gets an answer, within the memory
- * that the macros promise, and depths within their range. It is the same in plain C and in the processor's variants. */
+/* Turns bytes into two cameras, settings and pictures: those that pass the check of cameras get an answer, within
+ * the memory that the macros promise, and depths within their range. Plain C and the processor's variants agree. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
-/* What the bytes begin with; the rest is repeated for pictures. */
+/* The first bytes; the rest is repeated for pictures. */
 typedef struct header {
     uint8_t width, height, disparities, paths;
     uint8_t plain; /* bits: which cameras have plausible intrinsics, whether they stand near each other */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The text of a trajectory, whatever it is: an error, or poses in the order of their times that lie between others. */
+/* Any text as a trajectory: an error, or poses in the order of their times, and between them interpolated ones. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The text of a transforms.json, whatever it is: an error or cameras that the recorder takes, no file touched. */
+/* Any text as a transforms.json: an error or cameras that the recorder accepts; no file is touched. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* rgb.txt, groundtruth.txt and depth.txt of a TUM RGB-D folder, a zero byte between them: an error, or frames whose
- * poses lie within the limits. No picture is opened. */
+/* rgb.txt, groundtruth.txt and depth.txt of a TUM RGB-D folder, separated by zero bytes: an error, or frames whose
+ * poses are within the limits. No picture is opened. */
 #define _GNU_SOURCE /* memfd_create() */
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A weight file, made up or damaged in a few places and sealed again. The rules of layers, written once for firmware
- * and once for the host, accept the same files, and a refusal has a reason. */
+/* A weight file, made up or damaged in a few places, with a valid checksum. The firmware's and the host's rules for
+ * layers accept the same files, and a refusal has a reason. */
 #include <stdlib.h>
 #include <string.h>
 

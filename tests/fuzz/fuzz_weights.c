@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A weight file, made up or damaged in a few places and sealed again: refused with a reason, or it runs over a small
- * image in exactly the memory it asks for. */
+/* A weight file, made up or damaged in a few places, with a valid checksum: refused with a reason, or it runs over a
+ * small image in exactly the memory that it requests. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

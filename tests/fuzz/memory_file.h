@@ -11,7 +11,7 @@
 
 #define MEMORY_FILE_PATH_BYTES 64
 
-/* Its path, which holds while the descriptor is open; close() it. */
+/* Returns a descriptor; the path is valid until it is closed with close(). */
 static inline int memory_file(const uint8_t *data, size_t size, char path[MEMORY_FILE_PATH_BYTES])
 {
     int descriptor = memfd_create("fuzz", 0);

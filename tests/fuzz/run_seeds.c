@@ -19,7 +19,7 @@ static uint32_t random_below(uint32_t bound)
     return (uint32_t)((state >> 33) % bound);
 }
 
-/* The target gets a copy of exactly so many bytes, so that sanitizers notice a read beyond them. */
+/* Gives the target a copy of exactly so many bytes, so that sanitizers notice a read beyond them. */
 static void run(const uint8_t *data, size_t size)
 {
     uint8_t *copy = malloc(size > 0 ? size : 1);
@@ -31,7 +31,7 @@ static void run(const uint8_t *data, size_t size)
     free(copy);
 }
 
-/* The file as it is, with a few other bytes, and cut short. */
+/* Runs the file as it is, with a few changed bytes, and truncated. */
 static void run_file(const char *path)
 {
     static uint8_t data[MOST_FILE_BYTES], changed[MOST_FILE_BYTES];

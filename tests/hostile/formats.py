@@ -6,7 +6,7 @@ import struct
 import zipfile
 import zlib
 
-ESCAPE = "\x1b]0;owned\x07\x9b31m"  # what a terminal obeys: a title, and a colour by C1
+ESCAPE = "\x1b]0;owned\x07\x9b31m"  # control sequences of a terminal: a title, and a colour by C1
 
 
 # --- pictures --------------------------------------------------------------------------------------------------------
@@ -17,7 +17,7 @@ def png_chunk(name, data, crc=None):
 
 
 def exr(width, height, tile=0, chunks=None):
-    """Zeros as float, packed by ZIP: lines of a picture, or its tiles. chunks: how many of them are there."""
+    """Returns zeros as float, packed by ZIP: lines of a picture, or its tiles. chunks: how many of them are present."""
     def attribute(name, kind, data):
         return name + b"\0" + kind + b"\0" + struct.pack("<I", len(data)) + data
 
@@ -40,7 +40,8 @@ def exr(width, height, tile=0, chunks=None):
 
 
 def png(width, height, depth=8, colour=2, interlaced=0, rows=None, before=b"", crc=None):
-    """Zeros, unless rows (the raw bytes) are given; rows of a huge picture that is not to be read are left out."""
+    """Returns zeros, unless rows (the raw bytes) are given; rows of a huge picture that must not be read are
+    omitted."""
     if rows is None:
         row = bytes(1 + (width * {0: 1, 2: 3, 3: 1, 6: 4}[colour] * depth + 7) // 8)
         rows = row * height if not interlaced else bytes(adam7(width, height, {0: 1, 2: 3, 6: 4}[colour] * depth))
@@ -62,7 +63,7 @@ def jpeg_segment(marker, data):
 
 
 def jpeg_bits(pairs):
-    """Codes (value, bits) one behind the other, stuffed as entropy-coded data are."""
+    """Returns codes (value, bits) one after the other, stuffed like entropy-coded data."""
     gathered, bits, out = 0, 0, bytearray()
     for value, length in pairs:
         gathered, bits = gathered << length | value, bits + length
@@ -78,7 +79,7 @@ def jpeg_bits(pairs):
 
 
 def jpeg(side, scans=1, width=None):
-    """Progressive, grey all over: one scan of the means, then scans that each say nothing of one coefficient."""
+    """Returns a progressive grey JPEG: one scan of the means, then empty scans of one coefficient each."""
     width = side if width is None else width
     components = b"\1\x11\0\2\x11\0\3\x11\0"
     out = b"\xff\xd8" + jpeg_segment(0xdb, b"\0" + b"\1" * 64)
@@ -104,7 +105,7 @@ def jpeg(side, scans=1, width=None):
 
 
 def zstd(parts, size=None):
-    """A Zstandard frame of parts: bytes as they are, or (byte, count), which takes 4 bytes for each 128 KiB."""
+    """Returns a Zstandard frame of parts: raw bytes, or (byte, count), which takes 4 bytes for each 128 KiB."""
     total = sum(len(p) if isinstance(p, bytes) else p[1] for p in parts)
     blocks = []
     for part in parts:
@@ -123,7 +124,7 @@ def zstd(parts, size=None):
 
 
 def lz4(head, byte, count):
-    """An LZ4 frame of head, then count times a byte: blocks of 4 MiB, each one long match."""
+    """Returns an LZ4 frame of head, then count times a byte: blocks of 4 MiB, each one long match."""
     out = struct.pack("<I", 0x184D2204) + b"\x40\x70"  # blocks depend on each other; 4 MiB; no sums
     out += bytes([xxh32(b"\x40\x70") >> 8 & 255])
     out += struct.pack("<I", 0x80000000 | len(head)) + head
@@ -142,7 +143,7 @@ def lz4(head, byte, count):
 
 
 def lz4_repeated(unit, times):
-    """An LZ4 frame of as many times the same bytes, at least 19 of them."""
+    """Returns an LZ4 frame of so many times the same bytes, at least 19 of them."""
     out = struct.pack("<I", 0x184D2204) + b"\x40\x70"
     out += bytes([xxh32(b"\x40\x70") >> 8 & 255])
     while times:
@@ -173,7 +174,7 @@ def xxh32(data):
 
 
 def spz(count, degree=0, stream=None):
-    """Version 4, every stream of zeros but that of scales, which are 1; or each the given one."""
+    """Returns version 4 with streams of zeros, except ones for scales; or with the given stream for each."""
     sizes = [9, 1, 3, 3, 4, 3 * ((degree + 1)**2 - 1)][:6 if degree else 5]
     streams = [zstd([(160 if i == 3 else 0, count * size)]) if stream is None else stream for i, size in enumerate(sizes)]
     table = b"".join(struct.pack("<QQ", len(data), count * size) for data, size in zip(streams, sizes))
@@ -189,7 +190,7 @@ def glb(text, numbers=b""):
 
 
 def gaussians(count, stride=None, **more):
-    """The JSON of a .glb whose attributes are all the same numbers."""
+    """Returns the JSON of a .glb whose attributes are all the same numbers."""
     names = ("ROTATION", "SCALE", "OPACITY", "SH_DEGREE_0_COEF_0")
     types = {"POSITION": "VEC3", "ROTATION": "VEC4", "SCALE": "VEC3", "OPACITY": "SCALAR", "SH_DEGREE_0_COEF_0": "VEC3"}
     view = {"buffer": 0, "byteLength": 64} | ({} if stride is None else {"byteStride": stride})
@@ -256,7 +257,7 @@ class Cdr:
 
 
 def image(stamp, width=16, height=16, encoding="rgb8", data=None, step=None, data_bytes=None):
-    """A sensor_msgs/Image; data_bytes: what it says of its data, whatever is there."""
+    """Returns a sensor_msgs/Image; data_bytes: the size stated for its data, whatever is present."""
     size = {"rgb8": 3, "16UC1": 2, "32FC1": 4}.get(encoding, 3)
     data = bytes(range(256)) * (width * height * size // 256 + 1) if data is None else data
     if data_bytes is None:
@@ -277,7 +278,7 @@ def pose(stamp, position=(0, 0, 0), rotation=(0, 0, 0, 1)):
 
 
 def transforms(stamp, edges, count=None, place=(0, 0, 0, 0, 0, 0, 1)):
-    """A tf2_msgs/TFMessage of (parent, child); count: what it says."""
+    """Returns a tf2_msgs/TFMessage of (parent, child); count: the number stated."""
     out = Cdr(stamp)
     out.data = b""
     out.put("I", len(edges) if count is None else count)
@@ -287,7 +288,7 @@ def transforms(stamp, edges, count=None, place=(0, 0, 0, 0, 0, 0, 1)):
 
 
 def compressed(stamp, form, data, data_bytes=None):
-    """A sensor_msgs/CompressedImage."""
+    """Returns a sensor_msgs/CompressedImage."""
     return Cdr(stamp).string(form).put("I", len(data) if data_bytes is None else data_bytes).bytes() + data
 
 
@@ -358,7 +359,8 @@ def deflated(head, byte, count):
 
 
 def archive(members, shared=False):
-    """A zip of (name, deflated bytes, crc, size); shared: all entries of the directory point to the first one's data."""
+    """Returns a zip of (name, deflated bytes, crc, size); shared: all entries of the directory point to the first one's
+    data."""
     out, directory = b"", b""
     for i, (name, data, crc, size) in enumerate(members):
         name = name.encode()
@@ -399,6 +401,6 @@ def colmap_cameras(width=16):
 
 
 def colmap_images(count=1, name="a.png", points=0, rotation=(1, 0, 0, 0)):
-    """images.bin with so many images, each the same bytes."""
+    """Returns images.bin with so many images, all with the same bytes."""
     one = struct.pack("<I7dI", 1, *rotation, 0, 0, 0, 7) + name.encode() + b"\0" + struct.pack("<Q", points)
     return struct.pack("<Q", count) + one * count

@@ -37,7 +37,7 @@ failures = []
 
 
 def commands(kind, path, out):
-    """What reads a file of that kind."""
+    """Returns the commands that read a file of that kind."""
     room, scene, pictures = "room.mcap", "room.ply", "pictures"
     context = ("--context", "0,1", "--gaussians", "20")
     return {
@@ -70,7 +70,7 @@ def commands(kind, path, out):
 
 
 def limit():
-    resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))  # a machine that this test runs on is not to suffer
+    resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))  # protects the machine that runs this test
     resource.setrlimit(resource.RLIMIT_CPU, (20, 20))
 
 
@@ -108,7 +108,7 @@ def check_run(name, command, why, ended):
         check(len(lines) <= most and all(line.startswith(f"trim3r {command[0]}: ") for line in lines),
               f"{what}: not one line: {message[:300]!r}")
         check(out == b"", f"{what}: output beside an error: {out[:100]!r}")
-        named = os.path.basename(name) in message or "the tables" in message  # of several at once
+        named = os.path.basename(name) in message or "the tables" in message  # one of several
         check(named, f"{what}: no name in {message!r}")
         reason = message.strip().rsplit(": ", 1)[-1]
         check(len(reason) >= 6, f"{what}: no cause in {message!r}")
@@ -140,7 +140,7 @@ def size_text(path):
 
 
 def make_good():
-    """What hostile files are read beside."""
+    """Makes the good files that hostile files are read with."""
     for command in (("room", "-o", "room.mcap", "--frames", "3", "--size", "64x64"),
                     ("build", "room.mcap", "--context", "0,2", "--gaussians", "40", "-o", "room.ply")):
         subprocess.run([TRIM3R, *command], check=True, capture_output=True)
@@ -158,7 +158,7 @@ def make_good():
 
 
 def place(kind, name, make):
-    """Makes the file or folder, in a process of its own: memory that it takes would count for what is started later."""
+    """Makes the file or folder in a process of its own, because its memory would count for processes started later."""
     path = f"pictures/{name}" if kind == "picture" else name
     child = os.fork()
     if child == 0:

@@ -38,7 +38,7 @@ def write(path, content):
 
 
 def scene(folder, count=3, change=None):
-    """A good folder of 40x30 pictures with depth, then `change`d."""
+    """Makes a good folder of 40x30 pictures with depth, then applies `change`."""
     frames = []
     for i in range(count):
         write(f"{folder}/c{i}.png", png(40, 30, value=lambda x, y: x * 5 + i))
@@ -193,7 +193,7 @@ def test_info_refuses():
 
 
 def test_stereo_pair():
-    """Two views: the triplet's context names the one that is not the target twice."""
+    """Checks two views: the triplet's context names the one that is not the target twice."""
     def pair(top):
         top.update(trim3r_triplets=[{"context": [1, 1], "target": 0}])
 

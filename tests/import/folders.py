@@ -35,7 +35,7 @@ def write(path, content):
 
 
 def quaternion(r):
-    """w x y z of a rotation, by the component that is largest."""
+    """Returns the quaternion w x y z of a rotation, by its largest component."""
     squares = np.array([1 + r[0, 0] + r[1, 1] + r[2, 2], 1 + r[0, 0] - r[1, 1] - r[2, 2],
                         1 - r[0, 0] + r[1, 1] - r[2, 2], 1 - r[0, 0] - r[1, 1] + r[2, 2]])
     products = np.array([[squares[0], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
@@ -81,7 +81,7 @@ def same(name, got, depth=True):
 
 
 def transforms(path, depth_key="depth_file_path", change=None, **top):
-    """As nerfstudio writes it."""
+    """Writes the file as nerfstudio does."""
     pictures(path, "images/frame_{:05d}.png", "depth/{:05d}.png")
     k = ROOM["camera_info"][0]
     frames = [{"file_path": f"images/frame_{i:05d}.png", depth_key: f"depth/{i:05d}.png", "colmap_im_id": i + 1,
@@ -191,7 +191,7 @@ def test_several_models():
 
 
 def test_pictures_without_pose():
-    """What the lists pass over is named."""
+    """Checks that pictures missing in the lists are named."""
     path = colmap("passed_over")
     for name in ("view_10.png", "view_9.png", "notes.txt"):
         write(f"{path}/images/{name}", png(ROOM["image"][0]))
@@ -207,7 +207,7 @@ def test_pictures_without_pose():
 
 
 def test_stereo_of_colmap():
-    """Without depth, build says what it needs, and makes a scene with it."""
+    """Checks that build without depth says what it needs, and makes a scene with it."""
     path = colmap("stereo")
     imported(path)
     arguments = ("build", "stereo.mcap", "--context", "0,1", "--gaussians", "50", "-o", "stereo.ply")
@@ -242,7 +242,7 @@ def test_colmap_refusals():
 
 
 def test_colmap_itself():
-    """What COLMAP writes of our text, where it is installed."""
+    """Checks what COLMAP writes from this text, if it is installed."""
     if shutil.which("colmap") is None:
         print("without COLMAP's own files: colmap is not there")
         return
@@ -262,7 +262,7 @@ def matrix_text(m):
 
 
 def pose_files(path, depth=True, lens=True):
-    """As ScanNet's frames are exported."""
+    """Writes the files as ScanNet's exporter does."""
     pictures(path, "color/{}.png", "depth/{}.png" if depth else None)
     for i, pose in enumerate(ROOM["pose"]):
         write(f"{path}/pose/{i}.txt", matrix_text(pose))
@@ -304,7 +304,7 @@ def test_lost_poses():
 
 
 def test_depth_of_another_lens():
-    """Depth of half the size, by a lens that is 1.25 times as wide: a plane keeps its distance, and an edge its place."""
+    """Depth of half the size, through a lens 1.25 times as wide: a plane keeps its distance, and an edge its place."""
     path = pose_files("wide")
     k = ROOM["camera_info"][0]
     width, height = WIDTH // 2, HEIGHT // 2
@@ -339,7 +339,8 @@ def test_pose_file_refusals():
 
 
 def test_depth_from_beside():
-    """A depth camera 4 cm to the right of colour's, both a step forward of the device: a plane at 2 m moves by its disparity."""
+    """A depth camera 4 cm to the right of the colour camera, both a step ahead of the device: a plane at 2 m moves by
+    its disparity."""
     path = pose_files("beside")
     k = ROOM["camera_info"][0]
     colour, beside = np.eye(4), np.eye(4)
@@ -353,14 +354,14 @@ def test_depth_from_beside():
         write(f"{path}/depth/{i}.png", png(depth))
     seen = imported(path)[1]["depth"][0]
     check(set(np.unique(seen)) == {0, 2000, 4000}, f"beside: {np.unique(seen)}")
-    # what depth sees in its middle lies to the right of colour's
+    # the middle of the depth picture is to the right of the middle of the colour picture
     edge = np.argmax(seen == 2000, axis=1)
     want = WIDTH / 2 + k[0, 0] * 0.04 / 2
     check(abs(edge - want).max() <= 1, f"beside: the edge is at {edge}, not {want}")
 
 
 def seven_scenes(path, lens=True):
-    """As 7-Scenes has a sequence: all in one folder, and 65535 where nothing was measured."""
+    """Writes a sequence like 7-Scenes: all in one folder, with 65535 where nothing was measured."""
     pictures(path, "frame-{:06d}.color.png")
     for i, pose in enumerate(ROOM["pose"]):
         depth = np.array(ROOM["depth"][i])
@@ -388,7 +389,7 @@ def test_seven_scenes():
 
 
 def dense(path, ending="geometric", change=lambda data: data):
-    """As COLMAP's patch_match_stereo leaves it; lengths are those of the room."""
+    """Writes depth as COLMAP's patch_match_stereo does, in the room's lengths."""
     path = colmap(path, "sparse", colmap_binary)
     for i in range(FRAMES):
         metres = (ROOM["depth"][i] * UNIT).astype("<f4")
@@ -422,7 +423,8 @@ def test_dense_depth():
 
 
 def test_unreadable():
-    """One bad picture is named and left out, with triplets of it; bad depth is left out alone. All bad: refused."""
+    """One bad picture is named and left out, with its triplets; only the depth is left out if that is bad. All bad:
+    refused."""
     triplets = [{"context": [0, 2], "target": 1}, {"context": [0, 1], "target": 2}]
     jpeg = b"\xff\xd8\xff\xe0\0\x10JFIF\0\1\1\0\0\1\0\1\0\0"
     for name, content, why in (("cut", png(ROOM["image"][1])[:900], "PNG: "), ("jpeg", jpeg, "JPEG: "), ("none", None, "No such file")):
@@ -458,7 +460,7 @@ def test_unreadable():
 
 
 def record3d(path, as_exr=False, packed=False, change=None):
-    """As Record3D exports it; the depth of an .r3d as `lzfse -decode` leaves it, or packed."""
+    """Writes a Record3D export; the depth of an .r3d as after `lzfse -decode`, or packed."""
     pictures(path, "rgb/{}.png" if as_exr else "rgbd/{}.png")
     k = np.array(ROOM["camera_info"][0])
     k[:2, 2] += 0.5
@@ -507,7 +509,7 @@ def steps_of(lengths, unit):
 
 
 def metres_of(depth, kind="<f4"):
-    """Without depth: NaN, infinity, 0 or a negative number, whichever comes next."""
+    """Writes missing depth as NaN, infinity, 0 or a negative number in turn."""
     metres = (depth * UNIT).astype(kind)
     gaps = np.argwhere(depth == 0)
     for i, (y, x) in enumerate(gaps):
@@ -529,7 +531,7 @@ def to_exr(content):
 
 
 def without_exr():
-    """A build without the library says what to install, and reads all but depth."""
+    """Checks that a build without the library says what to install, and reads everything except depth."""
     report, got = imported(record3d("no_library", True))
     same("Record3D without OpenEXR", got, depth=False)
     check("Debian: libopenexr-dev" in report["remarks"][0], f"without OpenEXR: {report}")
@@ -565,7 +567,7 @@ def test_exr():
 
 
 def exr_of_opencv():
-    """What another program writes: packed by ZIP."""
+    """Checks another program's output, packed by ZIP."""
     os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"
     try:
         import cv2

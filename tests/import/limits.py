@@ -21,7 +21,7 @@ def below(value):
 
 
 def png(width, height, depth=False):
-    """A slope in grey steps, or of depth around 1000 steps."""
+    """Returns a slope in grey steps, or of depth around 1000 steps."""
     row = b"".join(struct.pack(">H", 1000 + x % 64) if depth else bytes([x * 7 % 256, x * 3 % 256, 90])
                    for x in range(width))
     body = zlib.compress((b"\0" + row) * height)
@@ -76,7 +76,7 @@ def test_positions():
 
 
 def test_lenses():
-    # the last value that rounds to a number below the limit: half a step of 2^-16, or 2^-24, under it
+    # the last value that rounds to a number below the limit: half a step of 2^-16, or 2^-24, below it
     pixels, coefficient, tangential = 16384 - 2**-16, 128 - 2**-24, 16 - 2**-24
     good = [{"fl_x": 8}, {"fl_x": pixels}, {"cx": pixels}, {"cy": 1 - pixels}, {"k1": 1e-9}, {"k1": coefficient},
             {"k2": coefficient}, {"k3": coefficient}, {"p1": tangential}, {"p2": -tangential},

@@ -136,7 +136,7 @@ def test_one_file(room, maps):
              extrinsic=np.linalg.inv(relative)[None, :, :3].astype(np.float32), intrinsic=k[None].astype(np.float32))
     _, got = imported("vggt", bare, "--pointmaps", f"{work}/vggt.npz", *unit)
     same("vggt", got, room)
-    # poses from the points: with the picture's intrinsics, and against a folder whose own are wrong
+    # poses from the points: with the picture's intrinsics, and against a folder with wrong ones
     np.savez(f"{work}/points.npz", pts3d=maps)
     numbers = ",".join(repr(float(x)) for x in (k[0, 0, 0], k[0, 1, 1], k[0, 0, 2], k[0, 1, 2]))
     report, got = imported("points", bare, "--pointmaps", f"{work}/points.npz", "--intrinsics", numbers, *unit)

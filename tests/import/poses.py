@@ -147,7 +147,7 @@ def test_build(room):
     check(status == 2 and "is a recording" in error, f"a recording with a size: {error}")
     status, _, error = run("import", f"{work}/rgb/0.png", "--poses", "estimate", "-o", f"{work}/no.mcap")
     check(status == 1 and "0.png" in error, f"a picture as a recording: {error}")
-    # what was estimated into a recording is what later builds use
+    # later builds use the poses estimated into a recording
     stored = good("build", f"{work}/rgbd.mcap", "--keep", "5%", "-o", scene)
     check(stored["hash"] == good("build", f"{work}/rgbd.mcap", "--keep", "5%", "-o", scene)["hash"], "stored poses")
 
@@ -187,7 +187,7 @@ def test_refusals(room):
     still = dict(room, image=[room["image"][0]] * FRAMES)
     status, out, error = run("import", folder("still", still, depth=False), "--poses", "estimate", "-o", f"{work}/no.mcap")
     check(status == 1 and "no parallax" in error, f"a camera that stands still: {error}")
-    # too many, told before the first picture is looked at: these are none
+    # too many, reported before the first picture is opened: these are no pictures
     os.mkdir(f"{work}/many")
     for i in range(1001):
         with open(f"{work}/many/{i}.png", "wb"):

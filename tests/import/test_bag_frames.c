@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Poses over time and the tree of frames: against what is known of them. */
+/* Poses over time and the tree of frames, against known results. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -151,7 +151,7 @@ static void loops_are_refused(void **state)
     transform_tree_free(&tree);
 }
 
-/* What a lens sees at a pixel, it projects to that pixel. */
+/* A lens projects its ray through a pixel back to that pixel. */
 static void lenses_go_both_ways(void **state)
 {
     (void)state;

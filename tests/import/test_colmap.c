@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Models of COLMAP: every camera model becomes the lens it means or is refused by name; what a text may hold, and what
- * it may not, with the line that is wrong. */
+/* COLMAP models: every camera model becomes the right lens or is refused by name; what a text may contain and what
+ * not, with the number of the wrong line. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -103,7 +103,7 @@ static void test_models(void **state)
     assert_null(colmap_intrinsics(colmap_model_of_name("FULL_OPENCV"), full, 640, 480, &lens));
     assert_true(lens.coefficients[3] == 0.4 && lens.coefficients[4] == 0.5);
     assert_null(colmap_model_of_name("PINHOLE "));
-    for (int32_t id = -1; id <= 12; id++) { /* numbers and names are those of one list */
+    for (int32_t id = -1; id <= 12; id++) { /* numbers and names are from one list */
         assert_int_equal(colmap_model_of_id(id) != NULL, id >= 0 && id <= 11);
     }
     assert_ptr_equal(colmap_model_of_id(5), colmap_model_of_name("OPENCV_FISHEYE"));

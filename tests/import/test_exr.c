@@ -22,20 +22,21 @@
 enum { WIDTH = 45, HEIGHT = 37, TILE = 16, LEFT = -3, TOP = 7 };
 #define UNIT 0.001
 
-/* A file to be written; of `lengths` in float, or of `halves` where those are given. */
+/* A file to write; of `lengths` in float, or of `halves` if given. */
 typedef struct made {
     exr_compression_t packing;
     exr_pixel_type_t type;
     exr_storage_t storage;
     uint32_t channels;
-    int32_t narrower; /* how much its data window lacks of the display window */
+    int32_t narrower; /* how much narrower the data window is than the display window */
     int32_t tile;     /* the side of its tiles */
 } made;
 
 static float lengths[HEIGHT][WIDTH];
 static uint16_t halves[HEIGHT][WIDTH];
 
-/* Metres with gaps, all of the kinds that stand for none, and one between two steps. Halves: powers of two. */
+/* Fills in metres with gaps of every kind that means no depth, and one value between two steps. Halves: powers of
+ * two. */
 static void fill(void)
 {
     static const float none[] = {0, -1.5f, 66, (float)0x1p-12};
@@ -138,7 +139,7 @@ static void check_read(scratch *s, const made *m)
     char error[512] = "";
     picture depth = {0};
     uint32_t sides[2];
-    /* that packing keeps 24 bits of a float */
+    /* this packing keeps 24 bits of a float */
     const int off = m->packing == EXR_COMPRESSION_PXR24 && m->type == EXR_PIXEL_FLOAT ? 1 : 0;
     write_exr(s, m);
     if (exr_depth_read(s->path, UNIT, &depth, error, sizeof error) != 0) {
@@ -219,7 +220,7 @@ static void test_other_kinds_are_refused(void **state)
     check_refused(s, UNIT, "OpenEXR: ");
 }
 
-/* Where the bytes of `text` begin, plus `beyond`. */
+/* Returns where the bytes of `text` begin, plus `beyond`. */
 static uint8_t *behind(uint8_t *bytes, size_t count, const char *text, size_t beyond)
 {
     for (size_t at = 0; at + strlen(text) + beyond + 16 < count; at++) {
@@ -231,7 +232,7 @@ static uint8_t *behind(uint8_t *bytes, size_t count, const char *text, size_t be
     return bytes;
 }
 
-/* Nothing is asked for that a header promises in vain. */
+/* Huge sides in a header are refused. */
 static void test_sides_are_bounded(void **state)
 {
     scratch *s = *state;
@@ -251,7 +252,7 @@ static void test_sides_are_bounded(void **state)
     free(bytes);
 }
 
-/* An error or samples, and never more. */
+/* Whether the file gives samples; otherwise it must give an error. */
 static bool is_read(const uint8_t *bytes, size_t count)
 {
     char error[512] = "";

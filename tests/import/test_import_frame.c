@@ -66,8 +66,9 @@ static double bilinear(const uint8_t *rgb, uint32_t width, uint32_t channel, dou
     return (p[0] * (1 - a) + p[3] * a) * (1 - b) + (p[width * 3] * (1 - a) + p[width * 3 + 3] * a) * b;
 }
 
-/* A point in front of the camera is seen at a column of the source, which the ramp names; the imported picture, looked
- * at where the imported camera sees the point, must name the same column. Half a level of rounding, no more. */
+/* Checks the reprojection: a point in front of the camera appears at a column of the source, which the ramp encodes;
+ * the imported picture, read where the imported camera sees the point, must give the same column, within half a
+ * level of rounding. */
 static void check_reprojection(scratch *s, uint32_t from_width, uint32_t from_height, uint32_t width, uint32_t height)
 {
     char error[512] = "";
@@ -91,7 +92,7 @@ static void check_reprojection(scratch *s, uint32_t from_width, uint32_t from_he
             double column = 210 * x + 104.3 - 0.5, row = 190 * y + 71.9 - 0.5;
             assert_true(fabs(bilinear(buffers.rgb, width, 0, u, v) - column) < 0.51);
             assert_true(fabs(bilinear(buffers.rgb, width, 1, u, v) - row) < 0.51);
-            /* depth: the source pixel that the box's centre lies in */
+            /* depth: the source pixel that contains the box's centre */
             uint32_t px = (uint32_t)(u + 0.5), py = (uint32_t)(v + 0.5);
             uint16_t step = buffers.depth[py * width + px];
             double centre_column = (px - out.camera.cx) / out.camera.fx * 210 + 104.3 - 0.5;
@@ -218,7 +219,7 @@ static void test_the_ending_may_be_left_out(void **state)
     import_buffers_free(&buffers);
 }
 
-/* Length of [a, a + 1) within [low, high) */
+/* Returns the length of [a, a + 1) within [low, high) */
 static double overlap(double a, double low, double high)
 {
     double from = a > low ? a : low, to = a + 1 < high ? a + 1 : high;
@@ -237,7 +238,7 @@ static double box_mean(const picture *p, double x0, double x1, double y0, double
     return sum / ((x1 - x0) * (y1 - y0));
 }
 
-/* A real scene: every frame imports, and colours are the mean under each box. */
+/* A real scene: every frame imports, and colours are the mean of each box. */
 static void test_hololens_scene(void **state)
 {
     (void)state;

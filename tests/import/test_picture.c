@@ -54,7 +54,7 @@ static void test_png_round_trips(void **state)
     check_round_trip(*state, 64, 5, 1, 16);
 }
 
-/* A PNG of libpng's own making in another pixel format. */
+/* Writes a PNG with libpng in another pixel format. */
 static void write_foreign_png(const char *path, int colour_type, int bits)
 {
     FILE *file = fopen(path, "wb");
@@ -205,7 +205,7 @@ static void test_bad_files_are_named(void **state)
     expect_refused(s->path, "neither PNG nor JPEG");
     assert_int_equal(scratch_write(s, "empty.png", "", 0), 0);
     expect_refused(s->path, "empty");
-    /* one byte of the compressed data changed: the check sum notices */
+    /* one byte of the compressed data changed: the checksum detects it */
     uint8_t *bytes;
     check_round_trip(s, 40, 30, 3, 8);
     size_t count = file_bytes(scratch_path(s, "a.png"), &bytes);
@@ -247,7 +247,7 @@ static void test_writing_fails_cleanly(void **state)
     assert_int_equal(status, -1);
     assert_non_null(strstr(error, "full.png: "));
     assert_int_not_equal(access(s->path, F_OK), 0);
-    /* a device is written as it is, and stays */
+    /* a device is written to and not replaced */
     assert_int_equal(picture_write_png("/dev/null", &p, error, sizeof error), 0);
     assert_int_equal(access("/dev/null", W_OK), 0);
 }

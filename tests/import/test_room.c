@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The built-in room: its bits, and that pictures, depth and poses tell of one and the same room. */
+/* The built-in room: its bits, and that pictures, depth and poses show the same room. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -40,7 +40,7 @@ static uint64_t shot_hash(const uint8_t *rgb, const uint16_t *depth, size_t pixe
     return t3r_hash_u16s(t3r_hash_bytes(T3R_HASH_START, rgb, pixels * 3), depth, pixels);
 }
 
-/* Colour, then depth, a frame; 256x256, seed 1. A change here changes every golden hash behind it. */
+/* Colour, then depth, for each frame; 256x256, seed 1. A change here changes every later golden hash. */
 static void test_golden_frames(void **state)
 {
     (void)state;
@@ -107,7 +107,7 @@ static void rotate(const double q[4], const double v[3], double out[3])
     }
 }
 
-/* Pixels of a taken into b by a's depth and both poses: how many land, how many of those find the depth they bring
+/* Pixels of a projected into b by a's depth and both poses: how many land, how many of those find their own depth
  * (within 15 mm), and how well the colours agree. */
 typedef struct agreement {
     double landed, same_depth, colour_error;
@@ -160,7 +160,7 @@ static void test_views_agree(void **state)
             assert_true(g.colour_error < 7);
         }
     }
-    /* a camera half a degree off would not pass for the right one */
+    /* a camera half a degree off is distinguishable from the right one */
     shot turned = shots[1];
     turned.camera.rotation[2] += 0.005;
     agreement right = warp(&shots[0], &shots[1]), wrong = warp(&shots[0], &turned);

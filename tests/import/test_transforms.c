@@ -39,7 +39,7 @@ static void refuse(const char *text, const char *why)
     }
 }
 
-/* What the quaternion does to a vector, by q v q*, spelled out without matrices. */
+/* Rotates a vector by the quaternion, q v q*, spelled out without matrices. */
 static void turn(const double q[4], const double v[3], double out[3])
 {
     double w = q[0], t[3];
@@ -231,7 +231,7 @@ static void test_every_cut_is_refused(void **state)
     for (size_t cut = 0; cut < strlen(text); cut++) {
         posed_folder folder;
         char error[512] = "";
-        char *exact = malloc(cut + 1); /* so that a read beyond the end is noticed by a sanitizer */
+        char *exact = malloc(cut + 1); /* so that a sanitizer notices a read beyond the end */
         memcpy(exact, text, cut);
         assert_int_equal(transforms_json_parse(exact, cut, NULL, &folder, error, sizeof error), -1);
         assert_true(error[0] != '\0');

@@ -102,7 +102,7 @@ static void test_known_intrinsics(void **state)
     good_lists(s);
     refuse(s, NULL, "intrinsics unknown");
     refuse(s, NULL, "--intrinsics fx,fy,cx,cy");
-    /* the same lists under a name that tells the camera */
+    /* the same lists under a name that identifies the camera */
     scratch named = *s;
     snprintf(named.directory, sizeof named.directory, "%.200s/rgbd_dataset_freiburg2_x", s->directory);
     assert_int_equal(mkdir(named.directory, 0700), 0);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A block of pixels through a layer, against sums in 64 bits and the rounding of SPEC.md in doubles' place: whole
- * numbers. */
+/* A block of pixels through a layer, against sums in 64 bits and the rounding of SPEC.md, in integers. */
 #include "checks.h"
 #include "guarded.h"
 
@@ -48,10 +47,10 @@ static int64_t requantized(int64_t acc, const t3r_convolution *l, uint32_t outpu
     return sum < -most - 1 ? -most - 1 : sum > most ? most : sum;
 }
 
-/* How a layer is run. */
+/* The kind of kernel that runs a layer. */
 typedef enum layer_kind { CONVOLVE, DEPTHWISE, PACKED } layer_kind;
 
-/* A block of so many activations a pixel: columns, or strips in `rows` runs. */
+/* Makes a block of so many activations a pixel: columns, or strips in `rows` runs. */
 static t3r_block make_block(layer_kind kind, uint32_t places, uint32_t rows, uint64_t *seed)
 {
     if (kind == PACKED) {
@@ -69,7 +68,7 @@ static t3r_block make_block(layer_kind kind, uint32_t places, uint32_t rows, uin
                        .pixels = (uint32_t)unit_between(seed, 1, T3R_BLOCK_PIXELS)};
 }
 
-/* An activation as convolve_packed reads it. */
+/* Returns an activation as convolve_packed reads it. */
 static int64_t strip_of(int64_t x, uint32_t strip_bytes)
 {
     return strip_bytes == 1 ? x + 128 : x;
@@ -138,7 +137,7 @@ static const char *check_layer(const t3r_kernels *kernels, uint64_t *seed, layer
     uint8_t *bias = guarded_take((size_t)l.outputs * (wide ? 8 : 4), 4), *shift = guarded_take(l.outputs, 1);
     uint8_t *multiplier = guarded_take((size_t)l.outputs * 4, 4);
     l.readable = l.taps * l.outputs * weight_bytes + behind;
-    const bool is_large = unit_random(seed) % 3 == 0; /* every weight as large as may be, of one sign */
+    const bool is_large = unit_random(seed) % 3 == 0; /* every weight as large as possible, of one sign */
     for (uint32_t o = 0; o < l.outputs; o++) {
         int64_t sum = 0;
         for (uint32_t t = 0; t < l.taps; t++) {

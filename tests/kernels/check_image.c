@@ -14,7 +14,7 @@ static uint8_t *random_bytes(uint64_t *seed, size_t count)
     return bytes;
 }
 
-/* BT.601 of SPEC.md, in doubles that hold it exactly. */
+/* Whether the colour follows BT.601 of SPEC.md, in doubles that hold it exactly. */
 static bool is_rgb(int y, int u, int v, uint8_t r, uint8_t g, uint8_t b)
 {
     const double luma = 9539.0 * (y - 16),
@@ -72,7 +72,7 @@ const char *check_triple_row(const t3r_kernels *kernels, uint64_t *seed)
     return NULL;
 }
 
-/* Unit by unit: sample u / sample_units lies in box u / box_units. */
+/* Sums unit by unit: sample u / sample_units is in box u / box_units. */
 const char *check_box_sums(const t3r_kernels *kernels, uint64_t *seed)
 {
     const uint32_t samples = (uint32_t)unit_between(seed, 1, 200), boxes = (uint32_t)unit_between(seed, 1, 200);

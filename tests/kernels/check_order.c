@@ -5,7 +5,7 @@
 
 enum { POINTS = 70, KEYS = 600 };
 
-/* The points first..end - 1 of a sample, and what a centre more makes of them. The others are anything. */
+/* The points first..end - 1 of a sample, and the effect of an added centre. The other points are arbitrary. */
 typedef struct sample_case {
     t3r_sample sample;
     uint32_t first, end, room;
@@ -94,7 +94,7 @@ const char *check_nearest(const t3r_kernels *kernels, uint64_t *seed)
             feature[i][d] = (int16_t)any_value(seed, -most, most);
         }
     }
-    const uint32_t half = count / 2 / T3R_CENTRE_GROUP * T3R_CENTRE_GROUP; /* as two workers share it */
+    const uint32_t half = count / 2 / T3R_CENTRE_GROUP * T3R_CENTRE_GROUP; /* split as between two workers */
     kernels->nearest_begin(&centres, half, count, &neighbours);
     kernels->nearest_begin(&centres, 0, half, &neighbours);
     kernels->nearest(&centres, &neighbours, points, (const int16_t(*)[T3R_DIMENSIONS])feature,

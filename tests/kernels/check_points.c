@@ -5,7 +5,7 @@
 
 __extension__ typedef __int128 int128;
 
-/* A turn about an axis with few bits, or anything that is at most 1: nothing here asks for a rotation. */
+/* Makes a turn about an axis with few bits, or any entries of at most 1: no check needs a true rotation. */
 static void make_pinhole(t3r_pinhole *p, uint64_t *seed)
 {
     const bool plain = unit_random(seed) % 2 == 0;
@@ -103,7 +103,7 @@ static uint32_t pixel_of(const t3r_pinhole *view, const int64_t camera[3])
     return inside ? (uint32_t)(row * view->width + column) : T3R_NO_PIXEL;
 }
 
-/* On the border between two pixels or beside it, where a view without a turn sees it. */
+/* Makes a point on the border between two pixels or next to it, for a view without rotation. */
 static void between_pixels(const t3r_pinhole *view, uint64_t *seed, int32_t point[3])
 {
     const int64_t z = INT64_C(1) << unit_between(seed, 15, 29), f = view->fx_q16;

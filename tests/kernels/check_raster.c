@@ -38,8 +38,8 @@ static t3r_projection any_projection(uint64_t *seed)
     return p;
 }
 
-/* One as scenes have it, in units about as large as the scene; with each bit of `unusual` less so: a mean anywhere, any
- * size, a needle. */
+/* Makes a Gaussian as in scenes, in units about as large as the scene; each bit of `unusual` makes it less usual: a
+ * mean anywhere, any size, a needle. */
 static t3r_gaussian any_gaussian(uint64_t *seed, const t3r_projection *p, uint64_t unusual)
 {
     const bool anywhere = (unusual & 1) != 0, any_size = (unusual & 2) != 0, needle = (unusual & 4) != 0;
@@ -78,7 +78,7 @@ const char *check_project(const t3r_kernels *kernels, uint64_t *seed)
     return NULL;
 }
 
-/* Splats that reach one tile of a view: each is projected until it does. */
+/* Makes splats that reach one tile of a view: projects Gaussians until each does. */
 static uint32_t any_splats(uint64_t *seed, t3r_splat splats[COUNT], uint32_t *left, uint32_t *top)
 {
     const t3r_projection p = any_projection(seed);
@@ -156,7 +156,7 @@ static t3r_tile_splat any_splat(uint64_t *seed)
     return s;
 }
 
-/* As some splats leave it. */
+/* Makes a tile as it is after some splats. */
 static void any_tile(uint64_t *seed, t3r_tile *tile)
 {
     memset(tile, 0, sizeof *tile);
@@ -167,7 +167,7 @@ static void any_tile(uint64_t *seed, t3r_tile *tile)
     }
 }
 
-/* One pixel after the other, by the formulas of SPEC.md. Returns all bits of the weights. */
+/* Blends pixel by pixel, by the formulas of SPEC.md. Returns all bits of the weights. */
 static uint16_t blend_by_pixels(t3r_tile *tile, const t3r_tile_splat *s, t3r_blended_row *row)
 {
     uint16_t bits = 0;

@@ -6,7 +6,7 @@
 
 enum { MOST = 500 };
 
-/* A map of rays whose coordinates stay below 2^27, whatever a and b below their own `most` are. */
+/* Makes a map of rays whose coordinates stay below 2^27 for all a and b below their own `most`. */
 static t3r_ray_map any_map(uint64_t *seed, int64_t most_a, int64_t most_b)
 {
     t3r_ray_map map = {.steepest = unit_random(seed) % 2 ? 16 : 4};
@@ -16,7 +16,7 @@ static t3r_ray_map any_map(uint64_t *seed, int64_t most_a, int64_t most_b)
         map.offset_q16[i] = (int32_t)any_value(seed, -most, most);
     }
     for (int i = 0; i < 3; i++) {
-        /* a third of 2^57 for each of the three products; z as a rule much smaller, or x and y */
+        /* a third of 2^57 for each of the three products; usually with z much smaller, or x and y */
         const int64_t share = (INT64_C(1) << 57) / 3 >> unit_between(seed, 0, 12);
         const int64_t turn = T3R_MIN(share / most_a, 1 << 30), slope = T3R_MIN(share / most_b, 1 << 30);
         map.turn_q30[i] = (int32_t)any_value(seed, -turn, turn);
@@ -102,7 +102,7 @@ const char *check_luma_at(const t3r_kernels *kernels, uint64_t *seed)
     return NULL;
 }
 
-/* Disparities about some values, and some that are none. */
+/* Makes disparities around some values, and some invalid ones. */
 static t3r_disparity_plane any_plane(uint64_t *seed)
 {
     const uint32_t width = (uint32_t)unit_between(seed, 2, 40), height = (uint32_t)unit_between(seed, 2, 40);
@@ -127,7 +127,7 @@ static t3r_disparity_plane any_plane(uint64_t *seed)
                                  .scale = t3r_divisor_of((uint32_t)any_value(seed, 1 << 16, 1 << 29))};
 }
 
-/* The pixel's disparity at `at`, that of the nearest or between four. */
+/* Returns the disparity at `at`: the nearest pixel's, or interpolated between four. */
 static int64_t disparity_of(const t3r_disparity_plane *plane, int64_t x_q8, int64_t y_q8, int64_t nearest)
 {
     const int64_t own = plane->disparity[nearest], left = x_q8 >> 8, top = y_q8 >> 8;
@@ -259,7 +259,7 @@ const char *check_census_costs(const t3r_kernels *kernels, uint64_t *seed)
     return NULL;
 }
 
-/* One path's value at a pixel, by the formula. */
+/* Returns one path's value at a pixel, by the formula. */
 static int path_value(const uint8_t *from, int least, uint32_t k, int cost, int p1, int p2)
 {
     const int same = from[k + 1] - least, below = from[k] + p1 - least, above = from[k + 2] + p1 - least;

@@ -118,7 +118,7 @@ const char *check_db2_split(const t3r_kernels *kernels, uint64_t *seed)
     return NULL;
 }
 
-/* Both halves lie in one row. */
+/* Both halves are in one row. */
 const char *check_db2_join(const t3r_kernels *kernels, uint64_t *seed)
 {
     const uint32_t count = any_length(seed, MOST / 2), between = (uint32_t)unit_between(seed, 0, 2);

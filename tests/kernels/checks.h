@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A check an entry of the table: makes an input of the seed, random or of the largest values, runs the entry in guarded
- * buffers and compares with a straightforward reference, or with plain C where a test in doubles judges plain C. */
+/* A check for each entry of the table: makes an input from the seed, random or of the largest values, runs the entry
+ * in guarded buffers and compares with a straightforward reference, or with plain C where a test in doubles checks
+ * plain C. */
 #ifndef T3R_TESTS_KERNEL_CHECKS_H
 #define T3R_TESTS_KERNEL_CHECKS_H
 
@@ -12,7 +13,7 @@
 #include "kernels/kernels.h"
 #include "unit/noise.h"
 
-/* What is wrong, as text; NULL: nothing. */
+/* Returns the error as text; NULL: none. */
 typedef const char *kernel_check(const t3r_kernels *kernels, uint64_t *seed);
 
 kernel_check check_packed_row, check_nv12_row, check_triple_row, check_box_sums, check_weigh_row, check_divide_row;
@@ -40,7 +41,7 @@ extern const size_t checked_entries_count;
 /* NULL: there is none. */
 const checked_entry *checked_entry_named(const char *name);
 
-/* All variants of this build, and behind the last one NULL. A table that is chosen by just these features has it. */
+/* All variants of this build, followed by NULL. A table chosen by exactly these features contains the variant. */
 typedef struct checked_variant {
     const char *entry;
     uint32_t features;

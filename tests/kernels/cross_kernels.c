@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every variant that an emulated processor has, against plain C: `cross_kernels ROUNDS` tries that many seeds of each.
- * It needs no library, so that any cross compiler builds it. Exit 0: the same bits. */
+/* Tests every variant that an emulated processor has against plain C: `cross_kernels ROUNDS` tries that many seeds
+ * of each. It needs no library, so that any cross compiler can build it. Exit 0: the same bits. */
 #include <stdio.h>
 
 #include "host/cpu.h"
 #include "judge.h"
 
-/* A wrong variant is found within so many rounds. */
+/* A wrong variant is found within this many rounds. */
 enum { ROUNDS_FOR_WRONG = 400 };
 
-/* With it refinement multiplies -2^15 by itself, which instructions that double a product saturate. */
+/* With this seed refinement multiplies -2^15 by itself, which saturates in instructions that double a product. */
 enum { SEED_OF_LEAST_SQUARED = 496 };
 
 static bool finds_wrong_ones(void)

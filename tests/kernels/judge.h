@@ -12,20 +12,20 @@ typedef struct judged_seeds {
     uint64_t first, rounds;
 } judged_seeds;
 
-/* What is wrong with the entry at a seed; NULL: nothing. */
+/* Returns the entry's error at a seed; NULL: none. */
 const char *judge_at(const t3r_kernels *kernels, const checked_entry *entry, uint64_t seed);
 
-/* The first that is wrong, and its seed; NULL: nothing in all rounds. */
+/* Returns the first error and its seed; NULL: none in all rounds. */
 const char *judge(const t3r_kernels *kernels, const checked_entry *entry, judged_seeds seeds, uint64_t *seed);
 
-/* The same of each variant whose features the processor has, by just these features. Writes to stderr what is wrong;
- * *tested: how many there were. */
+/* Runs the same for each variant whose features the processor has, with exactly these features. Writes errors to
+ * stderr; *tested: the number of variants. */
 bool judge_variants(uint32_t processor, judged_seeds seeds, uint32_t *tested);
 
 /* Likewise one entry, under the name of what the table was chosen for. */
 bool judge_named(const t3r_kernels *kernels, const checked_entry *entry, judged_seeds seeds, const char *name);
 
-/* Entries that are wrong: each must be found. */
+/* Wrong entries: each must be found. */
 typedef struct wrong_variant {
     const char *entry;
     t3r_kernels kernels;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Every entry of the table of kernels, in plain C and in each variant that this processor has: random and largest
- * values, odd lengths, buffers that lie anywhere beside forbidden pages. A variant that fails is named with its input's
- * seed; `test_kernels ENTRY SEED` runs that one again. `test_kernels --rounds N FIRST` tries N seeds from FIRST on of
- * each, for as long as one likes. */
+ * values, odd lengths, buffers anywhere next to forbidden pages. A variant that fails is named with its input's
+ * seed; `test_kernels ENTRY SEED` runs that one again. `test_kernels --rounds N FIRST` tries N seeds from FIRST on
+ * of each. */
 #include "host/cpu.h"
 #include "judge.h"
 #include "kernels/variants.h"
@@ -29,7 +29,7 @@ static void variants(void **state)
     assert_true(fine);
 }
 
-/* Every row of the variants' lists is what its feature chooses, and nothing is chosen without features. */
+/* Each feature chooses its row of the variants' lists, and without features none is chosen. */
 static void masks_choose(void **state)
 {
     (void)state;
@@ -59,7 +59,7 @@ static void wrong_ones_are_found(void **state)
     }
 }
 
-/* One entry with one seed, by all that the processor has, where a debugger can look on. */
+/* Runs one entry with one seed in all variants that the processor has, for a debugger. */
 static int run_one(const char *name, const char *seed)
 {
     t3r_kernels kernels;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A learned head with its layers packed, for each variant that this processor has, against plain C: all outputs of
- * pictures of any width, in bands, with work for packing or a little less. A variant in plain C reads strips of
- * bytes, so that they are tested on every processor. */
+/* A learned head with packed layers, for each variant that this processor has, against plain C: all outputs of
+ * pictures of any width, in bands, with enough work memory for packing or slightly less. A variant in plain C reads
+ * strips of bytes, so that every processor tests them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

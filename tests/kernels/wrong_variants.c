@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Variants that are wrong here and there, as a hand would write them. */
+/* Variants with typical small mistakes. */
 #include "judge.h"
 
 static void rounds_down(const uint16_t *const rows[T3R_BLUR_TAPS], uint32_t width, uint16_t *restrict out)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the raster tests share: scenes made up on the spot, drawn by the runtime into arenas of chosen sizes. */
+/* Shared by the raster tests: generated scenes, rendered by the runtime in arenas of chosen sizes. */
 #ifndef TRIM3R_TESTS_ORACLE_DRAWING_H
 #define TRIM3R_TESTS_ORACLE_DRAWING_H
 
@@ -8,7 +8,7 @@
 
 #include "trim3r.h"
 
-/* A picture drawn by the runtime; every plane stands between guard bytes that draw() checks. */
+/* A picture rendered by the runtime; every plane is between guard bytes that draw() checks. */
 typedef struct drawing {
     uint32_t width, height;
     uint8_t *rgb;
@@ -17,7 +17,7 @@ typedef struct drawing {
     uint32_t passes;
 } drawing;
 
-/* Extra bytes beyond the arena's minimum: so many that a multiple of the full size is reached. */
+/* Extra bytes beyond the arena's minimum, up to this multiple of the full size. */
 enum { ARENA_AT_MINIMUM = 0, ARENA_AT_FULL = 1, ARENA_AT_TEN_TIMES = 10 };
 
 typedef struct arena {
@@ -28,10 +28,10 @@ arena arena_of(const t3r_config *config, int size);
 arena arena_of_bytes(size_t count);
 void arena_free(arena *a);
 
-/* A configuration that only renders. */
+/* Returns a configuration that only renders. */
 t3r_config render_config(uint32_t max_gaussians, uint32_t width, uint32_t height);
 
-/* Loads the scene into rt and draws it; statuses are asserted. drawing_free(). */
+/* Loads the scene into rt and renders it; asserts statuses. Call drawing_free(). */
 void load_scene(t3r_runtime *rt, const t3r_scene_frame *frame, const t3r_gaussian *gaussians, size_t count);
 drawing draw(t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height);
 drawing draw_scene(const t3r_scene_frame *frame, const t3r_gaussian *gaussians, size_t count, const t3r_camera *camera,
@@ -50,12 +50,13 @@ double dice_between(dice *d, double low, double high);
 void set_factor(t3r_gaussian *g, const double f[9]);
 /* Position in scene units, isotropic of the given sigma, full confidence. */
 t3r_gaussian round_gaussian(double x, double y, double z, double sigma, double opacity, double r, double g, double b);
-/* A random rotation times diag(s0, s1, s2). */
+/* Makes a random rotation times diag(s0, s1, s2). */
 void random_factor(dice *d, const double sigma[3], double f[9]);
 
 /* fx = fy = focal, principal point in the middle of the pixel grid, at the world's origin, looking along +z. */
 t3r_camera plain_camera(double focal, uint32_t width, uint32_t height);
-/* From `position` (scene units of the plain frame) towards `at`, with y of the world downwards. */
+/* Returns a camera at `position` (scene units of the plain frame) that looks at `at`, with the world's y pointing
+ * down. */
 t3r_camera camera_towards(double focal, uint32_t width, uint32_t height, const double position[3], const double at[3]);
 
 #endif

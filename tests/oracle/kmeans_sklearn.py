@@ -26,7 +26,7 @@ def run(*command):
 
 
 def mean_squared_distance(points, centres):
-    """In double, by blocks: the |p - c|^2 of the nearest centre."""
+    """Returns the mean |p - c|^2 to the nearest centre, in double, by blocks."""
     total = 0.0
     for block in np.array_split(points.astype(np.float64), 64):
         squares = (block**2).sum(1)[:, None] - 2 * block @ centres.T + (centres**2).sum(1)[None]
@@ -43,7 +43,7 @@ def compare(name, trim3r, points_file):
         fit = MiniBatchKMeans(n_clusters=CLUSTERS, random_state=0).fit(points)
     theirs = mean_squared_distance(points, fit.cluster_centers_.astype(np.float64))
     print(f"{name}: {len(points)} points, ours {ours:.6g}, scikit-learn {theirs:.6g}, ratio {ours / theirs:.4f}")
-    # no clustering into so many parts can be much better than a converged one: a figure from thin air is caught
+    # no clustering into so many parts can be much better than a converged one, so this catches a made-up figure
     return 0.5 * theirs <= ours <= ALLOWED * theirs
 
 

@@ -59,7 +59,7 @@ class Network:
     # --- arithmetic --------------------------------------------------------------------------------------------
 
     def quantities(self, layer):
-        """Weights and bias at random, within the accumulators' bound; every now and then right at it."""
+        """Makes random weights and bias within the accumulators' bound, sometimes exactly at it."""
         rng, wide = self.rng, self.activation_bits == 16
         taps = layer.kernel ** 2 * (1 if layer.kind == DEPTHWISE else layer.inputs)
         rows = layer.phases * layer.outputs
@@ -102,7 +102,7 @@ class Network:
         return np.clip(layer.zero + ((product + half) >> right), low, high)
 
     def source_on_grid(self, source, grid, border):
-        """A source's plane on the finer grid of a level, `border` pixels of its zero point around it."""
+        """Returns a source's plane on the finer grid of a level, with a border of `border` pixels of its zero point."""
         plane, coarser = self.planes[source], self.level(source) - grid
         height, width = -(-self.height >> grid), -(-self.width >> grid)
         ys, xs = np.arange(height) >> coarser, np.arange(width) >> coarser
@@ -191,7 +191,7 @@ class Network:
 
 
 def plane_layer(rng, net, made):
-    """A random layer that may follow: its grid no finer than any of its sources'."""
+    """Returns a random layer that may follow; its grid is no finer than any of its sources'."""
     kind = CONV if rng.random() < 0.75 else DEPTHWISE
     sources = [int(rng.choice(made))]
     if kind == CONV and len(made) > 1 and rng.random() < 0.5:
@@ -269,7 +269,7 @@ def compare(net, mask, output, order):
 
 
 def built(compiler, runner, folder):
-    """The driver for another processor, static, with the command that runs it."""
+    """Builds the driver for another processor, statically linked, and returns it with the command that runs it."""
     lacking = objects.absent(compiler, runner)
     if lacking is not None:
         print(f"SKIPPED: no {lacking} here (tools/setup --tests)")

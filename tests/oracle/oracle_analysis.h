@@ -22,8 +22,8 @@ enum { ORACLE_DIMENSIONS = 6 };
 double oracle_kmeans_assign(const double *points, size_t count, const double *centres, size_t k, uint32_t *labels);
 /* Mean squared distance of the points to the centres that the labels name. */
 double oracle_kmeans_msd(const double *points, size_t count, const double *centres, const uint32_t *labels);
-/* Lloyd's iteration on the centres, in place, until nothing moves or `most` rounds; an empty cluster keeps its
- * centre. Returns the mean squared distance reached. */
+/* Runs Lloyd's iteration on the centres, in place, until nothing moves or for `most` rounds; an empty cluster keeps
+ * its centre. Returns the mean squared distance reached. */
 double oracle_kmeans_lloyd(const double *points, size_t count, double *centres, size_t k, uint32_t most);
 
 /* ---- wavelet ------------------------------------------------------------------------------------- */
@@ -31,7 +31,7 @@ double oracle_kmeans_lloyd(const double *points, size_t count, double *centres, 
 /* Orthonormal gain, periodized; the sides are divisible by 2^levels. In place to [LL | H; V | D] (H high in x,
  * V high in y), the LL quarter split again. CDF 5/3: the biorthogonal pair scaled by sqrt 2 and 1 / sqrt 2. */
 void oracle_wavelet(double *plane, size_t width, size_t height, uint32_t levels, t3r_wavelet kind);
-/* Sum of |coefficient| over everything but the LL quarter, each weighted by the pixels that it covers (4^level). */
+/* Returns the sum of |coefficient| outside the LL quarter, each weighted by the pixels that it covers (4^level). */
 double oracle_wavelet_energy(const double *plane, size_t width, size_t height, uint32_t levels);
 
 #endif

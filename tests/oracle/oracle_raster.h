@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A float64 rasterizer to judge the integer one by: the definitions of the 3DGS renderers (EWA projection,
- * 0.3 px^2 low-pass, alpha in [1/255, 0.99], front-to-back), written without a look at runtime code. */
+/* A float64 rasterizer as the reference for the integer one: the definitions of the 3DGS renderers (EWA projection,
+ * 0.3 px^2 low-pass, alpha in [1/255, 0.99], front-to-back), written independently of the runtime's code. */
 #ifndef TRIM3R_TESTS_ORACLE_RASTER_H
 #define TRIM3R_TESTS_ORACLE_RASTER_H
 
@@ -9,12 +9,12 @@
 
 #include "trim3r.h"
 
-/* Below this camera z, in scene units, nothing is drawn. */
+/* Nothing is drawn below this camera z, in scene units. */
 #define ORACLE_NEAR (1.0 / 32.0)
 /* Each entry of the projected factor is held within this many pixels: what a splat wider than any target looks like
  * (SPEC.md, "Raster"). */
 #define ORACLE_MOST_PIXELS 4096.0
-/* What a renderer's transmittance may be off by where it decides on the median depth. */
+/* The allowed error of a renderer's transmittance where it decides on the median depth. */
 #define ORACLE_DEPTH_MARGIN 0.003
 
 /* Covariance = factor factor^T: stays positive semi-definite and exact for needles. */
@@ -39,8 +39,9 @@ typedef struct oracle_image {
     double *transmittance; /* 0..1 */
     double *depth;         /* camera z at which transmittance falls below 1/2; 0 = none */
     double *depth_least;   /* ... below 1/2 + ORACLE_DEPTH_MARGIN, and below 1/2 - ORACLE_DEPTH_MARGIN: between */
-    double *depth_most;    /* the two a renderer's median depth may lie; HUGE_VAL for the second = none is right too */
-    uint32_t drawn;        /* Gaussians that are not culled */
+    double *depth_most; /* the two depths between which a renderer's median depth may be; HUGE_VAL for the second = no
+                        depth is correct, too */
+    uint32_t drawn;     /* number of Gaussians that are not culled */
 } oracle_image;
 
 void oracle_from_t3r(const t3r_gaussian *from, oracle_gaussian *to);
@@ -52,7 +53,7 @@ oracle_camera oracle_camera_from_t3r(const t3r_camera *from, const t3r_scene_fra
 void oracle_render(const oracle_gaussian *gaussians, size_t count, const oracle_camera *camera, oracle_image *image);
 void oracle_image_free(oracle_image *image);
 
-/* A degree-0 3DGS .ply (float32, little-endian) in double, moved into the frame; NULL when it cannot be read.
+/* Reads a degree-0 3DGS .ply (float32, little-endian) as doubles, moved into the frame; NULL if it cannot be read.
  * colours are clamped to 0..1, the range of a display. Free with free(). */
 oracle_gaussian *oracle_read_ply(const char *path, const t3r_scene_frame *frame, size_t *count);
 

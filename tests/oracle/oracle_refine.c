@@ -8,7 +8,7 @@
 
 enum { PARAMETERS = 6 };
 
-/* A Gaussian as one view sees it. */
+/* A Gaussian as seen by one view. */
 typedef struct footprint {
     size_t index;
     double z, x, y;

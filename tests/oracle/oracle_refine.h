@@ -5,22 +5,22 @@
 
 #include "oracle_raster.h"
 
-/* A context view: what it shows, and which pixels count. */
+/* A context view: its picture, and the pixels that count. */
 typedef struct oracle_context {
     oracle_camera camera;
     const uint8_t *rgb;    /* width x height x 3 */
     const uint8_t *counts; /* width x height, 0 = no depth */
 } oracle_context;
 
-/* What a pass changes in a Gaussian. */
+/* The change of a Gaussian by a pass. */
 typedef struct oracle_change {
     double colour[3]; /* levels */
     double step[6];   /* log opacity; shift along two axes; log scale, shear, log scale */
-    double share;     /* of the Gauss-Newton step; 0: none before */
+    double share;     /* share of the Gauss-Newton step; 0: no pass before */
 } oracle_change;
 
-/* A pass: the scene corrected in place. changes[count]: what the pass before changed, 0 before the first;
- * afterwards what this one did. */
+/* Runs a pass, which corrects the scene in place. changes[count]: the changes of the previous pass, 0 before the
+ * first; on return those of this pass. */
 void oracle_refine(oracle_gaussian *scene, size_t count, const oracle_context *views, size_t view_count,
                    oracle_change *changes);
 

@@ -38,7 +38,7 @@ def truth(scene, name):
 
 
 def planes(left, right):
-    """What the driver reads: 0 would mean that a pixel shows nothing."""
+    """Returns planes for the driver, without 0, which would mean that a pixel shows nothing."""
     outside = np.zeros((len(left), DISPARITIES - 1), np.uint8)
     return np.maximum(left, 1), np.concatenate([outside, np.maximum(right, 1)], 1)
 
@@ -68,7 +68,7 @@ def opencv(block, left, right):
 
 
 def seen_twice(first, second):
-    """Pixels of the first view with a true disparity whose place in the second has the same."""
+    """Returns the first view's pixels with a true disparity whose match in the second view has the same one."""
     x = np.arange(first.shape[1])[None]
     there = np.round(x - first).astype(int)
     inside = (first > 0) & (there >= 0)

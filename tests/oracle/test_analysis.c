@@ -53,7 +53,7 @@ static void pointmap_case(const t3r_camera *camera, const t3r_scene_frame *frame
             assert_true(t3r_point(&map, u, v, point));
             assert_true(t3r_tangents(&map, u, v, tangent[0], tangent[1]));
             for (int i = 0; i < 3; i++) {
-                /* a step from each of depth, position and sum; rays and rotation are good to 2^-23 */
+                /* one step each for depth, position and sum; rays and rotation are accurate to 2^-23 */
                 double error = fabs(ldexp(point[i], -20) - want[i]);
                 if (error > ldexp(3, -20) + ldexp(z, -22)) {
                     fail_msg("pixel %u %u axis %d: off by %g of 2^-20", u, v, i, ldexp(error, 20));
@@ -102,7 +102,7 @@ static void pointmap(void **state)
         camera.position_q32[i] = camera.position_q32[i] * 16 + frame.origin_q32[i];
     }
     pointmap_case(&camera, &frame, millimetre, 20000, 40, 35);
-    /* a scene a twentieth of a unit deep */
+    /* a scene with a depth of a twentieth of a unit */
     frame = (t3r_scene_frame){{0}, -5};
     camera = camera_towards(35, W, H, position, at);
     for (int i = 0; i < 3; i++) {
@@ -117,7 +117,7 @@ typedef struct cloud {
     uint32_t count;
     int16_t (*feature_q11)[ORACLE_DIMENSIONS];
     double *points;      /* the same, what the oracle sees */
-    uint32_t hole_every; /* every so many points one is invalid; 0 = none */
+    uint32_t hole_every; /* one in so many points is invalid; 0 = none */
     uint32_t *labels;    /* NO_LABEL until they come */
 } cloud;
 
@@ -228,7 +228,7 @@ static void kmeans_case(const char *name, cloud *c, uint32_t k, double allowed)
     double converged = oracle_kmeans_lloyd(kept_points, kept, centres, k, 100);
     print_message("%-28s %6u points, K %3u: msd %.6f, nearest %.6f, Lloyd to the end %.6f\n", name, kept, k, ours,
                   nearest, converged);
-    /* labels name the nearest centre but for its last bits; one step of Q11 in each dimension is the floor */
+    /* labels name the nearest centre up to its last bits; one step of Q11 in each dimension is the minimum error */
     assert_true(ours <= nearest * 1.01 + ORACLE_DIMENSIONS * ldexp(1, -22));
     assert_true(ours <= converged * allowed + ORACLE_DIMENSIONS * ldexp(1, -22));
     free(clusters);
@@ -261,8 +261,7 @@ static void kmeans(void **state)
     kmeans_case("to the ends of the range", &c, 512, 1.15);
 }
 
-/* The mean squared distance that the last centres leave, begun with those of the points before, against beginning anew.
- */
+/* Returns the mean squared distance after clustering, started from the previous points' centres or anew. */
 static double kmeans_of(const cloud *c, uint32_t k, bool follows, t3r_cluster *clusters)
 {
     const t3r_point_source source = source_of(c);
@@ -281,13 +280,13 @@ static double kmeans_of(const cloud *c, uint32_t k, bool follows, t3r_cluster *c
     return msd;
 }
 
-/* Points that moved on by a third of the room: centres left behind are placed anew, and nothing is lost. */
+/* The points moved by a third of the room: centres left without points are placed anew, and quality is not lost. */
 static void kmeans_that_follows(void **state)
 {
     (void)state;
     enum { K = 200, COUNT = 24000 };
     cloud before = cloud_of(COUNT, 60, 0.9, 0.15, 3), after = cloud_of(COUNT, 60, 0.9, 0.15, 3);
-    for (uint32_t i = 0; i < COUNT; i++) { /* what leaves at one end comes in at the other, from there on */
+    for (uint32_t i = 0; i < COUNT; i++) { /* points that leave at one end come in at the other */
         after.feature_q11[i][0] = (int16_t)(after.feature_q11[i][0] + 2048);
         after.points[i * ORACLE_DIMENSIONS] += 1;
         if (i % 3 == 0) {
@@ -319,7 +318,7 @@ static bool take_step(void *context, uint32_t done, uint32_t total)
     return ++s->calls != s->stop_at;
 }
 
-/* Centres all of which still have their points stay; wherever the step stops it, it stops. */
+/* Centres stay if all of them still have points; a cancelled step stops at once. */
 static void kmeans_that_stays(void **state)
 {
     (void)state;
@@ -330,7 +329,7 @@ static void kmeans_that_stays(void **state)
     (void)kmeans_of(&c, K, false, anew);
     memcpy(following, anew, sizeof anew);
     const double before = kmeans_of(&c, K, true, following);
-    for (uint32_t k = 0; k < K; k++) { /* each near where it was */
+    for (uint32_t k = 0; k < K; k++) { /* each near its previous place */
         assert_true(anew[k].points < COUNT / (4 * K) ||
                     abs((int)following[k].points - (int)anew[k].points) < COUNT / K);
     }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The C interface used wrongly: null pointers, every field beyond its documented range, calls out of order. Each
- * gives the documented status and leaves the arena as it was, to the byte. */
+/* Misuse of the C interface: null pointers, every field beyond its documented range, calls out of order. Each gives
+ * the documented status and leaves the arena unchanged, to the byte. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -59,7 +59,7 @@ static void refused_at(bench *b, t3r_status got, t3r_status want, int line)
     }
 }
 
-/* The call is refused with the status and the arena stays as it was. */
+/* The call is refused with the status, and the arena does not change. */
 #define REFUSED(b, call, want)                                                                                         \
     do {                                                                                                               \
         remember(b);                                                                                                   \
@@ -207,7 +207,7 @@ static void config_ranges(void **state)
     assert_non_null(t3r_config_error(&c));
 }
 
-/* One more of bad[n]: `good` but for one field. */
+/* Adds an entry to bad[n]: `good` except for one field. */
 #define BAD(field, value)                                                                                              \
     do {                                                                                                               \
         bad[n] = good;                                                                                                 \
@@ -273,7 +273,7 @@ static void frame_ranges(void **state)
     remember(&b);
     status = t3r_add_view(b.rt, &missing, &camera);
     refused_at(&b, status, status == T3R_ERR_ARGUMENT ? T3R_ERR_ARGUMENT : T3R_ERR_FRAME, __LINE__);
-    /* what the documentation allows is taken: a frame of 2 x 2, depth of another size, no depth where none is needed */
+    /* documented values are accepted: a frame of 2 x 2, depth of another size, no depth where none is needed */
     assert_int_equal(t3r_add_view(b.rt, &good, &camera), T3R_OK);
     assert_int_equal(t3r_reset(b.rt), T3R_OK);
     t3r_frame small = good;
@@ -467,7 +467,7 @@ static void calls_out_of_order(void **state)
     assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
     REFUSED(&b, t3r_add_view(b.rt, &frame, &camera), T3R_ERR_STATE);
     assert_int_equal(t3r_reset(b.rt), T3R_OK);
-    /* depth that is all holes: the view counts for nothing, wherever that is noticed */
+    /* depth that is all holes: the view does not count, wherever this is noticed */
     static const uint8_t holes[POINTS * 2];
     t3r_frame empty = frame;
     empty.depth = holes;
@@ -513,7 +513,7 @@ static void calls_out_of_order(void **state)
         REFUSED(&b, t3r_rebuild(b.rt, &bad[i], &scene), T3R_ERR_ARGUMENT);
         REFUSED(&b, t3r_reconstruct(b.rt, &bad[i], &scene), T3R_ERR_ARGUMENT);
     }
-    /* without importance `given` is refused, and without weights the learned head */
+    /* `given` without importance and the learned head without weights are refused */
     const t3r_request unserved[] = {{.allocate = T3R_ALLOCATE_GIVEN}, {.head = T3R_HEAD_LEARNED}};
     for (size_t i = 0; i < sizeof unserved / sizeof unserved[0]; i++) {
         REFUSED(&b, t3r_rebuild(b.rt, &unserved[i], &scene), T3R_ERR_STATE);
@@ -529,7 +529,7 @@ static void calls_out_of_order(void **state)
     }
     bench_free(&b);
 
-    /* an arena that only renders takes no view */
+    /* an arena that only renders accepts no view */
     t3r_config render_only = render_config(5, W, H);
     b = bench_of(render_only);
     REFUSED(&b, t3r_add_view(b.rt, &frame, &camera), T3R_ERR_STATE);
@@ -537,7 +537,7 @@ static void calls_out_of_order(void **state)
     bench_free(&b);
 }
 
-/* Exactly min(Z, valid points), and valid points are those measured: filled holes count for nothing. */
+/* Exactly min(Z, valid points) Gaussians; valid points are the measured ones, without filled holes. */
 static void budgets(void **state)
 {
     (void)state;
@@ -557,7 +557,7 @@ static void budgets(void **state)
     const uint16_t *const planes[] = {importance};
     for (int allocation = 1; allocation < T3R_ALLOCATE_COUNT; allocation++) {
         const bool given = allocation == T3R_ALLOCATE_GIVEN;
-        /* heads take the points that are kept: each with one mode, each mode with one head */
+        /* heads get the retained points: each head with one mode, each mode with one head */
         for (int head = 1; head < (allocation == T3R_ALLOCATE_DENSITY ? (int)T3R_HEAD_COUNT : 2); head++) {
             const uint32_t wanted[] = {1, 2, measured / 20, measured / 2, measured - 1, measured, measured + 1, POINTS};
             t3r_config config = good_config();
@@ -589,7 +589,7 @@ static void budgets(void **state)
     free(weights);
 }
 
-/* What the planes' bytes are lent to once the scene is built must never come back as an analysis: a second
+/* Memory of the planes that is reused once the scene is built must never come back as an analysis: a second
  * reconstruction is refused, or gives the same scene again. */
 static void planes_lent_away(void **state)
 {
@@ -628,7 +628,7 @@ static void planes_lent_away(void **state)
                              again == 0 && keep ? "t3r_rebuild()" : "t3r_reconstruct()");
                 }
             }
-            /* a view that comes now is refused, or leaves the scene as it is */
+            /* a view added now is refused, or does not change the scene */
             if (t3r_add_view(b.rt, &frame, &camera) == T3R_OK && t3r_get_scene(b.rt, &scene) == T3R_OK) {
                 assert_memory_equal(scene.gaussians, expected, sizeof expected);
             }
@@ -679,9 +679,9 @@ static void cancelling(void **state)
             break;
         }
         assert_int_equal(status, T3R_ERR_CANCELLED);
-        assert_int_equal(f.calls, at + 1); /* asked no more once it said stop */
+        assert_int_equal(f.calls, at + 1); /* no call after it said stop */
         cancelled++;
-        /* what was cancelled leaves no trace in what comes next */
+        /* a cancelled call does not affect later ones */
         assert_int_equal(t3r_set_hooks(b.rt, NULL), T3R_OK);
         assert_int_equal(t3r_reset(b.rt), T3R_OK);
         assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The arena's promises: the macros and t3r_plan() agree, the minimum works and one byte less is refused, any size
- * is answered without a touch beyond it, buffers that live at one time never share a byte. */
+/* The arena's guarantees: the macros and t3r_plan() agree, the minimum works and one byte less is refused, any size
+ * gets an answer without an access beyond it, and buffers in use at the same time never share a byte. */
 #include <limits.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -137,7 +137,7 @@ static void plan_equals_macros(void **state)
     }
 }
 
-/* The settings that no macro knows of must not need more. */
+/* Settings unknown to the macros must not need more. */
 /* The most Gaussians that fit, and not one more; never more than were asked for. */
 static void plan_within_is_the_inverse(void **state)
 {
@@ -311,7 +311,7 @@ static void misaligned_is_refused(void **state)
     arena_free(&a);
 }
 
-/* What t3r_attach() takes: the very bytes of an initialised arena, nothing damaged or cut in a checked field. */
+/* t3r_attach() accepts only the bytes of an initialised arena, without damage in a checked field or a cut. */
 static void attach_refuses_foreign_bytes(void **state)
 {
     (void)state;
@@ -326,7 +326,7 @@ static void attach_refuses_foreign_bytes(void **state)
     assert_int_equal(t3r_attach(&rt, a.bytes, a.count), T3R_OK);
     assert_int_not_equal(t3r_attach(&rt, a.bytes, a.count - T3R_ARENA_ALIGN), T3R_OK);
     assert_null(rt);
-    /* A damaged head: an answer, whatever it is, without a touch outside the arena. */
+    /* A damaged head gets some answer, without an access outside the arena. */
     arena damaged = arena_of_bytes(a.count);
     for (size_t bit = 0; bit < (size_t)T3R_HEADER_BYTES * 8; bit++) {
         memcpy(damaged.bytes, a.bytes, a.count);

@@ -23,7 +23,7 @@ enum { W = 45, H = 34, POINTS = W * H };
 
 static uint8_t colours[POINTS * 3], depths[POINTS * 2];
 
-/* A slanted plane with made-up colours, some of it without depth. */
+/* Returns a slanted plane with made-up colours, partly without depth. */
 static t3r_frame made_up_frame(int holes)
 {
     for (size_t i = 0; i < POINTS; i++) {
@@ -69,7 +69,7 @@ static void same_scene(const t3r_scene *a, const t3r_scene *b)
     assert_memory_equal(a->gaussians, b->gaussians, a->count * sizeof *a->gaussians);
 }
 
-/* Every width of weights and activations; arenas of all sizes, whatever they held; a moved arena; budgets between. */
+/* Every width of weights and activations; arenas of all sizes, with any contents; a moved arena; budgets in between. */
 static void same_bits_everywhere(void **state)
 {
     (void)state;
@@ -113,7 +113,8 @@ static void same_bits_everywhere(void **state)
     }
 }
 
-/* Two readers of the features that look differently far, a depthwise layer, a layer that reads a coarser one alone. */
+/* Two readers of the features with receptive fields of different sizes, a depthwise layer, a layer that reads only a
+ * coarser one. */
 static const made_layer odd_shape[] = {
     {T3R_LAYER_CONV, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 4},
     {T3R_LAYER_CONV, 0, {0, T3R_SOURCE_NONE}, 5, 1, 1, 4},
@@ -124,7 +125,7 @@ static const made_layer odd_shape[] = {
 };
 static const uint32_t odd_layers = sizeof odd_shape / sizeof odd_shape[0];
 
-/* A view made band by band, each in work of its own that holds anything, has the Gaussians of the view made at once. */
+/* A view made in bands, each in its own work memory with any contents, has the Gaussians of the view made at once. */
 static void bands_give_the_whole_view(void **state)
 {
     (void)state;
@@ -177,7 +178,7 @@ static void bands_give_the_whole_view(void **state)
     arena_free(&memory);
 }
 
-/* A network whose work fits where kernels have theirs still asks for a byte a column: 0 is no learned head. */
+/* A network whose work fits into the kernels' still requires a byte per column: 0 means no learned head. */
 static void least_room_for_a_head(void **state)
 {
     (void)state;
@@ -198,7 +199,7 @@ static void least_room_for_a_head(void **state)
     free(weights);
 }
 
-/* Heads that were shipped once, by their layers: whoever has such a file binds it still, in an arena made for it. */
+/* Heads shipped by earlier versions, by their layers: such files can still be bound, in an arena made for them. */
 static void heads_that_are_not_shipped(void **state)
 {
     (void)state;
@@ -233,7 +234,7 @@ static void heads_that_are_not_shipped(void **state)
     }
 }
 
-/* head_column_bytes: what t3r_head_column_bytes() tells is enough and not one too many, whatever the width. */
+/* head_column_bytes: the result of t3r_head_column_bytes() suffices and is minimal, for any width. */
 static void room_for_the_head(void **state)
 {
     (void)state;
@@ -271,7 +272,8 @@ static void is_part_of(const t3r_scene *few, const t3r_gaussian *all, uint32_t c
     }
 }
 
-/* A head that adapts nothing: what it makes of all points, pruned and left as it is; one that adapts, another scene. */
+/* A head without adaptation makes all points' Gaussians, which are pruned and not changed; a head with adaptation
+ * makes another scene. */
 static void unadapted_is_pruned(void **state)
 {
     (void)state;
@@ -322,7 +324,7 @@ static void note_head_hash(void *user, t3r_stage stage, uint64_t hash)
     told_hash = stage == T3R_STAGE_HEAD ? hash : told_hash;
 }
 
-/* Heads that differ in their name alone make the same Gaussians; the stage's hash tells them apart. */
+/* Heads that differ only in their name make the same Gaussians; the stage's hash differs. */
 static void hash_names_the_weights(void **state)
 {
     (void)state;

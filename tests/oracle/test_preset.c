@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Settings for a size of RAM: they fit it, and too little is refused. Settings for so much work. */
+/* Presets for a size of RAM fit into it, and too little is refused; presets for an amount of work. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -17,8 +17,9 @@
 #include "raster/raster_splat.h"
 
 #define LEAST_DB 50.0
-/* Alpha: Q15 against double. Depth: where transmittance passes 1/2 within the margin, the neighbours in the order are
- * right too. The shares allow for splats within one step of one depth, whose order is decided by its last bit. */
+/* Alpha: Q15 against double. Depth: where transmittance passes 1/2 within the margin, the neighbours in the order
+ * are correct, too. The shares allow for splats within one step of the same depth, whose order depends on its last
+ * bit. */
 #define ALPHA_TOLERANCE 0.004
 #define ALPHA_SHARE 0.001
 #define DEPTH_SHARE 0.001
@@ -253,7 +254,7 @@ static void huge_splats(void **state)
     huge_scenes(0, 6);
 }
 
-/* As far as the record goes. */
+/* Extreme values, up to the limits of the record. */
 static void absurd_splats(void **state)
 {
     (void)state;
@@ -315,7 +316,7 @@ static void near_plane(void **state)
         check(recipes[i].name, &plain_frame, gaussians, recipes[i].count, &camera, recipes[i].width, recipes[i].height);
         free(gaussians);
     }
-    /* Exactly on the plane is culled, one step beyond is drawn; behind the camera nothing is. */
+    /* A splat exactly on the plane is culled, one step beyond is drawn; nothing behind the camera is. */
     t3r_camera camera = plain_camera(100, 33, 33);
     static const struct {
         int32_t z_q20;
@@ -346,7 +347,8 @@ static void far_off_axis(void **state)
     }
 }
 
-/* The Jacobian is held at 1.3 half fields of view, and where nothing is drawn any more, 16 to the side of 1 ahead. */
+/* The Jacobian is clamped at 1.3 half fields of view and, where nothing is drawn any more, at 16 to the side per 1
+ * ahead. */
 static void fields_of_view(void **state)
 {
     (void)state;

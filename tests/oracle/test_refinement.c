@@ -57,7 +57,7 @@ static int stop_before_refinement(void *user, t3r_stage stage, uint32_t done, ui
     return stage == T3R_STAGE_REFINE;
 }
 
-/* After so many passes; after none, what the head gives them to begin with. */
+/* Reconstructs with so many passes; with none the Gaussians are as the head makes them. */
 static t3r_gaussian *reconstruct(uint32_t refine, const splat_maker *maker, t3r_scene *scene)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, BUDGET);
@@ -66,7 +66,7 @@ static t3r_gaussian *reconstruct(uint32_t refine, const splat_maker *maker, t3r_
     config.fit_passes = config.align = 0;
     config.head = maker->head;
     config.fill_radius = config.bridge_radius = 0;
-    config.flying = config.redundancy = config.exposure = 0; /* nothing but refinement */
+    config.flying = config.redundancy = config.exposure = 0; /* refinement only */
     arena a = arena_of(&config, ARENA_AT_FULL);
     t3r_runtime *rt;
     assert_int_equal(t3r_init(&rt, a.bytes, a.count, &config), T3R_OK);
@@ -159,7 +159,8 @@ static void check_pass(const splat_maker *maker, uint32_t passes, const oracle_g
                   mean.opacity, mean.place, mean.shape, most.colour, most.opacity, most.place, most.shape);
     assert_true(moved.colour > 1 && moved.opacity > 0.003 && moved.place > 0.01 && moved.shape > 0.01);
     assert_true(mean.colour < share * moved.colour);
-    assert_true(mean.opacity < share * moved.opacity + 0.001 * (passes - 1)); /* what one pass takes the next gives */
+    assert_true(mean.opacity <
+                share * moved.opacity + 0.001 * (passes - 1)); /* one pass takes what the next one gives */
     assert_true(mean.place < share * moved.place && mean.shape < share * moved.shape);
     assert_true(strays <= STRAYS);
     free(after);

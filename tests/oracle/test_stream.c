@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Streams: a camera goes along a textured wall with boxes before it, for a long time. The cap holds, the bits depend on
- * nothing that must not matter, what cannot be is refused, what was cancelled does no harm. */
+/* Streams: a camera moves along a textured wall with boxes before it, for a long time. The cap holds, the bits
+ * depend on nothing irrelevant, impossible calls are refused, and cancelled ones do no harm. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,13 +24,14 @@ enum { W = 24, H = 16, PIXELS = W * H, CAP = 150, AT_HAND = 3, WALL_MM = 2000, B
 /* ---- the walk ------------------------------------------------------------------------------------ */
 
 typedef struct pose {
-    double x, z, yaw; /* metres, radians; the wall stands at z = 2, boxes 0.4 before it */
+    double x, z, yaw; /* metres, radians; the wall is at z = 2, boxes 0.4 before it */
     bool boxes;
 } pose;
 
 static uint8_t rgb[PIXELS * 3], depth[PIXELS * 2];
 
-/* What a camera there sees: colour of the wall by place, depth along its axis; 0 where it looks past the wall. */
+/* Makes what a camera there sees: the wall's colour by place, depth along the camera's axis; 0 where it looks past
+ * the wall. */
 static void look_from(const pose *p, t3r_frame *frame, t3r_camera *camera)
 {
     *camera = plain_camera(20, W, H);
@@ -71,9 +72,9 @@ typedef struct site {
     t3r_config config;
     arena memory;
     t3r_runtime *rt;
-    uint32_t calls, cancel_at; /* of the progress hook; 0 = never */
+    uint32_t calls, cancel_at; /* calls of the progress hook; 0 = never */
     t3r_stage stage;           /* of the last call */
-    uint32_t done, steps;      /* of that call; calls that were not of the step before */
+    uint32_t done, steps;      /* of that call; number of calls that were not of the previous step */
 } site;
 
 static int progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
@@ -118,7 +119,7 @@ static t3r_scene scene_of(const site *s)
     return scene;
 }
 
-/* A copy of the arena elsewhere, where the first place is overwritten. */
+/* Copies the arena elsewhere and overwrites the old place. */
 static void move_arena(site *s)
 {
     arena other = arena_of_bytes(s->memory.count);
@@ -171,8 +172,8 @@ static void the_cap_holds(void **state)
         if (r.crowded > 0) {
             assert_int_equal(scene.count, CAP);
         }
-        /* the steps that a keyframe is made of are as many in the end as in the beginning; within a step of refinement
-         * the hook is called as often as the tiles' splats want it */
+        /* a keyframe takes as many steps in the end as in the beginning; within a step of refinement the number of
+         * calls depends on the tiles' splats */
         most_steps = i < 2 * AT_HAND && s.steps > most_steps ? s.steps : most_steps;
         assert_true(s.steps <= most_steps);
         frame = scene.frame;
@@ -186,7 +187,7 @@ static void the_cap_holds(void **state)
     arena_free(&s.memory);
 }
 
-/* Of a long way the map holds what stands before the camera, all the more the faster the rest fades. */
+/* On a long path the map holds what is in front of the camera, and more so the faster the rest fades. */
 static void follows(void **state)
 {
     (void)state;
@@ -272,7 +273,7 @@ static uint32_t of_boxes(const t3r_scene *scene)
     return count;
 }
 
-/* The boxes are taken away: the wall behind them shows, and they go. */
+/* The boxes are removed: the wall behind them is visible, and the boxes' Gaussians are removed. */
 static void contradicted_ones_leave(void **state)
 {
     (void)state;
@@ -307,7 +308,7 @@ static void finer_sights_replace(void **state)
     arena_free(&s.memory);
 }
 
-/* Wherever the hook stops it, the map is a map, and what follows works. */
+/* Wherever the hook stops it, the map stays valid and later calls work. */
 static void cancelled_anywhere(void **state)
 {
     (void)state;
@@ -371,7 +372,8 @@ static uint32_t overlap_at(const site *s, pose p)
     return overlap_q8;
 }
 
-/* All in common where it stands, less the farther it goes aside, turns, comes near or goes back, nothing behind. */
+/* Full overlap at the same place; less the farther the camera moves sideways, turns, comes near or goes back; none
+ * behind. */
 static void overlap_tells_of_motion(void **state)
 {
     (void)state;
@@ -399,7 +401,7 @@ static void overlap_tells_of_motion(void **state)
     arena_free(&s.memory);
 }
 
-/* Where none of the pixels that are asked has depth, nothing is known to be in common. */
+/* If none of the sampled pixels has depth, no overlap is known. */
 static void nothing_overlaps_with_nothing(void **state)
 {
     (void)state;
@@ -420,8 +422,8 @@ static void nothing_overlaps_with_nothing(void **state)
     arena_free(&s.memory);
 }
 
-/* A camera that jumps from one end of the range to the other takes the origin along, beyond which the keyframe it left
- * behind is no longer of use: the scene is that of a stream that begins there. */
+/* A camera that jumps from one end of the range to the other takes the origin along. The keyframe left behind is out
+ * of range, so the scene is that of a stream that begins there. */
 static void jumps_leave_keyframes_behind(void **state)
 {
     (void)state;
@@ -486,7 +488,7 @@ static void refused(void **state)
     assert_int_equal(take(&s, &p, &report), T3R_OK);
     assert_int_equal(t3r_scene_append(s.rt, &g), T3R_ERR_STATE);
 
-    /* nothing of these changes the arena */
+    /* none of these changes the arena */
     arena before = arena_of_bytes(s.memory.count);
     memcpy(before.bytes, s.memory.bytes, s.memory.count);
     look_from(&p, &frame, &camera);
@@ -494,9 +496,9 @@ static void refused(void **state)
     far.position_q32[0] = (int64_t)5000 << 32;
     assert_refused(s.rt, &frame, &far, T3R_ERR_CAMERA);
     assert_int_equal(t3r_stream_overlap(s.rt, &far, W, H, &overlap_q8), T3R_ERR_CAMERA);
-    /* of pictures so large it would have less than 8 pixels of focal length at the working size */
+    /* with pictures so large the focal length would be below 8 pixels at the working size */
     assert_int_equal(t3r_stream_overlap(s.rt, &camera, T3R_MAX_SIDE, T3R_MAX_SIDE, &overlap_q8), T3R_ERR_CAMERA);
-    t3r_camera folded = camera; /* a lens most of whose picture shows nothing */
+    t3r_camera folded = camera; /* a lens that shows nothing in most of the picture */
     folded.distortion = T3R_DISTORTION_RADTAN;
     folded.distortion_q24[0] = -(40 << 24);
     assert_refused(s.rt, &frame, &folded, T3R_ERR_CAMERA);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Builds that follow one another (t3r_config.warm): a pair of views slides along a textured wall with boxes before it.
- * The bits depend on the calls alone; what no longer holds is not taken over. */
+/* Consecutive builds (t3r_config.warm): a pair of views slides along a textured wall with boxes before it. The bits
+ * depend on the calls alone; outdated results are not reused. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,11 +23,11 @@ enum { W = 64, H = 48, PIXELS = W * H, BUDGET = 500, STEPS = 5, PASSES = 4 };
 /* ---- the walk ---------------------------------------------------------------------------------------------------- */
 
 typedef struct viewpoint {
-    double x; /* metres, of the camera; the wall stands at z = 2, boxes 0.4 before it */
+    double x; /* the camera's place in metres; the wall is at z = 2, boxes 0.4 before it */
     int hue;
 } viewpoint;
 
-static uint8_t rgb[PIXELS * 3], depth[PIXELS * 2]; /* of every frame in turn */
+static uint8_t rgb[PIXELS * 3], depth[PIXELS * 2]; /* for every frame in turn */
 
 static t3r_frame look_from(const viewpoint *s, t3r_camera *camera)
 {
@@ -59,8 +59,8 @@ typedef struct site {
     t3r_config config;
     arena memory;
     t3r_runtime *rt;
-    uint32_t calls, cancel_at; /* of the progress hook; 0 = never */
-    uint32_t refining;         /* views refined, each pass for itself */
+    uint32_t calls, cancel_at; /* calls of the progress hook; 0 = never */
+    uint32_t refining;         /* views refined, counted in each pass */
     uint32_t refined;          /* the last of them, from 1 on */
     uint64_t hash[T3R_STAGE_COUNT];
 } site;
@@ -69,7 +69,7 @@ static int progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
 {
     site *s = user;
     assert_true(stage < T3R_STAGE_COUNT && done <= total);
-    if (stage == T3R_STAGE_REFINE && done + 1 != s->refined) { /* it is told often of each */
+    if (stage == T3R_STAGE_REFINE && done + 1 != s->refined) { /* each is reported several times */
         s->refining++;
         s->refined = done + 1;
     }
@@ -105,7 +105,7 @@ static t3r_config config_of(uint32_t warm)
     t3r_config c = t3r_default_config(W, H, 2, BUDGET);
     c.clusters = 40;
     c.refine = PASSES;
-    c.fit_passes = c.align = 0; /* as builds that follow one another are */
+    c.fit_passes = c.align = 0; /* as consecutive builds are */
     c.warm = warm;
     return c;
 }
@@ -157,7 +157,7 @@ static t3r_scene build(site *s)
     return scene;
 }
 
-/* The pair of `step` and the one before, built after those before it; the scene is the caller's. */
+/* Builds the pair of `step` and the previous one, after all pairs before; the caller frees the scene. */
 static t3r_gaussian *slide(site *s, bool moved)
 {
     t3r_gaussian *scenes = calloc(STEPS * BUDGET, sizeof *scenes);
@@ -182,7 +182,7 @@ static t3r_gaussian *slide(site *s, bool moved)
     return scenes;
 }
 
-/* A scene of these views by a runtime that has built nothing before. */
+/* Compares with a scene of these views by a fresh runtime. */
 static void assert_anew(const t3r_scene *scene, viewpoint first, viewpoint second)
 {
     site *cold = site_of(config_of(0), ARENA_AT_FULL);
@@ -235,7 +235,7 @@ static void same_bits(void **state)
     free(expected);
 }
 
-/* Drawing ends the analysis where none is kept, and leaves the views: without refinement, which ends it before, too. */
+/* Drawing ends the analysis where none is kept, and keeps the views: without refinement, which would end it earlier. */
 static void a_drawn_arena_moves(void **state)
 {
     (void)state;
@@ -252,7 +252,7 @@ static void a_drawn_arena_moves(void **state)
     free(expected);
 }
 
-/* Textures are of each view alone: those that were kept, and the new view's, are what they would be anew. */
+/* Textures belong to one view: kept ones, and the new view's, are the same as in a fresh runtime. */
 static void a_view_that_changed_is_not_taken_for_the_old(void **state)
 {
     (void)state;
@@ -283,7 +283,7 @@ static void a_view_that_changed_is_not_taken_for_the_old(void **state)
     site_free(s);
 }
 
-/* What is refused before anything is written leaves the pair as it was. */
+/* A call refused before anything is written does not change the pair. */
 static void errors_in_between(void **state)
 {
     (void)state;
@@ -310,7 +310,7 @@ static void errors_in_between(void **state)
     memset(depth, 0, sizeof depth);
     assert_int_equal(t3r_add_view(s->rt, &bad, &camera), T3R_ERR_NO_DEPTH);
     t3r_scene scene;
-    assert_int_equal(t3r_get_scene(s->rt, &scene), T3R_OK); /* it is still there */
+    assert_int_equal(t3r_get_scene(s->rt, &scene), T3R_OK); /* still there */
     move(s);
     const t3r_request too_many = {.gaussians = BUDGET + 1};
     assert_int_equal(t3r_reconstruct(s->rt, &too_many, &scene), T3R_ERR_ARGUMENT);
@@ -318,7 +318,7 @@ static void errors_in_between(void **state)
     scene = build(s);
     assert_memory_equal(scene.gaussians, expected + BUDGET, BUDGET * sizeof *expected);
 
-    /* a single measurement, of which the resized and undistorted picture has none: all views are gone */
+    /* a single measurement, which is lost in the resized and undistorted picture: all views are gone */
     bad = look_from(&next, &camera);
     memset(depth, 0, sizeof depth);
     depth[0] = 200;
@@ -343,9 +343,9 @@ static void cancelled_builds_leave_nothing(void **state)
         add(s, step_at(0));
         add(s, step_at(1));
         (void)build(s);
-        add(s, step_at(2)); /* in the place of the first */
+        add(s, step_at(2)); /* in place of the first view */
         s->calls = 0;
-        if (calls == UINT32_MAX) { /* how many there are */
+        if (calls == UINT32_MAX) { /* counts the calls */
             site *whole = site_of(config_of(1), ARENA_AT_FULL);
             add(whole, step_at(0));
             add(whole, step_at(1));
@@ -410,7 +410,7 @@ static void without_views_none_is_taken(void **state)
     site_free(s);
 }
 
-/* An arena that says of views or centres what cannot be is refused. */
+/* An arena with impossible views or centres is refused. */
 static void damaged_arenas(void **state)
 {
     (void)state;

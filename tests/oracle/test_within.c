@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* No more than a scene needs: the budget chosen in the arena, on two views of a textured wall with a box before it. */
+/* The smallest sufficient scene: the budget chosen in the arena, on two views of a textured wall with a box before
+ * it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -87,7 +88,7 @@ static t3r_scene within(site *s, uint32_t loss_q8)
     return scene;
 }
 
-/* What the trials leave behind does not show: the scene is that of the same budget asked for at once. */
+/* The trials leave no trace: the scene equals one requested with that budget. */
 static void the_scene_of_that_budget(void **state)
 {
     (void)state;
@@ -136,7 +137,7 @@ static void never_more_than_the_most(void **state)
     arena_free(&s.memory);
 }
 
-/* By an importance, too: the scene is that of the same importance and budget asked for at once. */
+/* Also with an importance: the scene equals one requested with that importance and budget. */
 static void by_an_importance(void **state)
 {
     (void)state;
@@ -154,7 +155,7 @@ static void by_an_importance(void **state)
     static t3r_gaussian kept[VIEWS * PIXELS];
     memcpy(kept, scene.gaussians, chosen * sizeof *kept);
     assert_true(chosen > 20 && chosen < VIEWS * PIXELS);
-    assert_int_equal(t3r_rebuild(s.rt, &half_db, &scene), T3R_OK); /* by texture, other trials and another choice */
+    assert_int_equal(t3r_rebuild(s.rt, &half_db, &scene), T3R_OK); /* by texture: other trials and another choice */
     assert_true(scene.count != chosen);
     request.max_loss_q8 = 0;
     request.gaussians = chosen;
@@ -172,7 +173,7 @@ static void by_an_importance(void **state)
     arena_free(&s.memory);
 }
 
-/* Of fewer than a hundred points the first trial is one. */
+/* With fewer than a hundred points the first trial is one. */
 static void few_points(void **state)
 {
     (void)state;
@@ -201,7 +202,7 @@ static void a_blank_wall_needs_next_to_nothing(void **state)
     arena_free(&s.memory);
 }
 
-/* The error of the scene in the arena is that of the context views as they are drawn. */
+/* The error of the scene in the arena is that of the context views as rendered. */
 static void the_error_is_that_of_the_picture(void **state)
 {
     (void)state;
@@ -257,7 +258,7 @@ static void cancelled_anywhere(void **state)
     arena_free(&s.memory);
 }
 
-/* Planes of a copied arena may say that nothing has depth: then nothing is off. */
+/* A copied arena's planes may have no depth at all: then the error is 0. */
 static void planes_without_depth_do_no_harm(void **state)
 {
     (void)state;

@@ -50,7 +50,7 @@ static void counts_follow_the_configuration(void **state)
     c.refine *= 2;
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_REFINE_GAUSSIANS],
                      2 * before.units[T3R_WORK_REFINE_GAUSSIANS]);
-    c.clusters = 1; /* one takes no search */
+    c.clusters = 1; /* a single cluster needs no search */
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_LABELS], 0);
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_BUDGET], points);
     c.views = 0;
@@ -62,7 +62,7 @@ static void counts_follow_the_configuration(void **state)
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DEPTH], 0);
 }
 
-/* In half of at most 32 rounds 1,024 pixels of each view; only where alignment has two views. */
+/* Half of at most 32 rounds compare 1,024 pixels of each view, and only if alignment has two views. */
 static void alignment_compares_pixels(void **state)
 {
     (void)state;
@@ -105,7 +105,7 @@ static void counts_what_is_asked_for_beyond(void **state)
     }
 }
 
-/* What does not fit at once is refined in slices, and each draws the views. */
+/* What does not fit at once is refined in slices, each of which draws the views. */
 static void small_arenas_draw_more_often(void **state)
 {
     (void)state;
@@ -135,7 +135,7 @@ static void networks_count_by_their_layers(void **state)
     free(weights);
 }
 
-/* What cannot be packed, for its numbers or its layers, counts as what is slower. */
+/* Networks whose numbers or layers cannot be packed count as slower. */
 static void some_networks_cannot_be_packed(void **state)
 {
     (void)state;
@@ -197,7 +197,7 @@ static void prices_add_up_and_end_at_the_most(void **state)
     prices.milli[T3R_WORK_IMAGE] = UINT32_MAX;
     assert_true(t3r_price_of(&work, &prices, T3R_STAGE_IMAGE) == UINT64_MAX);
     assert_true(t3r_price_of_build(&work, &prices) == UINT64_MAX);
-    /* a product that does not fit, and a thousandth of it that does: off by less than a price */
+    /* a product that overflows, and a thousandth of it that fits: off by less than a price */
     work.units[T3R_WORK_IMAGE] = UINT64_MAX;
     work.units[T3R_WORK_BUDGET] = 0;
     prices.milli[T3R_WORK_IMAGE] = 999;
@@ -240,7 +240,7 @@ static void lists_what_fits_best_first(void **state)
     t3r_limits limits = {.prices = &t3r_operations, .refine = T3R_ANY_REFINE};
     const uint32_t count = listed(&c, &limits, all);
     assert_true(count > 8 && all[0].loss_q4 < 16 && all[0].head == T3R_HEAD_ANALYTIC);
-    /* a row is a configuration: a build in such an arena, and its work */
+    /* each row is a configuration: a build in such an arena, and its work */
     t3r_config chosen = c;
     chosen.gaussians = chosen.max_gaussians = all[0].gaussians;
     chosen.refine = all[0].refine;
@@ -260,7 +260,7 @@ static void lists_what_fits_best_first(void **state)
     assert_int_equal(some[0].price, 0);
 }
 
-/* Shares of the least scene are a Gaussian at least; of the largest those are left out that no runtime takes. */
+/* Shares of the smallest scene are at least one Gaussian; shares of the largest omit those that no runtime accepts. */
 static void shares_of_extreme_sizes(void **state)
 {
     (void)state;
@@ -301,7 +301,7 @@ static void heads_are_compared(void **state)
     free(weights);
 }
 
-/* A network counts as the shipped one of about its size: one that computes more loses less at small budgets. */
+/* A network is rated like the shipped one of about its size: one that computes more loses less at small budgets. */
 static void networks_are_rated_by_their_size(void **state)
 {
     (void)state;

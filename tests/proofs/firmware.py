@@ -13,12 +13,12 @@ import proof
 
 HEADS = proof.ROOT / "quant" / "heads"
 NAMES = sorted(path.stem for path in HEADS.glob("*.c"))
-# a constant a section, as trim3r_heads and a firmware's own build have it
+# a section for each constant, as trim3r_heads and a firmware's own build have it
 EXTRA = ["-I", HEADS, "-ffunction-sections", "-fdata-sections"]
 
 
 def link(target, objects, library, folder, defines=()):
-    """The firmware as a file; what the linker says against it."""
+    """Links the firmware; returns the file and the linker's errors."""
     compiler, made = proof.compiler_of(target), folder / "firmware.o"
     firmware = folder / "firmware"
     result = proof.compile_one(compiler, target, proof.HERE / "freestanding" / "firmware.c", made, [*EXTRA, *defines])

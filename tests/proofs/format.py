@@ -23,7 +23,7 @@ def sources():
 
 
 def check(paths):
-    """The first line of each file that is formatted otherwise."""
+    """Returns the first line of each file that is formatted otherwise."""
     result = proof.run(["clang-format", "--dry-run", "-Werror", *paths])
     first = {}
     for line in result.stderr.splitlines():

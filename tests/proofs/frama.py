@@ -19,7 +19,7 @@ DRIVERS = proof.HERE / "frama"
 PAGE = proof.ROOT / "docs" / "study" / "proofs.md"
 UNSIGNED = "-warn-unsigned-overflow"
 
-# Tells the ways apart by which a function returns, so that what it checked holds in its caller.
+# Keeps a function's returns apart, so that what it checked holds in its caller.
 APART = ["-eva-interprocedural-history", "-eva-partition-history"]
 
 # A subject: sources beside the driver, options of Eva, what the page says of functions, ranges, and what is left out.
@@ -109,7 +109,7 @@ LEFT_OUT = {
              "t3r_bound_broken"),
     "attach": ("runtime/api/restored.c", " && rt->gaussians <= rt->config.max_gaussians", "", "out of bounds read"),
 }
-# What must be found, and by which words of Eva.
+# What must be found, and Eva's words for it.
 PLANTED = {
     "overflow": "signed overflow",
     "shift": "invalid RHS operand for shift",
@@ -185,7 +185,7 @@ def eva(driver, sources, options, beside=()):
 
 
 def seconds_of(subject):
-    """How long Eva took for the subject, which has no alarm."""
+    """Returns how long Eva took for the subject, which has no alarm."""
     sources, options = SUBJECTS[subject][:2]
     before = time.monotonic()
     found = eva(DRIVERS / f"{subject}.c", sources, options)
@@ -194,7 +194,7 @@ def seconds_of(subject):
 
 
 def must_find_left_out(subject):
-    """Eva finds the check that is left out of a copy of one of the subject's sources."""
+    """Checks that Eva finds the check removed from a copy of one of the subject's sources."""
     changed, says, instead, words = LEFT_OUT[subject]
     sources, options = SUBJECTS[subject][:2]
     text = (proof.ROOT / changed).read_text()
@@ -214,7 +214,7 @@ def row(subject, seconds):
 
 
 def unlisted(subjects, page):
-    """Those whose row the page lacks; seconds may differ."""
+    """Returns the subjects whose row is missing in the page; seconds may differ."""
     return [subject for subject in subjects if not re.search(re.escape(row(subject, "@")).replace("@", r"[\d.]+"), page)]
 
 

@@ -14,7 +14,7 @@ TARGET = proof.TARGETS["x86_64-O2"]
 
 
 def compiler_name():
-    """What makes the instructions; skips the proof where it cannot be had."""
+    """Returns the compiler's name; skips the proof where the compiler is missing."""
     name = proof.compiler_of(TARGET)
     machine = proof.run([name, "-dumpmachine"], check=True).stdout.strip()
     version = proof.run([name, "-dumpfullversion", "-dumpversion"], check=True).stdout.split()

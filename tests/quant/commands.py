@@ -54,7 +54,7 @@ def png(width, height, colour):
 
 
 def identity():
-    """A first layer that hands the features on, so that its ranges are theirs."""
+    """Returns a first layer that passes the features on, so that its ranges are theirs."""
     description = {"format": 1, "name": "identity", "feature_set": 1, "layers": [
         head_file.layer("conv", 0, [0], 9, 9, relu=False), head_file.layer("point", 0, [1], 9, 9, relu=False)]}
     return description, {"layer1.weight": numpy.eye(9).reshape(9, 9, 1, 1), "layer1.bias": numpy.zeros(9),
@@ -62,7 +62,8 @@ def identity():
 
 
 def ranges_of(path):
-    """Of an identity's first layer, in feature units: a weight w and multiplier m stand for a step of 1 / (w m)."""
+    """Returns the ranges of an identity's first layer, in feature units: a weight w and multiplier m mean a step of 1 /
+    (w m)."""
     head = head_file.read_t3w(read(path))
     first = head["layers"][0]
     weight = first["weight"].reshape(9, 9).diagonal()

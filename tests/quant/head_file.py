@@ -88,7 +88,8 @@ def random_view(random, height, width):
 # ---- the graph: one walk for floats and integers --------------------------------------------------------------------
 
 def gather(layers, planes, zeros, n, height, width):
-    """Layer n's sources on the grid that its kernel walks, channels behind each other, and each channel's zero."""
+    """Returns layer n's sources on the grid that its kernel walks, channels one after the other, and each channel's
+    zero."""
     l = layers[n - 1]
     grid = l["level"] - (l["stride"] - 1)
     rows, columns = -(-height // 2**grid), -(-width // 2**grid)
@@ -123,7 +124,7 @@ def point_sums(l, weight, bias, grid):
 
 
 def run_float(description, tensors, features, mask):
-    """Every layer's output; of point layers 0 where nothing is retained."""
+    """Returns every layer's output; point layers give 0 where nothing is retained."""
     layers, (height, width) = description["layers"], mask.shape
     planes = [features.astype(float) / 64]
     for n, l in enumerate(layers, 1):
@@ -180,7 +181,7 @@ def requantize(acc, multiplier, shift, activation_bits):
 
 
 def run_integers(head, features, mask):
-    """Every layer's output, as the runtime has to have it."""
+    """Returns every layer's output, as the runtime must compute it."""
     layers, bits, (height, width) = head["layers"], head["activation_bits"], mask.shape
     planes, zeros = [features.astype(numpy.int64) * (256 if bits == 16 else 1)], [0]
     for n, l in enumerate(layers, 1):

@@ -82,8 +82,8 @@ def scales(head, description, tensors):
 
 
 def check_layers(head, description, tensors, planes, mask):
-    """Each layer alone, fed with what the integers before it gave: it may be off by half a step of its output, half a
-    step of each weight times its activation, and half a step of the bias; no more."""
+    """Checks each layer alone, on the integers of the previous layers: its error is at most half a step of its output,
+    half a step of each weight times its activation, and half a step of the bias."""
     steps, sum_steps = scales(head, description, tensors)
     height, width = mask.shape
     zeros = [0] + [l["zero"] for l in head["layers"]]
@@ -115,7 +115,7 @@ def check_layers(head, description, tensors, planes, mask):
 
 
 def check_runtime(path, features, mask, integers):
-    """What the runtime makes of the file at the retained pixels, bit for bit."""
+    """Compares the runtime's outputs at the retained pixels, bit for bit."""
     done = subprocess.run([NETWORK, path, str(WIDTH), str(HEIGHT)], capture_output=True,
                           input=features.tobytes() + mask.astype("u1").tobytes())
     check(done.returncode == 0, f"network_driver {path}: {done.stderr.decode()}")

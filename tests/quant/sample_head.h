@@ -8,10 +8,10 @@
 
 #include "float_head.h"
 
-/* float_head_free() releases it. */
+/* Makes a head; free it with float_head_free(). */
 void sample_head(float_head *head, uint64_t seed);
 
-/* A head as a .safetensors file, to be freed. */
+/* Returns a head as a .safetensors file, which the caller frees. */
 uint8_t *sample_safetensors(const float_head *head, size_t *count);
 
 #endif

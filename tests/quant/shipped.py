@@ -22,7 +22,7 @@ def check(condition, what):
 
 
 with tempfile.TemporaryDirectory() as folder:
-    # a tree of its own, so that nothing of the repository is written
+    # a separate tree, so that nothing in the repository is written
     tree = pathlib.Path(folder)
     (tree / "tools" / "study" / "train").mkdir(parents=True)
     (tree / "quant" / "heads").mkdir(parents=True)

@@ -158,7 +158,7 @@ static void test_dead_channel(void **state)
     free(views);
 }
 
-/* A head whose first layer hands the features on: its ranges are the features' own. */
+/* A head whose first layer passes the features on: its ranges are the features' own. */
 static void test_runtime_views(void **state)
 {
     (void)state;
@@ -214,7 +214,7 @@ static void test_runtime_views(void **state)
             assert_int_equal(calibration_finish(c, &head, 100, 1), 1);
             const float *range = head.layers[0].range;
             assert_true(range[0] * 64 == 72 && range[2] * 64 == 100 && range[3] * 64 == 127 && range[4] * 64 == 127);
-            /* nothing was ever green, so it has the largest there is */
+            /* nothing was ever green, so its range is the maximum */
             assert_true(range[1] * 64 == 127 && range[7] * 64 == 127);
         }
         calibration_free(c);
@@ -223,7 +223,7 @@ static void test_runtime_views(void **state)
     float_head_free(&head);
 }
 
-/* Two cameras a quarter of the picture apart before one slanted surface. */
+/* Two cameras a quarter of the picture apart, in front of one slanted surface. */
 enum { PAIR = 2, PAIR_SIDE = 64, PAIR_PIXELS = PAIR_SIDE * PAIR_SIDE, ROW = PAIR_SIDE * T3R_FEATURES };
 
 /* The rows of features that were made, in the order of views, in the course of one call. */

@@ -126,7 +126,7 @@ static void test_reads(void **state)
     float_head_free(&head);
 }
 
-/* A head written out comes back as it was. */
+/* A head survives writing and reading unchanged. */
 static void test_round_trip(void **state)
 {
     (void)state;

@@ -78,7 +78,7 @@ static void run(const uint8_t *file, int16_t (*out)[T3R_HEAD_OUTPUTS])
     free(work);
 }
 
-/* Pixels of the middle at which the two differ; those of the middle in all are (W - 2 MARGIN) (H - 2 MARGIN). */
+/* Returns the number of pixels in the middle, of (W - 2 MARGIN) (H - 2 MARGIN), at which the two differ. */
 static uint32_t differing(void)
 {
     uint32_t count = 0;
@@ -90,7 +90,7 @@ static uint32_t differing(void)
     return count;
 }
 
-/* With any mask before it the copy says what the head itself says when told that nothing was pruned, bit for bit. */
+/* With any mask the copy gives the outputs of the head itself when nothing is pruned, bit for bit. */
 static void check_head(const uint8_t *file, size_t bytes)
 {
     const uint32_t middle = (W - 2 * MARGIN) * (H - 2 * MARGIN);
@@ -101,7 +101,7 @@ static void check_head(const uint8_t *file, size_t bytes)
     fill_features(1);
     nothing_pruned();
     run(file, expected);
-    fill_features(1); /* the same but for the two */
+    fill_features(1); /* the same except for the two */
     run(hidden, made);
     assert_int_equal(differing(), 0);
     run(file, made);

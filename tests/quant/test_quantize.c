@@ -13,7 +13,7 @@ static double multiplier_of(const quantized_layer *layer, uint32_t o)
     return ldexp(layer->multiplier[o], layer->shift[o] - 31);
 }
 
-/* The file that comes of it passes all that a reader checks: accumulators, multipliers, shifts. */
+/* Asserts that the file passes all checks of a reader: accumulators, multipliers, shifts. */
 static void assert_sound(const quantized_head *head)
 {
     size_t count;
@@ -36,7 +36,7 @@ static void quantize(quantized_head *out, const float_head *head, const uint32_t
     assert_sound(out);
 }
 
-/* Against the definition: nearest mantissa of 31 bits, half of it at least. */
+/* Against the definition: the nearest mantissa of 31 bits, at least half of the range. */
 static void test_multiplier(void **state)
 {
     (void)state;
@@ -61,8 +61,8 @@ static void test_multiplier(void **state)
     assert_int_equal(quantize_multiplier(-1, &multiplier, &shift), -1);
 }
 
-/* Every weight is within half a step, every bias too, and the multiplier is the steps' ratio exactly, also in the 16
- * bits that int16 activations leave it. */
+/* Every weight and every bias is within half a step, and the multiplier is exactly the ratio of the steps, also in
+ * the 16 bits that int16 activations leave it. */
 static void test_layers(void **state)
 {
     (void)state;
@@ -113,7 +113,7 @@ static void test_layers(void **state)
     }
 }
 
-/* Channels that are dead, tiny, huge, or all bias: a sound file, or a refusal; never nonsense. */
+/* Channels that are dead, tiny, huge, or all bias give a sound file or a refusal. */
 static void test_extremes(void **state)
 {
     (void)state;

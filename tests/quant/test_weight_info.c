@@ -71,7 +71,7 @@ static void refuse_header(size_t at, uint32_t bytes, uint64_t value, const char 
     refuse_change(8, 8, at, bytes, value, why);
 }
 
-/* A field of layer n, from 1; the reason does not name the layer. */
+/* Refuses a field of layer n, from 1; the reason does not name the layer. */
 static void refuse_row(uint32_t n, size_t at, uint32_t bytes, uint64_t value, const char *why)
 {
     refuse_header(T3R_WEIGHTS_HEADER_BYTES + (n - 1) * (size_t)T3R_WEIGHTS_LAYER_BYTES + at, bytes, value, why);
@@ -161,7 +161,7 @@ static void test_header(void **state)
     seal(&file);
     refuse(&file, "the header's name");
     free(file.bytes);
-    /* a table that the file has no room for */
+    /* a table larger than the file */
     file = make(8, 8);
     sample_file part = copy_of(file.bytes, T3R_WEIGHTS_HEADER_BYTES + 5 * T3R_WEIGHTS_LAYER_BYTES);
     seal(&part);
@@ -235,7 +235,7 @@ static void test_numbers(void **state)
     refuse_header(block_at(8, 8, BLOCK_BIAS) + 20, 4, 0x80000000, "sums could leave");
     refuse_change(16, 16, block_at(16, 16, BLOCK_BIAS), 8, UINT64_C(1) << 47, "sums could leave");
     refuse_change(8, 16, block_at(8, 16, BLOCK_BIAS), 8, UINT64_C(1) << 63, "sums could leave");
-    /* weights alone: 324 of them at their most, times 2^7, are beyond 2^30 */
+    /* weights alone: 324 of them at their maximum, times 2^7, exceed 2^30 */
     sample_file file = make(16, 8);
     size_t at = block_at(16, 8, BLOCK_WEIGHTS);
     for (size_t i = 0; i < 6 * 324; i++) {

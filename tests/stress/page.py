@@ -32,7 +32,7 @@ INK = "getComputedStyle(document.querySelector('h1')).color"
 
 
 def made(folder):
-    """The page and the rows of a run: a scene, losses of several perturbations, a cell that is refused."""
+    """Makes the page and the rows of a run: a scene, losses of several perturbations, a refused cell."""
     page, table = f"{folder}/worst.html", f"{folder}/worst.csv"
     run(trim3r, "stress", "--working", "40x40", "--rows", "noise,depth-all,depth-lattice,pose,black,scene-bars,scene-wall",
         "--captures", "0", "--methods", ",".join(METHODS), "--keep", "20", "--csv", table, "--html", page, "--worst", WORST)

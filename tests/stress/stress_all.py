@@ -13,7 +13,7 @@ from checks import check, done, run
 
 trim3r, part = sys.argv[1:]
 PERTURBATIONS, SCENES, STRENGTHS = 20, 5, 3
-MAY_REFUSE = {("depth-all", 99.9), ("depth-all", 100)}  # of so few pixels a view may be left without any
+MAY_REFUSE = {("depth-all", 99.9), ("depth-all", 100)}  # with so few pixels a view may have none
 RIVALS = ("random", "eagles", "lightgaussian", "pup", "efficientgs")
 SMALL = ("--working", "24x24", "--clusters", "40")
 HARD = ("--rows", "noise,depth-blobs,pose,black,near,scene-foliage", "--strengths", "3")

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every invariant, broken on purpose: it must be reported, and end `trim3r stress` in an exit status of 1. */
+/* Every invariant, broken on purpose: it must be reported, and `trim3r stress` must exit with status 1. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -39,7 +39,7 @@ static void scenes_out_of_bounds(void **state)
     assert_string_equal(stress_broken_invariant(&scene, 2, false), "a Gaussian is out of range");
 }
 
-/* The extremes of what in_range lets pass are finite; what is not, by whatever fault, is told. */
+/* The extremes that in_range accepts are finite; anything that is not is reported. */
 static void shapes_that_no_file_holds(void **state)
 {
     (void)state;
@@ -85,7 +85,7 @@ static void cell(plane *f, const perturbation *p)
     assert_int_equal(stress_measure(f->rows, f->renders, &f->c, &f->contest, p, p == NULL ? 0 : 1), CLI_OK);
 }
 
-/* A target no pixel of which counts has no score. */
+/* A target without pixels that count has no score. */
 static void scores_that_are_no_numbers(void **state)
 {
     plane *f = *state;
@@ -97,8 +97,8 @@ static void scores_that_are_no_numbers(void **state)
     assert_string_equal(f->rows[0].reason, "the render has no finite score");
 }
 
-/* Of unperturbed frames an arena that is too small is a refusal: nothing guarantees that it is enough. Where it did for
- * those, it must do for perturbed ones. */
+/* For unperturbed frames, a too small arena is a refusal: nothing guarantees that it suffices. If it sufficed for
+ * those, it must suffice for perturbed ones. */
 static void arenas_too_small_for_perturbed_frames(void **state)
 {
     plane *f = *state;
@@ -116,7 +116,7 @@ static void arenas_too_small_for_perturbed_frames(void **state)
 
 /* ---- rows -------------------------------------------------------------------------------------------------------- */
 
-/* An arena that grew, or that changed for the same budget, is told; a rival's is that of all points. */
+/* An arena that grew, or changed for the same budget, is reported; a rival's arena is that of all points. */
 static void arenas_that_change(void **state)
 {
     (void)state;
@@ -182,7 +182,7 @@ static void still_scenes_that_do_not_stay(void **state)
     }
 }
 
-/* What is reported of a broken invariant: a line, its cell and reason, and the exit status. */
+/* The report of a broken invariant: a line, its cell and reason, and the exit status. */
 static void exit_status_of_a_broken_invariant(void **state)
 {
     (void)state;

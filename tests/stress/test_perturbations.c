@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What each perturbation guarantees, on frames where it can be seen; of strength 0 each is none. */
+/* Each perturbation's guarantee, on frames that show it; at strength 0 none changes anything. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,7 +15,7 @@
 
 enum { WIDTH = 48, HEIGHT = 40, PIXELS = WIDTH * HEIGHT };
 
-/* Two context views and the target: mid-range noise, depths of about two metres, 5 % missing. */
+/* Makes two context views and the target: mid-range noise, depths of about two metres, 5 % missing. */
 static stress_capture sample(void)
 {
     stress_capture c;
@@ -107,7 +107,7 @@ static double distance(const stress_capture *a, const stress_capture *b)
     return sum;
 }
 
-/* Context views change, more with each grade (kinds excepted); the target does not, but that "huge" moves it too. */
+/* Context views change, more with each grade (except kinds); the target does not, except that "huge" moves it too. */
 static void grades_rise_and_targets_stay(void **state)
 {
     (void)state;
@@ -154,7 +154,7 @@ static void noise_has_its_deviation(void **state)
     release(&it);
 }
 
-/* A point's light is spread as a Gaussian is, and none is lost. */
+/* A point's light is spread like a Gaussian, and none is lost. */
 static void blur_spreads_a_point(void **state)
 {
     (void)state;
@@ -211,7 +211,7 @@ static void depth_noise_is_relative(void **state)
     assert_true(fabs(sqrt(squares / (double)depth_count(&it.before.view[0])) - 0.02) < 0.001);
     assert_memory_equal(it.before.view[0].rgb, it.after.view[0].rgb, PIXELS * 3);
     release(&it);
-    /* what is measured stays measured */
+    /* measured pixels stay measured */
     stress_capture c = sample();
     for (size_t i = 0; i < PIXELS; i++) {
         c.view[0].depth[i] = 1;
@@ -233,7 +233,7 @@ static void lattice_keeps_its_points(void **state)
     release(&it);
 }
 
-/* At least the share, and no more than a disc over it; what is left is as it was. */
+/* At least the share, and at most one disc more; all else is unchanged. */
 static void blobs_take_their_share(void **state)
 {
     (void)state;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The synthetic scenes: what the two context views show is what the target shows, but where something stands before it.
- */
+/* The synthetic scenes: the target shows what the two context views show, except where something is in front of it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -88,7 +87,7 @@ static void patterns_are_as_fine_as_said(void **state)
     }
 }
 
-/* Nearer than its surroundings, a bar has the width it says. */
+/* A bar, nearer than its surroundings, has the width stated. */
 static void bars_have_their_width(void **state)
 {
     (void)state;

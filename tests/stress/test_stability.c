@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Cells of a small scene: what is measured must agree with what is known of it. */
+/* Cells of a small scene: measurements must agree with known values. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -91,8 +91,8 @@ static void learned_and_refined(void **state)
     }
 }
 
-/* A world elsewhere is the same scene; a budget larger than what is left takes what is left; nothing left is refused.
- */
+/* A moved world is the same scene; a budget above the remaining points takes all of them; without points it is
+ * refused. */
 static void budgets_and_refusals(void **state)
 {
     plane *f = *state;

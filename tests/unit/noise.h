@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A small generator of repeatable noise. */
+/* A small repeatable generator of noise. */
 #ifndef T3R_TESTS_NOISE_H
 #define T3R_TESTS_NOISE_H
 
 #include <stdint.h>
 
 #ifdef UNIT_RANDOM_IS_DRAWN
-/* A fuzzer's own: what its input says. */
+/* A fuzzer defines this itself, to read its input. */
 uint64_t unit_random(uint64_t *state);
 #else
 /* splitmix64: the next 64 bits of the sequence */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Views of a plane, for what views tell of each other. */
+/* Views of a plane, for tests that compare views. */
 #ifndef T3R_TESTS_UNIT_RIG_H
 #define T3R_TESTS_UNIT_RIG_H
 
@@ -20,8 +20,8 @@ typedef struct rig {
     t3r_view view[VIEWS];
 } rig;
 
-/* A camera that looks along +z from x, 0, z, on a plane across at depth `plane` from the origin, measured in steps of
- * that many world units. */
+/* Places a camera that looks along +z from x, 0, z at a plane across at depth `plane` from the origin, measured in
+ * steps of that many world units. */
 static inline void place_view_in_steps(rig *s, int v, double x, double z, double plane, uint64_t unit_q40)
 {
     t3r_view *view = &s->view[v];
@@ -57,7 +57,7 @@ static inline void place_view(rig *s, int v, double x, double z, double plane)
 static uint32_t compared[PIXELS], ratios[3][T3R_RATIO_BINS];
 static const t3r_pointmap_work alone = {{NULL, 1}, compared, ratios, &t3r_kernels_c};
 
-/* Two cameras 8 pixels of disparity apart on a plane at 2. */
+/* Returns two cameras 8 pixels of disparity apart, in front of a plane at 2. */
 static inline rig *pair_new(void)
 {
     rig *s = unit_array(1, sizeof *s);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the unit tests share: cmocka's includes and repeatable noise. */
+/* Shared by the unit tests: cmocka's includes and repeatable noise. */
 #ifndef T3R_TESTS_UNIT_H
 #define T3R_TESTS_UNIT_H
 

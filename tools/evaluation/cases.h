@@ -5,22 +5,23 @@
 
 #include "evaluation/evaluation.h"
 
-/* Scenes are named after the last parts of their paths, as many as tell them apart, at most this many. */
+/* Scenes are named after the last parts of their paths: as many as needed to distinguish them, at most this many. */
 #define EVALUATION_NAME_PARTS_MOST 8u
 
 typedef struct evaluation_cases {
     char **inputs; /* the caller's */
     uint32_t input_count;
     bool planar;
-    uint32_t width, height; /* of planar images */
-    poses_source poses;     /* of the context views of recordings */
+    uint32_t width, height; /* for planar images */
+    poses_source poses;     /* for the context views of recordings */
     char (*names)[EVALUATION_NAME_BYTES];
-    t3r_recording **recordings; /* of each input; none of an image */
+    t3r_recording **recordings; /* one per input; none for an image */
     evaluation_case *list;      /* an image's recording is NULL until entered */
     uint32_t count;
 } evaluation_cases;
 
-/* How many parts of their paths tell the inputs apart; 0, with a pair that nothing does, where there is none. */
+/* Returns how many parts of their paths distinguish the inputs; 0 if two inputs cannot be distinguished, which
+ * `pair` then names. */
 uint32_t evaluation_name_parts(char *const *inputs, uint32_t count, uint32_t pair[2]);
 
 /* All triplets of every recording, or the one of the settings' `context` (context_count above 0) and `target`. With
@@ -36,12 +37,12 @@ void evaluation_cases_close(evaluation_cases *cases);
 /* A case with its recording open. */
 typedef struct evaluation_entered {
     evaluation_case what;
-    t3r_recording *own; /* an image's; or the case's, where its context views have poses of their own */
+    t3r_recording *own; /* an image's; or the case's, if its context views have poses of their own */
     uint8_t *bytes;
 } evaluation_entered;
 
-/* Estimates the poses of the context views where that is wanted: the first view and the target keep theirs. An exit
- * status of cli.h; evaluation_case_leave() after CLI_OK. */
+/* Estimates the poses of the context views if requested: the first view and the target keep theirs. Returns an exit
+ * status of cli.h; call evaluation_case_leave() after CLI_OK. */
 int evaluation_case_enter(evaluation_entered *entered, const evaluation_cases *cases, uint32_t index);
 void evaluation_case_leave(evaluation_entered *entered);
 

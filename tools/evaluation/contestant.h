@@ -20,8 +20,8 @@ typedef struct evaluation_contestants {
     uint32_t count;
 } evaluation_contestants;
 
-/* Adds a contestant by these settings: there is room for heads, methods and ablations. It is named for its method, or
- * for its ablation where there is one. */
+/* Adds a contestant with these settings: there is room for heads, methods and ablations. Its name is its method, or
+ * its ablation if it has one. */
 void evaluation_contestants_add(evaluation_contestants *chosen, const reconstruction_options *settings,
                                 const char *ablation);
 

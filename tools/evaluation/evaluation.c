@@ -59,7 +59,7 @@ void evaluation_views_free(evaluation_views *views)
     *views = (evaluation_views){0};
 }
 
-/* Frame `index` as the image stage gives it, and where the unpruned scene in `r` covers it. */
+/* Makes frame `index` as the image stage outputs it, and the area that the unpruned scene in `r` covers. */
 static int make_picture(evaluation_picture *picture, const evaluation_views *views, const evaluation_case *what,
                         uint32_t index, reconstruction *r, uint16_t *alpha)
 {
@@ -114,8 +114,8 @@ static int have_depth(const evaluation_case *what, bool *all)
 
 int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings)
 {
-    /* all points of the raw depth, the plain analytic head, whatever is to be compared; the sensor's where all have it
-     */
+    /* all points of the raw depth with the plain analytic head, whatever is compared; the sensor's depth if all
+     * frames have it */
     reconstruction_options options = *settings;
     bool sensed;
     int looked = have_depth(what, &sensed);
@@ -251,7 +251,8 @@ void evaluation_name_case(evaluation_row *row, const evaluation_case *what)
     }
 }
 
-/* Of a number that the library chooses, the working size is known only when a scene is made. */
+/* Names the number of SuperClusters, "auto" if the library chooses it: that depends on the working size, which is
+ * known only once a scene is made. */
 static void name_clusters(evaluation_row *row, uint32_t clusters)
 {
     if (clusters == 0) {
@@ -321,7 +322,7 @@ int evaluation_score(evaluation_row *row, uint8_t *render, const evaluation_view
     return code;
 }
 
-/* A row of the settings' scene file. */
+/* Measures a row of the settings' scene file. */
 static int measure_scene(evaluation_row *row, uint8_t *render, const evaluation_views *views,
                          const evaluation_case *what, const reconstruction_options *options)
 {

@@ -16,23 +16,23 @@
 #include "recording/recording.h"
 #include "trim3r.h"
 
-#define EVALUATION_NAME_BYTES 256 /* of a scene */
-#define EVALUATION_SCENE "scene"  /* in the place of a method: a scene file as it is */
+#define EVALUATION_NAME_BYTES 256 /* of a scene's name */
+#define EVALUATION_SCENE "scene"  /* instead of a method: a scene file, unchanged */
 
-/* How many Gaussians a row has. */
+/* The number of Gaussians of a row. */
 typedef struct evaluation_budget {
     double keep;        /* percent of the valid points, where no count is given */
-    uint32_t gaussians; /* a count, or all valid points where they are fewer; 0 = not given */
+    uint32_t gaussians; /* a count, or all valid points if they are fewer; 0 = not given */
 } evaluation_budget;
 
 typedef struct evaluation_case {
     const t3r_recording *recording;
     const char *path;                /* of the recording or image, for messages */
-    const char *scene;               /* its name in the tables */
+    const char *scene;               /* the scene's name in the tables */
     uint32_t context[T3R_MAX_VIEWS]; /* frame indices */
     uint32_t context_count;
     uint32_t target; /* a frame index */
-    bool planar;     /* one image on a plane: target is the context view itself, all pixels count */
+    bool planar;     /* one image on a plane: the target is the context view itself, and all pixels count */
 } evaluation_case;
 
 /* A recorded frame at the working size. */
@@ -47,18 +47,18 @@ typedef struct evaluation_views {
     evaluation_picture target;
     evaluation_picture context[T3R_MAX_VIEWS];
     uint32_t context_count;
-    method_source source; /* what the rows of a method share */
+    method_source source; /* shared by the rows of a method */
 } evaluation_views;
 
-/* Masks are of the frames' own depth where every context view has one, whatever the rows are made of. CLI_OK, and
- * evaluation_views_free() is due; otherwise nothing is. */
+/* Makes the masks from the frames' own depth if every context view has one, whatever the rows are made of. Call
+ * evaluation_views_free() after CLI_OK, and only then. */
 int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings);
 void evaluation_views_free(evaluation_views *views);
 
 /* The numbers of a row; NaN = does not apply. */
 typedef enum evaluation_value {
-    EVALUATION_KEEP,      /* percent of the valid points; NaN of a budget that is a count */
-    EVALUATION_REQUESTED, /* that count */
+    EVALUATION_KEEP,      /* percent of the valid points; NaN for a budget given as a count */
+    EVALUATION_REQUESTED, /* the budget's count */
     EVALUATION_GAUSSIANS, /* count used */
     EVALUATION_PSNR,      /* on the mask, dB */
     EVALUATION_SSIM,
@@ -67,8 +67,8 @@ typedef enum evaluation_value {
     EVALUATION_PSNR_ALL,     /* all pixels over black, dB */
     EVALUATION_CONTEXT_PSNR, /* mean over the context views on their masks, dB */
     EVALUATION_PERCEPTUAL,   /* FLIP on the mask */
-    EVALUATION_BUILD_MS,     /* frames to scene: image stage and everything behind it, scoring and fine-tuning too */
-    EVALUATION_RENDER_MS,    /* the target view */
+    EVALUATION_BUILD_MS,  /* frames to scene: the image stage and all later steps, including scoring and fine-tuning */
+    EVALUATION_RENDER_MS, /* the target view */
     EVALUATION_ARENA_BYTES,
     EVALUATION_SCENE_BYTES, /* the Gaussians as the arena holds them */
     EVALUATION_PLANAR_PSNR, /* all pixels of a planar case, dB */
@@ -79,31 +79,31 @@ typedef struct evaluation_row {
     char scene[EVALUATION_NAME_BYTES], context[192], target[16], head[16], bits[8], refine[16];
     char levels[8], clusters[16]; /* "" = does not apply, as below */
     const char *method, *allocate, *depth, *wavelet;
-    const char *ablation;                     /* the name of what was taken away; "" where nothing is */
+    const char *ablation;                     /* name of the removed part; "" if none */
     char settings[EVALUATION_SETTINGS_BYTES]; /* all others: evaluation_settings_rest() */
-    char picture[512];                        /* its render within the folder of --images; "" = none */
+    char picture[512];                        /* path of its render in the folder of --images; "" = none */
     double value[EVALUATION_VALUE_COUNT];
 } evaluation_row;
 
 /* The row's scene, context and target. */
 void evaluation_name_case(evaluation_row *row, const evaluation_case *what);
 
-/* All of the row that is known before it is made: every text but the ablation and the picture, and the budget; other
- * values are NaN. An exit status of cli.h: the head is looked at. */
+/* Fills in what is known of the row in advance: every text except the ablation and the picture, and the budget;
+ * other values are NaN. Returns an exit status of cli.h, because it reads the head. */
 int evaluation_name_row(evaluation_row *row, const evaluation_case *what, evaluation_budget budget,
                         const reconstruction_options *settings);
 
-/* Builds `what` by the settings' method with so many Gaussians, draws and scores it. The views keep what the rows of a
- * method share, so `settings` must be the same for all of their rows. With from_file the scene is written as .ply, read
- * back and drawn from that. Where the settings name a scene file, that is drawn and nothing is built. `render` (width x
- * height x 3) gets the target view. */
+/* Builds `what` by the settings' method with so many Gaussians, renders and scores it. The views keep what the rows
+ * of a method share, so `settings` must be the same for all of these rows. With from_file the scene is written as
+ * .ply, read back and rendered from that file. If the settings name a scene file, that scene is rendered and nothing
+ * is built. `render` (width x height x 3) gets the target view. */
 int evaluation_measure(evaluation_row *row, uint8_t *render, evaluation_views *views, const evaluation_case *what,
                        evaluation_budget budget, bool from_file, const reconstruction_options *settings);
 
-/* The steps of evaluation_measure() after the build, for callers that build from other frames than those that the views
- * were made of (stress). evaluation_draw(): the scene as `camera` sees it; rgb (width x height x 3) or alpha (width x
- * height, 32767 = opaque) may be NULL. evaluation_score(): draws the target into `render` and fills the scores and
- * render_ms of *row; context_psnr is NaN where the views hold no context. */
+/* The steps of evaluation_measure() after the build, for callers that build from other frames than those of the
+ * views (stress). evaluation_draw() renders the scene as `camera` sees it; rgb (width x height x 3) or alpha (width
+ * x height, 32767 = opaque) may be NULL. evaluation_score() renders the target into `render` and fills the scores
+ * and render_ms of *row; context_psnr is NaN if the views hold no context. */
 int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluation_views *views, uint8_t *rgb,
                     uint16_t *alpha);
 int evaluation_score(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What `trim3r eval` compares and writes, as the command line gives it. */
+/* The comparisons and outputs of `trim3r eval`, as the command line gives them. */
 #ifndef TRIM3R_TOOLS_EVALUATION_OPTIONS_H
 #define TRIM3R_TOOLS_EVALUATION_OPTIONS_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What an evaluation leaves to look at: PNG files in a folder a case, and an HTML page. */
+/* Pictures of an evaluation: PNG files in a folder for each case, and an HTML page. */
 #ifndef TRIM3R_TOOLS_EVALUATION_PICTURES_H
 #define TRIM3R_TOOLS_EVALUATION_PICTURES_H
 
@@ -12,9 +12,9 @@ int evaluation_write_views(const char *folder, const evaluation_views *views, co
 int evaluation_write_render(const char *folder, const evaluation_views *views, const evaluation_row *row,
                             uint8_t *render);
 
-/* A section for a case: context views, target, mask. */
+/* Writes a section for a case: context views, target, mask. */
 void evaluation_page_views(html_page *page, const evaluation_views *views, const evaluation_case *what);
-/* A render under its scores. */
+/* Writes a render below its scores. */
 void evaluation_page_render(html_page *page, const evaluation_views *views, const evaluation_row *row,
                             const uint8_t *render);
 

@@ -69,8 +69,8 @@ static bool folder_taken(const evaluation_report *report, const evaluation_row *
     return false;
 }
 
-/* The folder of a case within --images, a slash at its end: <target>/, or of a target's further contexts
- * <target>_from_0_4/; of several recordings each within its own. */
+/* Writes the folder of a case within --images, with a slash at its end: <target>/, or <target>_from_0_4/ for further
+ * contexts of a target; each recording of several has its own folder around these. */
 static int case_folder(const evaluation_report *report, const evaluation_row *names, char *folder, size_t bytes)
 {
     bool planar = report->to.planar, scene = planar || report->to.folder_each;
@@ -107,7 +107,7 @@ int evaluation_report_case(evaluation_report *report, const evaluation_views *vi
     return code == CLI_OK ? evaluation_write_views(path, views, what) : code;
 }
 
-/* What a row's render is called. Settings of the whole run that are not the default are part of it, so that runs which
+/* Names a row's render. Settings of the whole run that are not the default are part of the name, so that runs which
  * differ in a column of the table may share a folder. */
 static int name_picture(const evaluation_report *report, const char *label, evaluation_row *row)
 {
@@ -287,7 +287,7 @@ static int finish_page(evaluation_report *report, const evaluation_row *means, u
     return CLI_OK;
 }
 
-/* A mean of one row is no news. */
+/* Finishes the report, without a mean if there is only one row. */
 static int finish(evaluation_report *report)
 {
     const int refused = cJSON_GetArraySize(report->refused);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where the rows of an evaluation go as they arrive: the terminal or one JSON object, a CSV file, pictures, a page. */
+/* Outputs for the rows of an evaluation as they arrive: the terminal or one JSON object, a CSV file, pictures, a
+ * page. */
 #ifndef TRIM3R_TOOLS_EVALUATION_REPORT_H
 #define TRIM3R_TOOLS_EVALUATION_REPORT_H
 
@@ -19,9 +20,8 @@ typedef struct evaluation_outputs {
     /* Prints one table of the means at the end, in the place of rows as they arrive; NULL = rows. False without memory.
      */
     bool (*table)(FILE *out, const evaluation_row *means, uint32_t count, bool planar);
-    bool folder_each; /* a folder within `images` for each scene */
-    char
-        suffix[EVALUATION_SETTINGS_BYTES]; /* of the names of pictures: settings of all rows that are not the default */
+    bool folder_each;                       /* a folder within `images` for each scene */
+    char suffix[EVALUATION_SETTINGS_BYTES]; /* part of picture names: settings of all rows that are not the default */
 } evaluation_outputs;
 
 typedef struct evaluation_report {
@@ -31,26 +31,27 @@ typedef struct evaluation_report {
     whole_file page_file;
     evaluation_row *rows; /* room for all */
     uint32_t row_count, row_total;
-    uint32_t known_count;           /* of row_count: they stood in the table already */
+    uint32_t known_count;           /* how many of row_count were in the table already */
     uint32_t case_total, rows_each; /* of a case */
     cJSON *refused;                 /* cases: objects of scene, context, target, reason */
 } evaluation_report;
 
 /* These report on stderr and return an exit status of cli.h. */
 
-/* Opens all that can be opened, so that a bad path is told before the work. evaluation_report_close() in any case. */
+/* Opens every output possible, so that a bad path is reported before the work. Call evaluation_report_close() in any
+ * case. */
 int evaluation_report_open(evaluation_report *report, const evaluation_outputs *to, uint32_t cases, uint32_t rows_each);
 /* Whether there are pictures or a page: else views and renders are not looked at. */
 bool evaluation_report_shows(const evaluation_report *report);
 /* The recorded views of the rows that follow. */
 int evaluation_report_case(evaluation_report *report, const evaluation_views *views, const evaluation_case *what);
-/* What the rows that follow have in common: a heading. */
+/* Writes a heading: what the next rows have in common. */
 void evaluation_report_strip(evaluation_report *report, const char *label);
 /* Names the row's `picture` when there are pictures. */
-/* `known`: it stood in the table already. */
+/* `known`: the row was in the table already. */
 int evaluation_report_row(evaluation_report *report, bool known, const evaluation_views *views, const char *label,
                           evaluation_row *row, uint8_t *render);
-/* The case of the last rows, or of those to come, is left out: told, and in no mean and no table. */
+/* Leaves out the case of the last rows, or of the next ones: it is reported, and is in no mean and no table. */
 void evaluation_report_refuse(evaluation_report *report, const evaluation_case *what, const char *reason);
 /* Means, JSON and page when `code` is CLI_OK; no half page otherwise. `code`, or what went wrong here: CLI_BAD_INPUT
  * when every case was refused. */

@@ -20,7 +20,7 @@ static bool older(const struct timespec *a, const struct timespec *b)
     return a->tv_sec != b->tv_sec ? a->tv_sec < b->tv_sec : a->tv_nsec < b->tv_nsec;
 }
 
-/* Rows are results of this program on these inputs, as long as neither changed. */
+/* Checks the age: rows are valid as long as neither this program nor the inputs changed. */
 static int check_age(const char *path, char *const *inputs, uint32_t input_count, const char *pruned)
 {
     struct stat table, other;
@@ -70,7 +70,7 @@ static int add_row(evaluation_resume *resume, const csv_reader *reader, bool wit
         return cli_error(CLI_BAD_INPUT, "%s:%" PRIu32 ": %" PRIu32 " cells, not %u", reader->name, reader->line,
                          reader->cell_count, EVALUATION_COLUMNS);
     }
-    /* the cells stand one behind the other */
+    /* the cells are stored one after the other */
     const char *last = reader->cell[EVALUATION_COLUMNS - 1], *cells[EVALUATION_COLUMNS];
     size_t bytes = (size_t)(last - reader->row) + strlen(last) + 1;
     char *text = make_room(resume) ? malloc(bytes) : NULL;

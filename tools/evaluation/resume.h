@@ -10,8 +10,8 @@
 typedef struct evaluation_resume {
     evaluation_row *rows;
     uint32_t count, room;
-    uint32_t next; /* where the next is looked for first: they come in about the same order */
-    char **texts;  /* what the rows point into, one a row */
+    uint32_t next; /* where the search for the next row starts, as rows arrive in about the same order */
+    char **texts;  /* the texts that rows point into, one per row */
 } evaluation_resume;
 
 /* Reads the table; no file is an empty one. `with_pictures`: every row must name its render. The file is held to the

@@ -16,7 +16,7 @@ static int open_cases(const evaluation_options *o, evaluation_cases *cases)
     return evaluation_cases_of_recordings(cases, o->inputs, o->input_count, &o->settings, o->target);
 }
 
-/* Opens the scene to be pruned: a bad one is told before the work. */
+/* Opens the scene to be pruned, so that a bad one is reported before the work. */
 static int look_at_scene(const char *path, const evaluation_cases *cases)
 {
     if (cases->count > 1) {
@@ -58,7 +58,7 @@ static int look_at_judged(const char *path)
     return CLI_OK;
 }
 
-/* Percents first, then counts; a scene that is there has a row, too. */
+/* Lists percents first, then counts; a given scene file has a row, too. */
 static uint32_t list_budgets(const evaluation_options *o, evaluation_budget budgets[2 * EVALUATION_BUDGETS_MOST])
 {
     for (uint32_t i = 0; i < o->keep_count; i++) {

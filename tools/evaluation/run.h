@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* An evaluation from end to end: cases, rows, what is written of them. */
+/* A complete evaluation: cases, rows, outputs. */
 #ifndef TRIM3R_TOOLS_EVALUATION_RUN_H
 #define TRIM3R_TOOLS_EVALUATION_RUN_H
 

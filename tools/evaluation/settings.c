@@ -10,7 +10,7 @@
 #include "core/hash.h"
 #include "reconstruction/options/settings.h"
 
-/* A list with something between its items. */
+/* A list with a separator between its items. */
 typedef struct words {
     char *text;
     size_t length;
@@ -20,7 +20,7 @@ typedef struct words {
 
 static void add(words *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* What does not fit is cut off: the longest that there can be is half of it. */
+/* Appends, and truncates what does not fit; the longest list needs half of the room. */
 static void add(words *w, const char *format, ...)
 {
     if ((w->length > 0 || w->leading) && w->length + 1 < EVALUATION_SETTINGS_BYTES) {
@@ -42,7 +42,7 @@ static void add_number(words *w, const char *name, uint32_t value, uint32_t usua
     }
 }
 
-/* A file's path is told by its hash: a name that fits among others. */
+/* Appends a file's path as its hash, to keep the name short. */
 static void add_text(words *w, const char *name, const char *text, bool whole)
 {
     uint64_t hash = t3r_hash_bytes(T3R_HASH_START, (const uint8_t *)text, strlen(text));

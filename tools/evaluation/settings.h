@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The settings of an evaluation in words: those that are not the default, for tables and for names of pictures. */
+/* The settings of an evaluation that are not the default, as text for tables and for picture names. */
 #ifndef TRIM3R_TOOLS_EVALUATION_SETTINGS_H
 #define TRIM3R_TOOLS_EVALUATION_SETTINGS_H
 
@@ -7,7 +7,7 @@
 
 #define EVALUATION_SETTINGS_BYTES 160
 
-/* "flying-off gamma-0.5": those that no column of its own tells. "default" where there are none. */
+/* Writes "flying-off gamma-0.5": the settings without a column of their own. "default" if there are none. */
 void evaluation_settings_rest(const reconstruction_options *settings, char text[EVALUATION_SETTINGS_BYTES]);
 
 /* "_moment_refine-0_clusters-50_flying-off": all of them; the head where it is `named`. An exit status of cli.h. */

@@ -8,7 +8,7 @@
 #include "cli/text/style.h"
 #include "host/text.h"
 
-typedef enum shown { NEVER, ALWAYS, RECORDING, PLANAR, TOLD } shown; /* TOLD: where there is a text */
+typedef enum shown { NEVER, ALWAYS, RECORDING, PLANAR, TOLD } shown; /* TOLD: shown if there is a text */
 
 /* Texts of a row count down from -1. */
 enum {
@@ -32,7 +32,7 @@ enum {
 typedef struct column {
     const char *name;
     int value;    /* evaluation_value, or one of the texts */
-    int decimals; /* of a number; -1: as many as it has */
+    int decimals; /* of a number; -1: as many as needed */
     int width;    /* on the terminal */
     shown shown;  /* at a glance */
 } column;
@@ -115,7 +115,7 @@ void evaluation_csv_row(csv_table *table, const evaluation_row *row)
     csv_end_row(table);
 }
 
-/* Where a text is kept within the row: its room in *bytes, or NULL where the row only points to it, by *pointer. */
+/* Returns the text's buffer in the row and its size *bytes; NULL if the row only points to the text, by *pointer. */
 static char *room_of(evaluation_row *row, int text, size_t *bytes, const char ***pointer)
 {
     struct {
@@ -190,7 +190,7 @@ cJSON *evaluation_json(const evaluation_row *row)
     return object;
 }
 
-/* A cell that does not apply is like another one. */
+/* Whether two cells are equal; two cells that do not apply are. */
 static bool same_value(const evaluation_row *a, const evaluation_row *b, evaluation_value value)
 {
     return a->value[value] == b->value[value] || (isnan(a->value[value]) && isnan(b->value[value]));

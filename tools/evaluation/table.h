@@ -13,23 +13,23 @@
 #include "evaluation/evaluation.h"
 
 #define EVALUATION_COLUMNS 30u
-#define EVALUATION_CELL_BYTES 512u /* of any cell, the end included */
+#define EVALUATION_CELL_BYTES 512u /* of any cell, including the terminator */
 
 /* Stable order; NULL past the last. */
 const char *evaluation_column_name(uint32_t column);
-/* The cell as text; "" where it does not apply. */
+/* Writes the cell as text; "" if it does not apply. */
 void evaluation_cell(const evaluation_row *row, uint32_t column, char *text, size_t bytes);
 
 void evaluation_csv_header(csv_table *table);
 void evaluation_csv_row(csv_table *table, const evaluation_row *row);
-/* A row of evaluation_cell()'s texts; those of method, allocate, depth, wavelet and ablation must outlive it. False
- * where a number is none or a text too long. */
+/* Reads a row from evaluation_cell()'s texts; those of method, allocate, depth, wavelet and ablation must outlive
+ * the row. False if a number is invalid or a text too long. */
 bool evaluation_row_read(evaluation_row *row, const char *const cells[EVALUATION_COLUMNS]);
 /* Whether two rows have the same budget. */
 bool evaluation_same_budget(const evaluation_row *a, const evaluation_row *b);
 /* Whether two rows are of the same case, contestant, budget and settings. */
 bool evaluation_same(const evaluation_row *a, const evaluation_row *b);
-/* An object of all columns, null where one does not apply; NULL without memory. */
+/* Returns an object of all columns, null where one does not apply; NULL if out of memory. */
 cJSON *evaluation_json(const evaluation_row *row);
 
 /* Averages rows that differ in context and target alone (by_scene) or in the scene as well, in order of first
@@ -37,8 +37,8 @@ cJSON *evaluation_json(const evaluation_row *row);
  * are, at most `count`. */
 uint32_t evaluation_means(const evaluation_row *rows, uint32_t count, bool by_scene, evaluation_row *means);
 
-/* For terminal and page: the columns worth reading at a glance, of recordings or of planar images, in fewer digits.
- * False where the column is not among them. */
+/* Writes a cell for terminal and page: the main columns of recordings or of planar images, with fewer digits. False
+ * if the column is not one of them. */
 bool evaluation_glance(const evaluation_row *row, uint32_t column, bool planar, char *text, size_t bytes);
 void evaluation_print_header(FILE *out, bool planar);
 void evaluation_print_row(FILE *out, const evaluation_row *row, bool planar);

@@ -7,13 +7,13 @@
 #include "cli/cli.h"
 #include "cli/work/process_pool.h"
 
-/* With fewer cases a process than this, the contestants of a case are spread too, though what they share is then made
- * once a process. */
+/* With fewer cases per process than this, the contestants of a case are distributed as well, although each process
+ * then makes what they share. */
 #define CASES_ENOUGH 2u
 
 #define REASON_BYTES 512
 
-/* A case at hand, once a process. */
+/* The current case, one per process. */
 typedef struct desk {
     bool taken;
     uint32_t index;
@@ -26,12 +26,12 @@ typedef struct worker {
     const evaluation_work *work;
     evaluation_report *report;
     desk desk;
-    bool announced, refused; /* a case, to the report */
+    bool announced, refused; /* the case has been announced to the report, or refused */
     uint32_t announced_case, refused_case;
-    uint32_t shares; /* of a case: items of work that it is cut into, 1 or its contestants */
+    uint32_t shares; /* items of work per case: 1, or its contestants */
 } worker;
 
-/* What is sent of a row; its render follows when the report shows pictures, or the reason why its case is refused. */
+/* The message for a row; its render follows if the report shows pictures, or the reason if its case is refused. */
 typedef struct made_row {
     uint32_t contestant, budget;
     bool known, refused;
@@ -71,7 +71,7 @@ static int turn_to(worker *w, uint32_t index)
     return d->render != NULL ? CLI_OK : cli_error(CLI_BAD_INPUT, "out of memory");
 }
 
-/* The row, unless it is known; its render is on the desk. */
+/* Measures the row unless it is known; its render is on the desk. */
 static int measure_row(worker *w, uint32_t index, made_row *made)
 {
     const evaluation_work *work = w->work;
@@ -98,8 +98,8 @@ static int measure_row(worker *w, uint32_t index, made_row *made)
     return code;
 }
 
-/* Where one of several cases cannot be made of what was recorded, that is a result; what is wrong with a call, or with
- * the budget, is wrong with all of them. */
+/* One of several cases that cannot be made of its recording is a result; an error of the call or of the budget would
+ * affect all cases and is returned. */
 static int measure_or_refuse(worker *w, uint32_t index, made_row *made, char reason[REASON_BYTES])
 {
     if (w->work->cases->count == 1) {
@@ -145,7 +145,7 @@ static int make_item(void *context, uint32_t item, process_pool_line *line)
     return code;
 }
 
-/* Before the first row of a case, and of a contestant, that is shown. */
+/* Announces a case, and a contestant, before its first row that is shown. */
 static int announce(worker *w, uint32_t item, const made_row *made)
 {
     const uint32_t index = item / w->shares;
@@ -161,7 +161,7 @@ static int announce(worker *w, uint32_t item, const made_row *made)
     return code;
 }
 
-/* Processes that share a case find it refused once each. */
+/* Refuses a case once, although every process that shares it finds it refused. */
 static int refuse(worker *w, uint32_t index, const char *reason)
 {
     if (w->refused && w->refused_case == index) {
@@ -182,7 +182,7 @@ static int take_row(void *context, uint32_t item, const void *part, size_t bytes
         return refuse(w, item / w->shares, (const char *)part + sizeof made);
     }
     if (w->refused && w->refused_case == item / w->shares) {
-        return CLI_OK; /* of a contestant to whom the case was fit */
+        return CLI_OK; /* a contestant for which the case was fit */
     }
     const bool shown = bytes > sizeof made;
     int code = shown ? announce(w, item, &made) : CLI_OK;

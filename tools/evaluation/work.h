@@ -24,9 +24,9 @@ static inline uint32_t evaluation_work_rows_each(const evaluation_work *work)
     return work->contestants->count * work->budget_count;
 }
 
-/* Rows go to the report as they are made, in the order case, contestant, budget however many processes there are. Of
- * several cases those whose frames are refused (CLI_BAD_INPUT) go there too, with the reason; a single one ends in it.
- * An exit status of cli.h. */
+/* Passes rows to the report as they are made, in the order case, contestant, budget for any number of processes. Of
+ * several cases, those with refused frames (CLI_BAD_INPUT) go there too, with the reason; a single refused case is
+ * an error. Returns an exit status of cli.h. */
 int evaluation_work_do(const evaluation_work *work, evaluation_report *report);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r with its study: what measures it against other methods, and what trained its heads. */
+/* trim3r with its study commands, which measure it against other methods and trained its heads. */
 #include <stddef.h>
 
 #include "study/commands/commands.h"

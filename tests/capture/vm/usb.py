@@ -130,7 +130,7 @@ def lost(others):
 
 
 def faults(name, first_loss, second_loss, broken, starts_late=False):
-    """A run through an error bit, a cut image and two losses of the camera, all of which it outlives."""
+    """Checks a run through an error bit, a truncated image and two losses of the camera, which it survives."""
     live = trial.recorded(name, 30)
     missing, others = account(name, yuyv, starts_late=starts_late)
     trial.check(missing.get((0, 5)) == missing.get((0, 9)) == broken, f"{name}: {missing}")
@@ -142,7 +142,8 @@ def faults(name, first_loss, second_loss, broken, starts_late=False):
 
 
 def left(name, stream, words):
-    """The camera is gone for good, or does not come alive again: told, and the recording has what came before."""
+    """Checks that a camera gone for good, or one that does not recover, is reported, and that the recording has the
+    earlier images."""
     _, others = account(name, yuyv, stream)
     trial.check(trial.text(f"{name}.rc").strip() == "1" and words in lost(others)[0], f"{name}: {others}")
     trial.check("not back within 1 s" in trial.text(f"{name}.told"), trial.text(f"{name}.told"))

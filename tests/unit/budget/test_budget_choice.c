@@ -55,12 +55,12 @@ static void extremes(void **state)
     const uint32_t worst = 1 << 24, most_points = 1u << 28;
     t3r_budget_evidence e = {.points = most_points, .trial = most_points / 100, .error_q8 = {worst, 0}};
     assert_int_equal(t3r_predict_budget(&e, T3R_MAX_GAUSSIANS, 1), T3R_MAX_GAUSSIANS);
-    e.error_q8[0] = 0; /* gets worse: nothing is gained by more */
+    e.error_q8[0] = 0; /* gets worse: more Gaussians gain nothing */
     e.error_q8[1] = worst;
     assert_int_equal(t3r_predict_budget(&e, T3R_MAX_GAUSSIANS, 1), most_points / 400);
     assert_int_equal(t3r_predict_budget(&e, 7, 1), 7);
-    /* Just below 2 levels^2 nobody sees the second trial's error, and more than that trial is not needed; a 256th more
-     * is seen, and has to come down to the yardstick's share. */
+    /* Just below 2 levels^2 the second trial's error is invisible, and no more than that trial is needed; 1/256 more
+     * is visible, and has to fall to the yardstick's share. */
     e = (t3r_budget_evidence){.points = 1000, .trial = 10, .error_q8 = {700, 511}, .disagreement_q8 = 1024};
     assert_int_equal(t3r_predict_budget(&e, 1000, 1), 20);
     e.error_q8[0]++;

@@ -54,7 +54,7 @@ static void hash_of_text(void **state)
     assert_int_equal(t3r_hash_bytes(T3R_HASH_START, text, 6), UINT64_C(0x85944171f73967e8));
 }
 
-/* A number is hashed as its bytes, the lowest first. */
+/* A number is hashed as its bytes, lowest first. */
 static void hash_of_numbers(void **state)
 {
     (void)state;

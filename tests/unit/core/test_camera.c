@@ -87,7 +87,7 @@ static void bounds(void **state)
     }
 #undef BOTH_BOUNDS
 #undef BOUND
-    for (int i = 0; i < 8; i++) { /* one component alone, of either sign */
+    for (int i = 0; i < 8; i++) { /* a single component, of either sign */
         t3r_camera within = plain_camera(), beyond = plain_camera();
         within.rotation_q30[0] = beyond.rotation_q30[0] = 0;
         within.rotation_q30[i / 2] = i % 2 == 0 ? component : -component;

@@ -19,7 +19,7 @@ static void parts(void **state)
     assert_int_equal(t3r_cut_left(&cut), T3R_ARENA_ALIGN);
 }
 
-/* Parts are apart, each as long as the table says, and the last ends at the end. */
+/* Parts are disjoint, each as long as the table says, and the last ends at the end. */
 static void matching(void **state)
 {
     (void)state;

@@ -12,7 +12,7 @@
 
 #define STRIDE UINT32_C(65521) /* a prime */
 #define LOGARITHM_WORST 4.0    /* 2^-14, in Q16 */
-#define ALPHA_WORST 23.0       /* in Q16: 18 of the polynomial, 4 of q rounded to 16 steps, 1 of the product */
+#define ALPHA_WORST 23.0       /* in Q16: 18 from the polynomial, 4 from q rounded to 16 steps, 1 from the product */
 #define LOGARITHM_HASH UINT64_C(0x0b1f1873045bf8e9)
 #define POWER_HASH UINT64_C(0xcd115a77e95a1086)
 #define POWER_IN_THOUSANDS_HASH UINT64_C(0xbac39740316426c5)
@@ -128,7 +128,7 @@ static void reciprocal(void **state)
     assert_int_equal(hash, RECIPROCAL_HASH);
 }
 
-/* Every alpha: q from below 0 to beyond the last that is seen, at the largest opacity and at others. */
+/* Every alpha: q from below 0 to beyond the last visible one, at the largest opacity and at others. */
 static void alpha(void **state)
 {
     (void)state;
@@ -151,7 +151,7 @@ static void alpha(void **state)
     assert_int_equal(hash, ALPHA_HASH);
 }
 
-/* x / d in Q24 for every small d, those about powers of two, and the largest. */
+/* x / d in Q24 for every small d, those around powers of two, and the largest. */
 static void quotient(void **state)
 {
     (void)state;
@@ -171,7 +171,7 @@ static void quotient(void **state)
     assert_int_equal(hash, QUOTIENT_HASH);
 }
 
-/* Every a by 1,000 b: the first, the last, and those about powers of two. */
+/* Every a by 1,000 b: the first, the last, and those around powers of two. */
 static void products(void **state)
 {
     (void)state;

@@ -108,7 +108,7 @@ static void shifts(void **state)
     }
 }
 
-/* In 64 bits: halves, and their neighbours, up to the largest that a shift allows. */
+/* 64 bits: halves and their neighbours, up to the largest value that a shift allows. */
 static void wide_shifts(void **state)
 {
     (void)state;
@@ -132,7 +132,7 @@ static void wide_shifts(void **state)
     assert_int_equal(t3r_scale64(INT64_C(1) << 61, -62), 1);
 }
 
-/* In 32 bits, at the edges of the numbers and of the shifts. */
+/* 32 bits: at the limits of numbers and shifts. */
 static void shifts_of_extremes(void **state)
 {
     (void)state;
@@ -168,7 +168,7 @@ static void sizes_and_clamps(void **state)
     assert_int_equal(t3r_clamp64(INT64_MAX, INT32_MIN, INT32_MAX), INT32_MAX);
 }
 
-/* By another implementation of the mixing. */
+/* Against another implementation of the mixing. */
 static void mixing(void **state)
 {
     (void)state;
@@ -197,7 +197,7 @@ static void small_product(void **state)
     }
 }
 
-/* What division gives, for every sign and size, about all boundaries. */
+/* Against division, for every sign and size, around all boundaries. */
 static void divisor(void **state)
 {
     (void)state;
@@ -207,7 +207,7 @@ static void divisor(void **state)
         const uint32_t d = turn % 4 == 0 ? most : (uint32_t)unit_between(&seed, 1, most);
         const uint32_t limit = turn % 2 == 0 ? 4 : 16;
         const t3r_divisor by = t3r_divisor_of(d);
-        assert_true(by.reciprocal >> 31 == 1); /* as accurate as it can be */
+        assert_true(by.reciprocal >> 31 == 1); /* as accurate as possible */
         const int64_t largest = T3R_MIN((int64_t)limit * d + 2, UINT32_MAX);
         const int64_t k = unit_between(&seed, 0, (int64_t)limit << 25); /* half steps */
         const int64_t x = turn % 3 == 0 ? unit_between(&seed, -largest, largest)

@@ -8,7 +8,7 @@
 
 enum { REFUSED = INT32_MIN };
 
-/* Where a camera at that place stands, along each axis in turn. */
+/* Returns the position of a camera at that place, along each axis in turn. */
 static int32_t placed(int64_t position_q32, int64_t origin_q32, int32_t exponent)
 {
     int32_t got[3];
@@ -61,7 +61,7 @@ static void bounds_of_positions(void **state)
         assert_int_equal(placed(sign * (far - 1), 0, 24), sign * (1 << 25));
         assert_int_equal(placed(sign * far, 0, 24), REFUSED);
         assert_int_equal(placed(sign * (T3R_MAX_POSITION_Q32 - 1), -sign * (T3R_MAX_POSITION_Q32 - 1), 24), REFUSED);
-        /* so far that scaling would leave 64 bits */
+        /* so far that scaling would exceed 64 bits */
         assert_int_equal(placed(sign * (INT64_C(1) << 52), 0, -24), REFUSED);
         assert_int_equal(placed(sign * (far - 1), 0, -24), REFUSED);
     }
@@ -79,7 +79,7 @@ static void turned(void **state)
     assert_memory_equal(pose.rotation_q30, rotation_q30, sizeof rotation_q30);
 }
 
-/* A unit's 32 highest bits, and raw steps times them in scene units: a double has the product exactly. */
+/* A unit's 32 highest bits, and raw steps times them in scene units: a double holds the product exactly. */
 static void depth_steps(void **state)
 {
     (void)state;

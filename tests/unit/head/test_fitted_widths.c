@@ -36,7 +36,7 @@ static rig *views_new(void)
     return s;
 }
 
-/* What the middle pixel of view 0 makes of a variance among the first `count` views, over what it was. */
+/* Returns the factor that the middle pixel of view 0 applies to a variance, among the first `count` views. */
 static double gain(const rig *s, uint32_t count)
 {
     const t3r_covering_views covering = {s->view, count, 0, mean_density_q10};
@@ -76,7 +76,7 @@ static void of_unlike_densities(void **state)
         clusters[1].density_q10 = log_q10;
         assert_gain(gain(s, 2), 1 + exp2(log_q10 / 1024.0 + 2));
     }
-    /* a pixel of a view as near again covers a quarter, so that its points lie four times as close */
+    /* a pixel of a view at half the distance covers a quarter, so that its points are four times as dense */
     clusters[1].density_q10 = clusters[0].density_q10;
     place_view(s, 1, 0, 1, 2);
     s->view[1].texture = texture;
@@ -106,7 +106,7 @@ static void wider_where_points_are_few(void **state)
     free(s);
 }
 
-/* A depth below half a step of scene units counts as one. */
+/* A depth below half a step of scene units counts as one step. */
 static void nothing_is_at_the_camera(void **state)
 {
     (void)state;
@@ -121,7 +121,7 @@ static void only_of_the_same_surface(void **state)
 {
     (void)state;
     rig *s = views_new();
-    const size_t there = MIDDLE_Y * W + MIDDLE_X - 8; /* of view 1, where the point falls */
+    const size_t there = MIDDLE_Y * W + MIDDLE_X - 8; /* pixel of view 1 where the point falls */
     const struct {
         uint8_t validity;
         uint16_t depth;
@@ -147,7 +147,7 @@ static void only_of_the_same_surface(void **state)
     s->validity[1][there] = T3R_MEASURED | T3R_MARK_COVERED;
     s->depth[1][there] = 2 * UNIT;
     assert_gain(gain(s, 2), 2);
-    s->view[1].pose.position_q20[0] = 4 << 20; /* it looks past the point */
+    s->view[1].pose.position_q20[0] = 4 << 20; /* looks past the point */
     assert_gain(gain(s, 2), 1);
     free(s);
 }
@@ -208,7 +208,7 @@ static uint64_t scene_hash(t3r_config config, way taken)
     return hash;
 }
 
-/* Bits with fitted widths, and whether they differ from those without. */
+/* Returns the hash with fitted widths, and checks whether it differs from the hash without them. */
 static uint64_t fitted_hash(t3r_config config, way taken, bool differs)
 {
     config.fit_widths = 0;

@@ -197,7 +197,7 @@ static void blocks_lie_in_the_file(void **state)
     free(good);
 }
 
-/* A multiplier, a shift, a bias or a weight one beyond what the sums bear. */
+/* A multiplier, a shift, a bias or a weight one beyond the range of the sums. */
 static void numbers_are_bounded(void **state)
 {
     (void)state;
@@ -245,7 +245,7 @@ static void numbers_are_bounded(void **state)
     free(good);
 }
 
-/* Any bit flipped, any length: the length or the CRC tells. */
+/* Any flipped bit and any length is detected, by the length or the CRC. */
 static void damage_is_noticed(void **state)
 {
     (void)state;
@@ -272,7 +272,7 @@ static void damage_is_noticed(void **state)
     free(file);
 }
 
-/* What only the graph as a whole shows. */
+/* Errors that only the whole graph shows. */
 static void graphs_are_checked(void **state)
 {
     (void)state;
@@ -318,7 +318,7 @@ static void graphs_are_checked(void **state)
     }
 }
 
-/* However sound the rest, a file is not longer than it may be. */
+/* A file is limited in length, even if all else is sound. */
 static void length_is_bounded(void **state)
 {
     (void)state;

@@ -224,7 +224,7 @@ static void average(void **state)
     for (int turn = 0; turn < 300; turn++) {
         uint32_t from_w = (uint32_t)unit_between(&seed, 2, 40), from_h = (uint32_t)unit_between(&seed, 2, 40);
         uint32_t w = (uint32_t)unit_between(&seed, 1, 40), h = (uint32_t)unit_between(&seed, 1, 40);
-        w = turn % 10 == 0 ? from_w : w; /* one side stays */
+        w = turn % 10 == 0 ? from_w : w; /* one side is unchanged */
         h = turn % 10 == 1 ? from_h : h;
         uint8_t *grey = unit_array(from_w, from_h);
         uint8_t *planes[3];

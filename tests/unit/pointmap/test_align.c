@@ -72,7 +72,7 @@ static uint64_t scene_hash(t3r_runtime *rt)
     return t3r_hash_bytes(T3R_HASH_START, (const uint8_t *)scene.gaussians, scene.count * sizeof *scene.gaussians);
 }
 
-/* A camera that looks `angle` radians too far to the side and stands `shift` metres off. */
+/* Returns a camera turned `angle` radians too far and shifted by `shift` metres. */
 static t3r_camera disturbed(const t3r_camera *from, double angle, double shift)
 {
     t3r_camera c = *from;
@@ -97,7 +97,7 @@ static double turned(const t3r_camera *a, const t3r_camera *b)
     return 2 * acos(fmin(1, fabs(dot) / sqrt(aa * bb)));
 }
 
-/* How far the turn between two cameras is from that of the room's own. */
+/* Returns the error of the turn between two cameras, against the room's own. */
 static double error_of_turn(const t3r_camera *first, const t3r_camera *second, uint32_t to)
 {
     return fabs(turned(first, second) - turned(&camera[0], &camera[to]));
@@ -124,12 +124,12 @@ static void a_disturbed_pose_comes_back(void **state)
         assert_true(behind < before / 2); /* the rest is a shift that shows much the same */
         print_message("%.3f radians, %.2f m: turn off by %.5f, then by %.5f\n", by[i].angle, by[i].shift, before,
                       behind);
-        assert_true(scene_hash(rt) == hash); /* from the poses given, not from those found */
+        assert_true(scene_hash(rt) == hash); /* from the given poses, not from the aligned ones */
         assert_true(scene_hash(with_views(&plain, cameras)) != hash);
     }
 }
 
-/* An eighth of the pixels has depth: they are compared more closely than where all have it. */
+/* With depth at an eighth of the pixels, these are compared more closely than with depth everywhere. */
 static void little_depth_is_enough(void **state)
 {
     (void)state;
@@ -157,7 +157,7 @@ static void little_depth_is_enough(void **state)
     assert_true(4 * behind < 3 * before); /* seen in a small window, a shift shows much the same */
 }
 
-/* A view to be met has a pose as those given are: what they lose by it is seen before they are aligned. */
+/* A target view has a pose like the given ones: its loss is measured before alignment. */
 static void a_bounded_loss_goes_by_the_poses_given(void **state)
 {
     (void)state;
@@ -186,7 +186,7 @@ static void a_bounded_loss_goes_by_the_poses_given(void **state)
     t3r_views_of(rt, views);
     t3r_build build = t3r_build_of(&config);
     assert_int_equal(t3r_choose_budget(rt, views, T3R_MAX_LOSS_Q8 / 4, &build, NULL), T3R_OK);
-    assert_true(2 * chosen[0] < build.gaussians); /* right poses, which nothing aligns */
+    assert_true(2 * chosen[0] < build.gaussians); /* correct poses, without alignment */
 }
 
 static void three_views_meet(void **state)
@@ -224,7 +224,7 @@ static void right_poses_stay(void **state)
     }
 }
 
-/* Nothing differs, so nothing can differ less. */
+/* Without differences alignment has nothing to reduce. */
 static void grey_views(void **state)
 {
     (void)state;
@@ -240,7 +240,7 @@ static void grey_views(void **state)
     }
 }
 
-/* Where the range of positions ends a view stays as given, and the other one goes on. */
+/* A view at the end of the range of positions stays as given, and the other one is still aligned. */
 static void positions_stay_in_range(void **state)
 {
     (void)state;
@@ -248,7 +248,7 @@ static void positions_stay_in_range(void **state)
     const uint32_t outer = camera[1].position_q32[0] > camera[0].position_q32[0];
     for (int far = 0; far < 2; far++) {
         t3r_camera cameras[] = {camera[0], camera[1]}, found[2];
-        cameras[outer] = disturbed(&camera[outer], -0.01, -0.06); /* to be moved outwards */
+        cameras[outer] = disturbed(&camera[outer], -0.01, -0.06); /* has to move outwards */
         const int64_t away = far ? T3R_MAX_POSITION_Q32 - 1 - cameras[outer].position_q32[0] : 0;
         cameras[0].position_q32[0] += away;
         cameras[1].position_q32[0] += away;
@@ -263,7 +263,7 @@ static void positions_stay_in_range(void **state)
     }
 }
 
-/* With `warm` poses are those of the build before. */
+/* With `warm` the poses start from the previous build. */
 static void builds_that_follow_are_as_given(void **state)
 {
     (void)state;
@@ -275,8 +275,8 @@ static void builds_that_follow_are_as_given(void **state)
     assert_true(scene_hash(with_views(&config, cameras)) == asked);
 }
 
-/* Pictures of noise, of views that share a narrow strip. These differ less once they look away from it: that is not
- * taken, and the poses stay. */
+/* Noise in views that share a narrow strip: they differ less once they look away from it. Such a step is rejected,
+ * and the poses stay. */
 static void narrow_strips_of_noise(void **state)
 {
     (void)state;
@@ -302,7 +302,7 @@ static void narrow_strips_of_noise(void **state)
     }
 }
 
-/* Nothing is in common, or there is nothing to see: the poses stay. */
+/* Views with nothing in common or without contents: the poses stay. */
 static void views_without_anything_in_common(void **state)
 {
     (void)state;
@@ -342,7 +342,7 @@ static void it_can_be_cancelled(void **state)
     }
 }
 
-/* A x = b of random positive definite matrices, of any scale and with unlike diagonals: what is left of b. */
+/* Checks the residual of A x = b for random positive definite matrices of any scale, with unequal diagonals. */
 static void equations_are_solved(void **state)
 {
     (void)state;

@@ -9,7 +9,7 @@ enum { SIDE = T3R_TILE_SIDE, TILES = 9 };
 
 static const t3r_view_levels none;
 
-/* A view that shows `offset + (1 + slope) x` where x is drawn, in levels, and noise. */
+/* Makes a view that shows `offset + (1 + slope) x` for a rendered x, in levels, with noise. */
 static void make_tile(uint64_t *seed, double offset, double slope, t3r_wanted *tile)
 {
     memset(tile, 0, sizeof *tile);

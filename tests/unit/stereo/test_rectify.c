@@ -23,7 +23,7 @@ static t3r_camera camera_at(double x, double y, double z, const double q[4], dou
 
 static const double straight[4] = {1, 0, 0, 0};
 
-/* A turn of `degrees` about an axis */
+/* Makes a turn of `degrees` about an axis */
 static void turned(double degrees, double x, double y, double z, double q[4])
 {
     const double half = degrees * 3.14159265358979 / 360, length = sqrt(x * x + y * y + z * z);
@@ -33,7 +33,7 @@ static void turned(double degrees, double x, double y, double z, double q[4])
     q[3] = sin(half) * z / length;
 }
 
-/* Where a camera sees a point: pixel and distance along z; 0 when behind it. */
+/* Computes where a camera sees a point: pixel and distance along z; 0 if the point is behind the camera. */
 static int sees(const t3r_camera *c, const double point[3], double pixel[2], double *z)
 {
     int32_t r[9];
@@ -56,7 +56,8 @@ static int64_t distance_q24(const t3r_column *a, const t3r_column *b)
     return ((int64_t)a->a_q24 * b->b_q24 - (int64_t)b->a_q24 * a->b_q24) >> 24;
 }
 
-/* Every point that both see lies in one row, and its columns tell how far it is. Returns how many points. */
+/* Checks that every point seen by both is in one row, and that its columns give its distance. Returns the number of
+ * points. */
 static int check_points(const t3r_camera *first, const t3r_camera *second, const t3r_rectification *rect,
                         uint64_t *seed)
 {
@@ -84,7 +85,7 @@ static int check_points(const t3r_camera *first, const t3r_camera *second, const
         if (!both) {
             continue;
         }
-        /* polar rows end where they begin: 8 units further on */
+        /* polar rows end where they begin, 8 units on */
         double rows = (place[0][1] - place[1][1]) / 65536.0, turn = 8.0 * rect->scale_q16[1] / 65536;
         rows = fabs(rows) > turn / 2 ? fabs(rows) - turn : rows;
         assert_true(fabs(rows) < 0.02);
@@ -174,7 +175,7 @@ static void identity(void **state)
     free(out);
 }
 
-/* A plane's pixels are those of the view that t3r_rectified_place() puts there: of a picture that is a slope. */
+/* A plane's pixels are the view's pixels at t3r_rectified_place(): in a picture that is a slope. */
 static void sampled(void **state)
 {
     (void)state;
@@ -289,9 +290,7 @@ static void nowhere(void **state)
     }
 }
 
-/* A camera whose picture lies far below its axis, and leans the other way: rays of more than 4, in a plane all the
- * same.
- */
+/* A camera whose picture is far below its axis and leans the other way: rays of more than 4, still in a plane. */
 static void steep_in_a_plane(void **state)
 {
     (void)state;
@@ -323,7 +322,7 @@ static void steep_in_a_plane(void **state)
             steep += abs(((int32_t)v << 16) - first.cy_q16) > 4 * FOCAL * 65536;
         }
         assert_in_range(steep, TALL / 2, TALL);
-        /* 86 degrees off its axis: on the one side in the plane, on the other behind it */
+        /* 86 degrees off its axis: on one side in the plane, on the other behind it */
         int32_t place[2], across;
         const int32_t aside = sign * 15 * FOCAL * 65536;
         assert_true(t3r_rectified_place(&rect, 0, 40 << 16, first.cy_q16 + aside, place, &across));
@@ -388,7 +387,7 @@ static void anything(void **state)
     assert_true(matched > 200);
 }
 
-/* Planes around the direction of motion are tall: as tall as the work memory allows, in pictures of every size. */
+/* Planes around the direction of motion are tall: up to what the work memory allows, in pictures of every size. */
 static void tall(void **state)
 {
     (void)state;

@@ -42,7 +42,7 @@ static void shots_free(shots *s)
     }
 }
 
-/* A runtime in an arena of its own, and what its stages told. */
+/* A runtime in an arena of its own, and the reports of its stages. */
 typedef struct bench {
     t3r_config config;
     t3r_runtime *rt;
@@ -51,7 +51,7 @@ typedef struct bench {
     uint64_t hash;
     int cancel; /* the call of the progress hook in stage depth that cancels, from 1; 0 = none */
     int calls;
-    uint32_t told; /* bit n: stage depth told that n parts are done */
+    uint32_t told; /* bit n: stage depth reported n parts done */
 } bench;
 
 static void on_hash(void *user, t3r_stage stage, uint64_t hash)
@@ -107,7 +107,7 @@ static t3r_status reconstruct(bench *b, t3r_scene *scene)
     return t3r_reconstruct(b->rt, NULL, scene);
 }
 
-/* Of a view: pixels matched for sure, share of these off by more than a tenth, pixels without depth. */
+/* Of a view: pixels matched with confidence, the share of these off by more than a tenth, pixels without depth. */
 typedef struct verdict {
     uint32_t measured, none;
     double wrong;
@@ -156,14 +156,14 @@ static void colours_alone(void **state)
         assert_int_equal(partner, 1 - v);
     }
     assert_true(scene.valid_points > PIXELS && scene.valid_points < 2 * PIXELS);
-    /* what was doubted comes last */
+    /* doubtful points come last */
     for (uint32_t i = 0; i < scene.count; i++) {
         assert_true(scene.gaussians[i].confidence > t3r_confidence_of(T3R_MEASURED | T3R_MARK_DOUBTFUL));
     }
     /* again from the same planes, which now hold depth */
     assert_int_equal(reconstruct(&b, &scene), T3R_OK);
     assert_int_equal(b.hash, hash);
-    /* what a sensor says, even nonsense, is not looked at */
+    /* a sensor's depth is ignored, even nonsense */
     assert_int_equal(t3r_reset(b.rt), T3R_OK);
     add(&b, &s, 0, s.depth[1], 0);
     add(&b, &s, 1, s.depth[0], UINT64_MAX);
@@ -201,7 +201,7 @@ static void unfilled(void **state)
     shots_free(&s);
 }
 
-/* A wall that turns away, with texture at its left and right only. */
+/* Returns a wall that turns away, with texture only at its left and right. */
 static shots wall_shots(void)
 {
     shots s = {.count = 2};
@@ -230,7 +230,7 @@ static shots wall_shots(void)
     return s;
 }
 
-/* Share of the pixels of a view whose depth, whatever it comes from, is off by more. */
+/* Returns the share of a view's pixels whose depth, from any source, is off by more than `part`. */
 static double off_by(const bench *b, const shots *s, uint32_t v, double part)
 {
     t3r_view views[T3R_MAX_VIEWS];
@@ -243,7 +243,7 @@ static double off_by(const bench *b, const shots *s, uint32_t v, double part)
     return (double)off / PIXELS;
 }
 
-/* With planes a bare wall is where it is, and a room of texture no worse. */
+/* With planes a bare wall gets its depth, and a textured room gets no worse. */
 static void planes(void **state)
 {
     (void)state;
@@ -273,7 +273,7 @@ static void planes(void **state)
     }
 }
 
-/* Where a picture is black nothing is shown: neither matched nor filled. */
+/* Black areas show nothing: they are neither matched nor filled. */
 static void nothing_shown(void **state)
 {
     (void)state;
@@ -308,7 +308,7 @@ static void cancelled(void **state)
     assert_int_equal(reconstruct(&b, &scene), T3R_OK);
     const uint64_t hash = b.hash;
     const int calls = b.calls;
-    assert_true(calls >= 6); /* a look and a match a pair */
+    assert_true(calls >= 6); /* a look and a match per pair */
     for (b.cancel = 1; b.cancel <= calls; b.cancel++) {
         assert_int_equal(reconstruct(&b, &scene), T3R_ERR_CANCELLED);
         assert_int_equal(t3r_get_scene(b.rt, &scene), T3R_ERR_STATE);
@@ -401,7 +401,7 @@ static void more_views(void **state)
     t3r_scene scene;
     add_all(&b, &s);
     assert_int_equal(reconstruct(&b, &scene), T3R_OK);
-    /* Ten pairs are compared, then matched: from part 10 on those that suit best, from 15 on others. */
+    /* Ten pairs are compared, then matched: from part 10 on the best pairs, from 15 on others. */
     const uint32_t expected = 0x3ff | 3u << 10 | 1u << 15;
     assert_int_equal(b.told & expected, expected);
     for (uint32_t v = 0; v < 5; v++) {
@@ -416,7 +416,7 @@ static void more_views(void **state)
     shots_free(&s);
 }
 
-/* A view of another place has no depth and adds no points; the others are as they would be. */
+/* A view of another place has no depth and adds no points; the others are unaffected. */
 static void a_stranger(void **state)
 {
     (void)state;
@@ -461,7 +461,7 @@ static void fused(void **state)
         {1000, 510, 200, 200, 1010, 255}, /* held to 255 */
         {1000, 700, 90, 30, 1000, 60},    /* another: the surer, less sure */
         {1000, 700, 30, 90, 1400, 60},    /* */
-        {1000, 700, 50, 50, 1000, 2},     /* of two alike the first, hardly trusted */
+        {1000, 700, 50, 50, 1000, 2},     /* the first of two equal ones, with little confidence */
         {1000, 700, 1, 2, 1400, 2},       /* matched before filled */
         {1000, 700, 2, 1, 1000, 2},       /* */
         {1000, 700, 1, 1, 1000, 1},       /* */
@@ -488,7 +488,7 @@ static void fused(void **state)
     }
 }
 
-/* Units as large as they can be, and as far apart. */
+/* Units as large and as different as possible. */
 static void brought_together_at_any_scale(void **state)
 {
     (void)state;
@@ -519,8 +519,8 @@ static void brought_together_at_any_scale(void **state)
     }
 }
 
-/* A picture with a step of luma in the middle, a pixel with depth on either side: each side takes its own, though the
- * other's may be nearer. */
+/* A picture with a step of luma in the middle and a pixel with depth on either side: each side takes its own, even
+ * if the other one is nearer. */
 static void filled(void **state)
 {
     (void)state;
@@ -555,7 +555,7 @@ static void filled(void **state)
     free(work);
 }
 
-/* In large pictures sums over a slope as steep as there is have more bits than a quotient has room for. */
+/* In large pictures the sums over the steepest possible slope have more bits than a quotient has room for. */
 static void extended_in_large_pictures(void **state)
 {
     (void)state;
@@ -617,7 +617,7 @@ static void extended(void **state)
         print_message("slant %d: %.2f %%\n", slant, 100 * most);
         assert_true(most < 0.04);
     }
-    /* So steep that the plane would end behind the camera, or at it: twice or half of the last depth there was. */
+    /* So steep that the plane would end at the camera or behind it: twice or half of the last depth. */
     for (int sign = -1; sign <= 1; sign += 2) {
         for (int i = 0; i < COUNT; i++) {
             const int known = i % WIDTH < 20;
@@ -632,7 +632,7 @@ static void extended(void **state)
     free(work);
 }
 
-/* The work that matching leaves is enough for filling, whatever the shape. */
+/* The work memory of matching suffices for filling, for any shape. */
 static void filling_fits(void **state)
 {
     (void)state;

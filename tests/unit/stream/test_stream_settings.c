@@ -89,7 +89,7 @@ static void each_setting(void **state)
         assert_memory_equal(first, again, count * sizeof *first);
         const bool clustered = other[i].allocate == T3R_ALLOCATE_PAPER || other[i].allocate == T3R_ALLOCATE_PIXEL;
         /* a stream has one SuperCluster, so that these are one allocation, and refines without the structural loss,
-         * with poses as they are given */
+         * with the given poses */
         if (clustered || other[i].clusters != 0 || other[i].structural != 0 || other[i].align == 0) {
             assert_int_equal(count, usually);
             assert_memory_equal(first, usual, count * sizeof *first);
@@ -97,7 +97,7 @@ static void each_setting(void **state)
     }
 }
 
-/* Where passes are fitted, a keyframe takes what a stream takes at most; else as many as are asked for. */
+/* With fitted passes a keyframe takes the maximum of a stream; otherwise the number requested. */
 static void fitted_passes_have_a_bound(void **state)
 {
     (void)state;
@@ -115,7 +115,7 @@ static void fitted_passes_have_a_bound(void **state)
     assert_memory_not_equal(fitted, more, count * sizeof *fitted);
 }
 
-/* As a damaged arena may hold it: another head than the configuration's, whose weights are not bound. */
+/* A damaged arena may hold another head than the configuration's, whose weights are not bound. */
 static void a_stream_builds_as_it_is_configured(void **state)
 {
     (void)state;

@@ -83,7 +83,7 @@ static void inverts_large(void **state)
 
 /* ---- the lifting in real numbers, written for one line of samples -------------------------------------- */
 
-/* In: n samples; out: the low half, then the high half. middle (may be NULL) gets db2's d1, zeros behind. */
+/* In: n samples; out: the low half, then the high half. middle (may be NULL) gets db2's d1, padded with zeros. */
 static void real_line(double *x, uint32_t n, t3r_wavelet kind, double *middle)
 {
     double low[80] = {0}, high[80] = {0};
@@ -134,8 +134,8 @@ static void real_line(double *x, uint32_t n, t3r_wavelet kind, double *middle)
     memcpy(x + lows, high, highs * sizeof *x);
 }
 
-/* weights[i][k]: what sample k of a line of n adds to coefficient i after all levels (Mallat order); middle
- * likewise to d1 of the last of them. */
+/* weights[i][k]: contribution of sample k of a line of n to coefficient i after all levels (Mallat order); middle
+ * likewise for the last level's d1. */
 static void line_weights(double weights[80][80], double middle[80][80], uint32_t n, uint32_t levels, t3r_wavelet kind)
 {
     for (uint32_t k = 0; k < n; k++) {
@@ -215,7 +215,7 @@ static void proof(void **state)
     }
 }
 
-/* For a coefficient (i, j) the image of black and white that drives it furthest: the integer transform follows the
+/* For a coefficient (i, j), the black and white image that drives it furthest: the integer transform follows the
  * real one to its extreme, so nothing has wrapped round. */
 static void attained(void **state)
 {
@@ -336,7 +336,7 @@ static double magnitude(const int16_t *plane, uint32_t width, uint32_t x, uint32
     return there ? fabs((double)plane[y * width + x]) : 0;
 }
 
-/* From the coefficients in Mallat's layout, in real gains: what each pixel's texture should be. */
+/* Computes each pixel's texture from the coefficients in Mallat's layout, with real gains. */
 static void texture_by_definition(void **state)
 {
     (void)state;
@@ -386,7 +386,7 @@ static void texture_by_definition(void **state)
     }
 }
 
-/* A blank wall has no texture: rounding alone is left. */
+/* A blank wall has no texture, apart from rounding. */
 static void texture_of_nothing(void **state)
 {
     (void)state;
@@ -438,7 +438,7 @@ static void texture_saturates(void **state)
     image_free(x);
 }
 
-/* A coefficient of the coarsest level that has no neighbour to the side is held to 16 bits, as all others are. */
+/* A coefficient of the coarsest level without a neighbour to the side is clamped to 16 bits, like all others. */
 static void held_at_odd_sides(void **state)
 {
     (void)state;

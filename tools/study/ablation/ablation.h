@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What each part of the method is worth: the settings with one of them taken away or changed, as in GaussianTrim3R's
- * Tables 3 to 8. */
+/* Ablations: the settings with one part of the method removed or changed, as in GaussianTrim3R's Tables 3 to 8. */
 #ifndef TRIM3R_TOOLS_ABLATION_H
 #define TRIM3R_TOOLS_ABLATION_H
 
@@ -17,14 +16,15 @@
  * the settings as they are. */
 const char *ablation_name(uint32_t ablation);
 
-/* Whether it changes anything for this head, and for a recording or for a single image on a plane. */
+/* Whether the ablation changes anything for this head, for a recording or for a single image on a plane. */
 bool ablation_applies(uint32_t ablation, const chosen_head *head, bool planar);
 
-/* Changes the settings, and nothing else of them. */
+/* Applies the ablation to the settings and changes no others. */
 void ablation_apply(uint32_t ablation, reconstruction_options *settings);
 
-/* A Markdown table of the means of an evaluation: a line for each scene and ablation, a column for each budget, cells
- * "PSNR / SSIM". Several scenes end in lines of their means, every scene counting once. False without memory. */
+/* Writes a Markdown table of an evaluation's means: a line for each scene and ablation, a column for each budget,
+ * cells "PSNR / SSIM". With several scenes the last lines are means in which every scene counts once. False when
+ * memory runs out. */
 bool ablation_table(FILE *out, const evaluation_row *means, uint32_t count, bool planar);
 
 #endif

@@ -17,7 +17,7 @@ static bool alike(const evaluation_row *a, const evaluation_row *b, part p)
                            : evaluation_same_budget(a, b);
 }
 
-/* Whether no row before it has the same scene, ablation or budget. */
+/* Whether this row is the first with its scene, ablation or budget. */
 static bool is_first(const evaluation_row *rows, uint32_t index, part p)
 {
     for (uint32_t i = 0; i < index; i++) {

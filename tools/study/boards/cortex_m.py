@@ -12,7 +12,7 @@ TOOLS = (COMPILER, EMULATOR, "cc")
 
 
 def lacks():
-    """What else is absent."""
+    """Returns what else is missing."""
     return None
 
 
@@ -53,12 +53,12 @@ def count(board, elf, line, options):
 
 
 def prepare(options):
-    """What all boards share."""
+    """Prepares what all boards share."""
     plugin(options)
 
 
 def measured_with(board, kernels, elf, line, options):
-    """A row of the firmware that runs plain C, or the kernels for its core."""
+    """Measures a row: the firmware with plain C, or with the kernels for its core."""
     line = [*line, f"plain={int(kernels == PLAIN)}"]
     view = elf.with_name(f"{elf.stem}-{kernels.replace(' ', '-')}.ppm")
     said = start(board, elf, [*line, "hashes=1", f"view={view}"])

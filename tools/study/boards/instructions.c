@@ -45,7 +45,7 @@ typedef struct mark {
 
 static mark marks[MARKS_MOST] = {{"start", 0, 0, 0}}; /* the first: before any other */
 static uint32_t mark_count = 1, current;
-static uint64_t executed, since; /* in all; when the current mark began */
+static uint64_t executed, since; /* the total; the count at which the current mark began */
 
 static void change_to(uint32_t next)
 {

@@ -9,7 +9,7 @@ from firmware import BAREMETAL, INCLUDE, READER, ROOT, RUNTIME, run, said_by, wo
 FLAGS = ("-std=c11", "-O2", "-static", "-Wall", "-Wextra", "-Werror")
 CPU = {name: 1 << int(bit) for name, bit in
        re.findall(r"#define T3R_CPU_(\w+) \(1u << (\d+)\)", (RUNTIME / "include" / "trim3r.h").read_text())}
-# Processor, compiler with its flags, emulator, and the instruction sets that it runs with after plain C.
+# Processor, compiler with its flags, emulator, and the instruction sets to run with after plain C.
 TARGETS = (
     ("x86-64", ("gcc",), None, (("SSE4.1", ("SSE41",)), ("AVX2", ("SSE41", "AVX2")),
                                 ("AVX-512", ("SSE41", "AVX2", "AVX512", "VNNI")))),
@@ -26,7 +26,7 @@ TARGETS = (
 
 
 def absent(target):
-    """A tool that is not here, or None."""
+    """Returns a missing tool, or None."""
     _, compiler, emulator, _ = target
     return objects.absent(compiler[0], emulator)
 
@@ -46,13 +46,14 @@ def program(target, options):
 
 
 def lacks(needed, options):
-    """An instruction set that this processor has not, or None; an emulated one has all."""
+    """Returns an instruction set that this processor lacks, or None; an emulated processor has all."""
     has = run(options.program, "doctor").replace("sse4.1", "sse41").split("features", 1)[1].splitlines()[0].split()
     return next((name for name in needed if name.lower() not in has), None)
 
 
 def hashes(made, target, needed, path, options):
-    """What the firmware prints with these instruction sets, {stage: hash}; the whole build's is `final`."""
+    """Returns what the firmware prints with these instruction sets, {stage: hash}; `final` is the hash of the whole
+    build."""
     processor, _, emulator, _ = target
     said = said_by(processor, *([emulator] if emulator else []), pathlib.Path(made), *words(path, options), "hashes=1",
                    f"cpu={sum(CPU[name] for name in needed)}")

@@ -12,7 +12,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 RUNTIME = ROOT / "runtime"
 FOLDER = ROOT / "build" / "objects"
-# No header but the compiler's own, and a section a function: as a firmware is built.
+# Only the compiler's own headers, and a section for each function, as a firmware is built.
 FLAGS = ("-std=c11", "-ffreestanding", "-ffunction-sections", "-fdata-sections", "-Wall", "-Wextra", "-Werror",
          "-I", RUNTIME / "include", "-I", RUNTIME)
 # gcc alone: no loop becomes a call; NAME.ci has the frames and calls of each function
@@ -25,7 +25,7 @@ def sources():
 
 
 def absent(*tools):
-    """The first tool that is not here, or None."""
+    """Returns the first missing tool, or None."""
     return next((tool for tool in tools if tool is not None and shutil.which(tool) is None), None)
 
 
@@ -44,7 +44,7 @@ def command_of(compiler):
 
 
 def is_fresh(made):
-    """Whether nothing that the object was made of has changed since."""
+    """Whether none of the object's sources has changed since it was made."""
     rule = made.with_suffix(".d")
     if not made.exists() or not rule.exists():
         return False

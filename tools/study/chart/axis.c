@@ -4,9 +4,9 @@
 #include <math.h>
 #include <stdio.h>
 
-#define ROOM 0.06       /* of the range, at either end */
-#define LOG_RATIO 5.0   /* of the largest to the smallest value: from here on a logarithm is worth its trouble */
-#define LOG_LEAST 1e-9  /* below, a logarithm tells nothing that was measured */
+#define ROOM 0.06       /* margin at either end, as a share of the range */
+#define LOG_RATIO 5.0   /* ratio of the largest to the smallest value from which an axis is logarithmic */
+#define LOG_LEAST 1e-9  /* smallest value on a logarithmic axis; smaller ones are no measurements */
 #define TICKS_WANTED 8u /* at most; steps are the smallest round ones that do */
 
 static double value_on_scale(const chart_axis *axis, double value)
@@ -22,7 +22,7 @@ double chart_axis_place(const chart_axis *axis, double value)
 
 /* ---- names of values ------------------------------------------------------------------------------------------- */
 
-/* With at most `decimals`, and no zeros behind the point. */
+/* Writes the value with at most `decimals` decimals, without trailing zeros. */
 static void short_number(double value, int decimals, char *text, size_t bytes)
 {
     int length = snprintf(text, bytes, "%.*f", decimals, value);
@@ -35,7 +35,7 @@ static void short_number(double value, int decimals, char *text, size_t bytes)
     }
 }
 
-/* The unit that a size is told in: 1024 times the one before. */
+/* Returns the unit for a size; each unit is 1024 times the next smaller one. */
 static const char *byte_unit(double value, double *unit)
 {
     static const char *const names[] = {"B", "KiB", "MiB", "GiB", "TiB"};
@@ -57,7 +57,8 @@ static void tick_label(chart_unit kind, double value, double step, char *text, s
         name = value >= 1000 ? "s" : "ms";
     }
     char number[CHART_LABEL_BYTES - 8];
-    double digits = step > 0 ? ceil(-log10(step / unit) - 1e-9) : 6; /* of a logarithm's ticks: as many as it takes */
+    double digits =
+        step > 0 ? ceil(-log10(step / unit) - 1e-9) : 6; /* of a logarithmic axis: as many as the tick needs */
     short_number(value / unit, digits < 0 ? 0 : digits > 6 ? 6 : (int)digits, number, sizeof number);
     snprintf(text, bytes, "%s%s%s", number, *name != '\0' ? " " : "", name);
 }
@@ -84,7 +85,7 @@ void chart_value_text(chart_measure measure, double value, char *text, size_t by
 static void add(chart_axis *axis, chart_unit unit, double value, double step)
 {
     double place = axis->logarithmic && value <= 0 ? -1 : chart_axis_place(axis, value);
-    /* a hair of tolerance: the ends of a range that are round themselves */
+    /* tolerance for range ends that are round numbers themselves */
     if (axis->tick_count < CHART_TICKS_MOST && place >= -1e-9 && place <= 1 + 1e-9) {
         chart_tick *tick = &axis->tick[axis->tick_count++];
         tick->value = value == 0 ? 0 : value; /* no -0 */
@@ -118,7 +119,7 @@ static void linear_ticks(chart_axis *axis, chart_unit unit)
     }
 }
 
-/* Powers of two, every so many that at most TICKS_WANTED remain. */
+/* Places ticks at powers of two, thinned until at most TICKS_WANTED remain. */
 static void binary_ticks(chart_axis *axis)
 {
     double low = log2(axis->low), range = log2(axis->high) - low, step = 1;
@@ -131,8 +132,8 @@ static void binary_ticks(chart_axis *axis)
     }
 }
 
-/* 1, 2, 5 times powers of ten, over little more than one of them 1, 2, 3, 5, 7 times; powers alone, or every so many of
- * them, where an axis takes no more. */
+/* Places ticks at 1, 2, 5 times powers of ten; at 1, 2, 3, 5, 7 times for a range of little more than one decade;
+ * only at powers of ten, thinned if need be, where the axis has no room for more. */
 static void decimal_ticks(chart_axis *axis, chart_unit unit)
 {
     static const double few[] = {1, 2, 3, 5, 7}, some[] = {1, 2, 5};
@@ -162,7 +163,7 @@ chart_axis chart_axis_make(chart_measure measure, double least, double most)
         axis.low = least / room;
         axis.high = most * room;
     } else {
-        /* little more than one value: a range about it that has digits to tell, of bytes whole ones */
+        /* hardly more than one value: widen the range until its digits differ, for bytes to whole ones */
         double range = most - least, digits = fmax(fabs(most), 1) * 1e-3;
         bool bytes = about->unit == CHART_BYTES, one = range <= (bytes ? fmax(digits, 16) : digits);
         double room = !one ? range * ROOM : bytes ? fmax(most * 0.05, 16) : 50 * digits;

@@ -19,7 +19,7 @@ typedef struct chart_tick {
 
 typedef struct chart_axis {
     double low, high; /* low < high, both finite; above 0 where logarithmic */
-    bool logarithmic; /* where all values are above 0 and the largest is more than five times the smallest */
+    bool logarithmic; /* if all values are above 0 and the largest is more than five times the smallest */
     bool falling;     /* the better end is the lower: quality axes turn so that up is better */
     chart_tick tick[CHART_TICKS_MOST];
     uint32_t tick_count; /* 2 to CHART_TICKS_MOST, ascending, within the range */
@@ -27,7 +27,7 @@ typedef struct chart_axis {
 
 /* The axis for finite values from `least` to `most`, with some room at either end. Qualities are never logarithmic. */
 chart_axis chart_axis_make(chart_measure measure, double least, double most);
-/* 0 at `low`, 1 at `high`; beyond outside of them. */
+/* Returns 0 at `low`, 1 at `high`, and values beyond these outside the axis. */
 double chart_axis_place(const chart_axis *axis, double value);
 
 /* "31.20 dB", "85 ms", "1.2 s", "3.76 MiB", "0.912"; "-" of NaN. */

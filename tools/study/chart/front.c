@@ -4,7 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* By cost, the better first among equals; what takes no part at the end; then by index, so that the order is one. */
+/* Orders by cost, then by falling quality; excluded places come last. The index breaks ties, so that the order is
+ * unique. */
 static int by_cost(const void *left, const void *right)
 {
     const chart_place *a = left, *b = right;

@@ -17,7 +17,7 @@ const char *const chart_shapes[CHART_SHAPES] = {
     "M0,1.25L1.2,-0.85H-1.2Z",
     "M-0.4,-1.2H0.4V-0.4H1.2V0.4H0.4V1.2H-0.4V0.4H-1.2V-0.4H-0.4Z",
 };
-/* Neighbours differ in hue and in lightness, so that eyes that see fewer colours tell them apart, too. */
+/* Neighbours differ in hue and in lightness, so that colour-blind readers can distinguish them. */
 const char *const chart_colours_light[CHART_COLOURS] = {"#0a7568", "#e0833a", "#3f63d2", "#c43c63",
                                                         "#8a63c9", "#7d8f21", "#2f9fd0", "#6b6f76"};
 const char *const chart_colours_dark[CHART_COLOURS] = {"#53d6c1", "#f3a261", "#8aa6ff", "#ff7d9d",
@@ -43,7 +43,8 @@ static uint32_t first_of(const chart_points *points, uint32_t series)
     return points->series[series].first_point;
 }
 
-/* The value that most series have, the first of those that do: what names need not tell. "" when none tells. */
+/* Returns the most frequent value of a setting (the first of several), which names may omit; "" if no series gives
+ * one. */
 static const char *usual(const chart_points *points, chart_setting s)
 {
     const char *found = "";
@@ -62,7 +63,7 @@ static const char *usual(const chart_points *points, chart_setting s)
     return found;
 }
 
-/* Cut where it does not fit, which settings of CHART_SETTING_BYTES_MOST never do. */
+/* Appends the text, truncated if it does not fit. Settings of at most CHART_SETTING_BYTES_MOST bytes always fit. */
 static void append(char *text, size_t bytes, const char *between, const char *more)
 {
     size_t length = strlen(text), gap = length == 0 ? 0 : strlen(between), count = strlen(more);
@@ -72,20 +73,20 @@ static void append(char *text, size_t bytes, const char *between, const char *mo
     }
 }
 
-/* What became of the points that a method chose: "+finetune", "+head", "" */
+/* Returns how a method makes Gaussians of its points: "+finetune", "+head", or "". */
 static const char *way_of(const char *method)
 {
     return method + strcspn(method, "+");
 }
 
-/* What has a colour of its own: who chose the points, and the head. */
+/* Writes the contestant, which has a colour of its own: the method that chose the points, and the head. */
 static void contestant(const chart_points *points, uint32_t point, char *text, size_t bytes)
 {
     const char *method = setting(points, point, CHART_METHOD);
     snprintf(text, bytes, "%.*s\001%s", (int)(way_of(method) - method), method, setting(points, point, CHART_HEAD));
 }
 
-/* Two series may differ in that one does not tell a setting. */
+/* Names the missing setting where two series differ only in that one of them does not give it. */
 static void name_untold(chart_names *names, const chart_points *points, uint32_t series, const char *const usuals[])
 {
     char *text = names->series[series].text;
@@ -132,7 +133,7 @@ static int name_series(chart_names *names, const chart_points *points, uint32_t 
     return 0;
 }
 
-/* One contestant alone: its variants have the colours, too. */
+/* Gives colours to the variants when there is only one contestant. */
 static void colour_variants(chart_names *names, const chart_points *points, uint32_t contestants)
 {
     for (uint32_t s = 0; s < points->series_count && contestants == 1; s++) {

@@ -8,10 +8,10 @@
 #include "cli/text/markup.h"
 #include "study/chart/svg.h"
 
-/* What is embedded by the build: page.html with the marks <!--style-->, <!--svg-->, <!--data--> and <!--script-->. */
+/* Embedded by the build: page.html with the marks <!--style-->, <!--svg-->, <!--data--> and <!--script-->. */
 extern const char chart_page_html[], chart_page_css[], chart_page_js[];
 
-/* More than that many spreads would make the page slow: it then offers all scenes together alone. */
+/* More spreads would make the page slow. Above this limit the page offers only the view of all scenes together. */
 #define SPREADS_MOST 60000u
 
 typedef struct page {
@@ -320,7 +320,7 @@ static void write_style(FILE *out)
     fputs(chart_page_css, out);
 }
 
-/* Writes the template up to the mark and returns what is behind it. */
+/* Writes the template up to the mark and returns the text after the mark. */
 static const char *up_to(FILE *out, const char *from, const char *mark)
 {
     const char *at = strstr(from, mark);

@@ -77,7 +77,7 @@
     }
     return found;
   }
-  /* The axis for those that are shown, where some are hidden; that of all points else. */
+  /* Returns the axis of the visible points if some are hidden, otherwise the axis of all points. */
   function fitted(axis, measure, list) {
     const whiskers = measures[measure].unit === "ms";
     const values = list.flatMap((p) => { const s = spread(p, measure); return whiskers && many(s) ? [s[0], s[1], s[3]] : [s[0]]; });
@@ -344,7 +344,7 @@
   $("canvas").addEventListener("focusin", (e) => { const g = spotOf(e); if (g) tip(Number(g.dataset.point)); });
   $("canvas").addEventListener("focusout", () => { $("tip").hidden = true; });
   $("canvas").addEventListener("click", (e) => {
-    const near = nearest(e), g = spotOf(e); // a click that an aid makes has no place, but a target
+    const near = nearest(e), g = spotOf(e); // a click from assistive software has no position, only a target
     if (near !== null || g) choose(near ?? Number(g.dataset.point), true);
   });
   $("canvas").addEventListener("keydown", keys);

@@ -87,7 +87,7 @@ static int look_up(const gathering *g, const char *path, uint32_t *number)
     return failed;
 }
 
-/* Writes the path of a cell's render; false: it is in no folder. */
+/* Writes the path of a cell's render; false if no folder has it. */
 static bool find(const gathering *g, const chart_cell *cell, char path[PATH_BYTES])
 {
     const chart_table *table = g->points->table;
@@ -151,7 +151,7 @@ static int gather_cell(const gathering *g, uint32_t index)
     return failed == 0 ? check_size(g, path, shots->render, shots->mask) : failed;
 }
 
-/* A case of every point that is on the front, or of every other one. */
+/* Gathers one case of every point on the front, or of every other point. */
 static int gather_round(const gathering *g, uint32_t round, bool front)
 {
     for (uint32_t p = 0; p < g->points->count; p++) {

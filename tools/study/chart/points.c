@@ -26,7 +26,7 @@ double chart_quantile(const double *ascending, uint32_t count, double q)
 
 /* ---- rows to points -------------------------------------------------------------------------------------------- */
 
-/* A row's point and series while they are only numbered. */
+/* A row's point and series, until they are objects. */
 typedef struct key {
     uint32_t point, series, row;
 } key;
@@ -56,7 +56,7 @@ static int number_rows(const chart_table *table, key *keys, chart_texts *point_k
     return 0;
 }
 
-/* What a sort needs to know beside the elements. */
+/* Context of the comparison. */
 typedef struct sorted_key {
     key is;
     double budget; /* -1: not a number */
@@ -68,7 +68,7 @@ static int compare(uint64_t a, uint64_t b)
     return (a > b) - (a < b);
 }
 
-/* By series, budget from large to small, point, case, row. */
+/* Orders by series, falling budget, point, case, row. */
 static int by_place(const void *left, const void *right)
 {
     const sorted_key *a = left, *b = right;

@@ -12,12 +12,13 @@
 #include "cli/files/whole_file.h"
 #include "host/reason.h"
 
-/* A program rather than its library: linked, that and what it needs would load with every call of ours. */
+/* A program instead of its library: linking the library would load it and its dependencies at every start of trim3r. */
 #define RASTERIZER "rsvg-convert"
 
 extern char **environ;
 
-/* Its exit status with these as its standard input and output; -1 with errno set where it cannot be started. */
+/* Runs the rasterizer with these descriptors as standard input and output. Returns its exit status; -1 with errno
+ * set if it cannot be started. */
 static int convert(int svg, int png, double scale)
 {
     char zoom[32];

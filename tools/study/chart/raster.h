@@ -5,7 +5,8 @@
 
 #include <stddef.h>
 
-/* Draws the SVG text `scale` times as large as it says and writes it to `path`: 0, or -1 with a reason in error[]. */
+/* Draws the SVG text at `scale` times its stated size and writes it to `path`. Returns 0, or -1 with a reason in
+ * error[]. */
 int chart_raster_png(const char *path, const char *svg, size_t bytes, double scale, char *error, size_t error_bytes);
 
 #endif

@@ -11,22 +11,22 @@
 #define WIDTH 1040.0
 #define EDGE 28.0
 #define HEADER 74.0
-#define PANEL_LEFT 74.0 /* within a panel: room for the names of ticks */
+#define PANEL_LEFT 74.0 /* margin within a panel, for the labels of ticks */
 #define PANEL_TOP 30.0
 #define PANEL_RIGHT 14.0
 #define PANEL_BOTTOM 46.0
 #define HEIGHT_ALONE 560.0
 #define HEIGHT_OF_SEVERAL 390.0
 #define LEGEND_ROW 24.0
-#define CHARACTER 6.9   /* about as wide as a character of 13 pixels is in the mean */
-#define LABEL_ROOM 34.0 /* of a budget's name */
+#define CHARACTER 6.9   /* mean width of a character at 13 pixels */
+#define LABEL_ROOM 34.0 /* width of a budget's label */
 #define RADIUS 4.6
 #define RING 8.5
 #define WHISKER_CASES 4u /* fewer have no quartiles worth drawing */
 
 typedef struct panel {
-    double left, top, right, bottom; /* of the plot itself */
-    double label_x, label_y;         /* where the last label of the front stands */
+    double left, top, right, bottom; /* the plot area */
+    double label_x, label_y;         /* position of the front's last label */
 } panel;
 
 /* ---- style ----------------------------------------------------------------------------------------------------- */
@@ -101,7 +101,7 @@ static void write_axes(FILE *out, const panel *p, const chart_view *view)
             cost->title);
 }
 
-/* What the front leaves out of reach lies above it. */
+/* Writes the front; the area that the front does not reach lies above it. */
 static void write_front(FILE *out, const panel *p, const chart_view *view)
 {
     if (view->front_count == 0) {
@@ -165,7 +165,8 @@ static void write_about(FILE *out, const chart_points *points, const chart_view 
     fprintf(out, ": %s, %s%s</title>", quality, cost, spot->front ? ", on the front" : "");
 }
 
-/* Left of the front and above it nothing else can stand; where the plot ends there, to the right and below. */
+/* Writes a budget's label left of the front and above it, where nothing else can be; at the edge of the plot to the
+ * right and below. */
 static void write_budget(FILE *out, panel *p, const chart_points *points, const chart_view *view, uint32_t point)
 {
     const char *budget = points->table->texts.text[points->points[point].setting[CHART_KEEP]];
@@ -224,7 +225,7 @@ static void write_panel(FILE *out, panel *p, const chart_points *points, const c
 
 /* ---- the picture ----------------------------------------------------------------------------------------------- */
 
-/* In pixels, told from the characters. */
+/* Returns a text's width in pixels, estimated from its characters. */
 static double text_width(const char *text)
 {
     double characters = 0;
@@ -246,7 +247,7 @@ static bool has_spots(const chart_points *points, const chart_view *views, uint3
     return false;
 }
 
-/* In columns as wide as the longest name. Writes, or with out NULL measures; returns the height. */
+/* Writes the legend in columns as wide as the longest name, or only measures it with out = NULL. Returns the height. */
 static double write_legend(FILE *out, const chart_points *points, const chart_names *names, const chart_view *views,
                            uint32_t count, double top)
 {

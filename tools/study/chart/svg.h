@@ -11,8 +11,8 @@
 
 typedef enum chart_ground { CHART_GROUND_READER, CHART_GROUND_LIGHT, CHART_GROUND_DARK } chart_ground;
 
-/* `count` views of one quality and one choice of scenes, each with something shown. CHART_GROUND_READER follows the
- * reader's light or dark setting. What `out` makes of it is the caller's to ask. */
+/* Writes `count` views of one quality and one choice of scenes, each with something to show. CHART_GROUND_READER
+ * follows the reader's light or dark setting. The caller checks `out` for write errors. */
 void chart_svg_write(FILE *out, const chart_points *points, const chart_names *names, const chart_view *views,
                      uint32_t count, chart_ground ground);
 

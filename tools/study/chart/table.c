@@ -93,7 +93,7 @@ static const char *cell(const csv_reader *reader, uint32_t index)
     return index == NO_COLUMN ? "" : reader->cell[index];
 }
 
-/* The case of the row, added when it is new. */
+/* Sets the number of the row's case, which is added if it is new. */
 static int number_case(chart_table *table, const csv_reader *reader, const layout *l, uint32_t *number)
 {
     static const char *const parts[] = {"scene", "context", "target"};
@@ -101,7 +101,7 @@ static int number_case(chart_table *table, const csv_reader *reader, const layou
     _Static_assert(sizeof parts == sizeof texts, "a text a part");
     char key[CSV_ROW_BYTES_MOST + 8];
     chart_case is;
-    /* no cell holds the control character between them */
+    /* unambiguous: no cell holds the control character that separates them */
     snprintf(key, sizeof key, "%s\001%s\001%s", texts[0], texts[1], texts[2]);
     if (chart_texts_number(&table->scenes, texts[0], &is.scene) != 0 ||
         chart_texts_number(&table->texts, texts[1], &is.context) != 0 ||
@@ -153,7 +153,7 @@ static int read_measures(chart_row *row, const csv_reader *reader, const layout 
     return 0;
 }
 
-/* Whether a path stays within the folder that it is looked up in. */
+/* Whether a path stays within the folder where it is looked up. */
 static bool stays_within(const char *path)
 {
     for (const char *part = path; part != NULL; part = strchr(part, '/')) {

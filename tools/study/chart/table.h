@@ -10,9 +10,9 @@
 
 #define CHART_FILE_BYTES_MOST (16u << 20)
 #define CHART_SETTING_BYTES_MOST 160u
-#define CHART_ROWS_MOST 500000u /* of all tables together */
+#define CHART_ROWS_MOST 500000u /* in all tables together */
 
-/* What tells one way of building a scene from another. */
+/* The settings that distinguish ways of building a scene. */
 typedef enum chart_setting {
     CHART_METHOD,
     CHART_HEAD,
@@ -40,13 +40,13 @@ typedef enum chart_measure {
     CHART_ARENA_BYTES,
     CHART_SCENE_BYTES,
     CHART_COSTS_END,
-    CHART_GAUSSIANS = CHART_COSTS_END, /* told, no axis */
+    CHART_GAUSSIANS = CHART_COSTS_END, /* shown, but not an axis */
     CHART_MEASURES
 } chart_measure;
 
 typedef struct chart_setting_about {
     const char *column;
-    const char *before, *behind; /* of the value, where a person reads it: "K 300", "8 bits" */
+    const char *before, *behind; /* text around the value: "K 300", "8 bits" */
 } chart_setting_about;
 
 typedef enum chart_unit { CHART_PLAIN, CHART_DECIBELS, CHART_MILLISECONDS, CHART_BYTES } chart_unit;
@@ -54,15 +54,15 @@ typedef enum chart_unit { CHART_PLAIN, CHART_DECIBELS, CHART_MILLISECONDS, CHART
 typedef struct chart_measure_about {
     const char *column, *title;
     chart_unit unit;
-    int decimals;       /* to tell a value in */
-    int less_is_better; /* of all costs, and of perceptual */
+    int decimals;       /* decimals shown */
+    int less_is_better; /* true for all costs and for the perceptual measure */
 } chart_measure_about;
 
 extern const chart_setting_about chart_settings[CHART_SETTINGS];
 extern const chart_measure_about chart_measures[CHART_MEASURES];
 
 typedef struct chart_row {
-    uint32_t setting[CHART_SETTINGS]; /* numbers in `texts`; "" where a table does not tell */
+    uint32_t setting[CHART_SETTINGS]; /* numbers in `texts`; "" where a table does not give it */
     uint32_t scene_case;              /* number in `cases` */
     uint32_t picture;                 /* number in `texts` */
     uint32_t file;                    /* which of the tables */
@@ -76,18 +76,18 @@ typedef struct chart_case {
 
 typedef struct chart_table {
     chart_texts texts, scenes, case_keys;
-    chart_case *cases; /* case_keys.count of them */
+    chart_case *cases; /* case_keys.count entries */
     uint32_t case_room;
     chart_row *rows;
     uint32_t row_count, row_room;
     uint32_t file_count;
-    int has_pictures; /* a table names pictures */
+    int has_pictures; /* whether a table names pictures */
 } chart_table;        /* all zeros: empty */
 
-/* Adds a file's rows: 0, or -1 with "path:line: why" in error[]. A column that a table lacks is empty in all of its
- * rows; columns of other names are passed over. Refused are tables without a quality or without a cost, rows of another
- * number of cells than the heading, numbers that are none or not finite, costs below 0, settings of more than
- * CHART_SETTING_BYTES_MOST bytes, and paths of pictures that are absolute or have a part "..". */
+/* Adds a file's rows. Returns 0, or -1 with "path:line: why" in error[]. A column that a table lacks is empty in all
+ * its rows; columns with other names are ignored. Refuses tables without a quality or a cost, rows whose number of
+ * cells differs from the heading's, cells that are not finite numbers, costs below 0, settings of more than
+ * CHART_SETTING_BYTES_MOST bytes, and picture paths that are absolute or have a part "..". */
 int chart_table_read(chart_table *table, const char *path, char *error, size_t error_bytes);
 int chart_table_parse(chart_table *table, const char *name, const char *text, size_t bytes, char *error,
                       size_t error_bytes);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #define FIRST_SLOTS 64u
-#define PROBES_MOST 160u /* with half of the slots free, 80 are the most that a million texts by chance ask for */
+#define PROBES_MOST 160u /* with half of the slots free, a million random texts need at most 80 */
 
 /* FNV-1a. Texts may be made so that its values collide, hence the bound on probes. */
 static uint32_t hash_of(const char *text)
@@ -17,7 +17,7 @@ static uint32_t hash_of(const char *text)
     return hash;
 }
 
-/* Where the text is, or where it would be; NULL behind PROBES_MOST others. */
+/* Returns the slot that holds the text or would hold it; NULL after PROBES_MOST other texts. */
 static uint32_t *find(const chart_texts *texts, const char *text)
 {
     uint32_t mask = texts->slots - 1, i = hash_of(text) & mask, probes = 0;

@@ -6,13 +6,14 @@
 #include <stdint.h>
 
 typedef struct chart_texts {
-    char **text; /* `count` of them */
+    char **text; /* `count` texts */
     uint32_t count, room;
-    uint32_t *slot; /* open addressing: index + 1, 0 = free; a power of two of them, at most half in use */
+    uint32_t *slot; /* open addressing: index + 1, 0 = free; the size is a power of two, at most half is in use */
     uint32_t slots;
 } chart_texts; /* all zeros: none yet */
 
-/* The text's number, added when it is new: 0, or -1 without memory or where too many collide. */
+/* Finds the text's number; adds the text if it is new. Returns 0, or -1 if out of memory or if too many texts
+ * collide. */
 int chart_texts_number(chart_texts *texts, const char *text, uint32_t *number);
 void chart_texts_free(chart_texts *texts);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One chart: quality against one cost, over all scenes or within one, ready to draw. */
+/* One chart, ready to draw: quality against one cost, over all scenes or for one scene. */
 #ifndef TRIM3R_TOOLS_CHART_VIEW_H
 #define TRIM3R_TOOLS_CHART_VIEW_H
 
@@ -25,14 +25,14 @@ typedef struct chart_spot {
 typedef struct chart_view {
     chart_choice choice;
     chart_axis x, y;   /* cost, quality */
-    chart_spot *spots; /* one a point */
+    chart_spot *spots; /* one per point */
     uint32_t shown;
     uint32_t *front; /* points, from the cheapest to the best */
     uint32_t front_count;
-    uint32_t cases; /* that a complete point has */
+    uint32_t cases; /* number of cases of a complete point */
 } chart_view;
 
-/* 0, or -1 without memory. Nothing to show is no failure: `shown` is 0, and the axes mean nothing. */
+/* Returns 0, or -1 if out of memory. An empty chart is no error: `shown` is 0, and the axes are undefined. */
 int chart_view_make(chart_view *view, const chart_points *points, chart_choice choice);
 void chart_view_free(chart_view *view);
 

@@ -10,7 +10,7 @@
 #include "reconstruction/reconstruction_error.h"
 #include "recording/recording.h"
 
-/* One scene of the context frames, at every budget. */
+/* Adds one scene of the context frames for every budget. */
 static int add_scene(calibration *c, const t3r_recording *recording, const char *path, const uint32_t *context,
                      uint32_t count)
 {
@@ -18,11 +18,11 @@ static int add_scene(calibration *c, const t3r_recording *recording, const char 
     const uint32_t budget_count = sizeof budgets / sizeof *budgets;
     reconstruction_options settings;
     reconstruction_defaults(&settings);
-    settings.keep_percent = 100; /* an arena for the largest */
+    settings.keep_percent = 100; /* sizes the arena for the largest scene */
     settings.config.keep_analysis = 1;
     settings.hash = false;
     settings.config.refine = 0;
-    settings.head = "analytic"; /* what heads see does not depend on the head */
+    settings.head = "analytic"; /* a head's input does not depend on the head */
     settings.context_count = count;
     memcpy(settings.context, context, count * sizeof *context);
 

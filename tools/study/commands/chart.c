@@ -23,7 +23,7 @@
 
 #define ERROR_BYTES 512
 #define MOST_COSTS ((uint32_t)(CHART_COSTS_END - CHART_QUALITIES))
-#define PICTURE_BYTES ((size_t)9 << 18) /* unless told otherwise: as text, in a report below 4 MB */
+#define PICTURE_BYTES ((size_t)9 << 18) /* default: as text, these make a report below 4 MB */
 #define PNG_SCALE 2.0
 
 typedef struct options {
@@ -34,7 +34,7 @@ typedef struct options {
     const char *page, *svg, *png, *scene;
     chart_measure quality; /* CHART_MEASURES = the first that there is */
     chart_measure costs[MOST_COSTS];
-    uint32_t cost_count; /* 0 = those that there are */
+    uint32_t cost_count; /* 0 = the costs in the tables */
     size_t picture_bytes;
     bool dark;
 } options;
@@ -43,7 +43,7 @@ enum { KEY_SVG = 0x100, KEY_PNG, KEY_PICTURES, KEY_MIB, KEY_ALL, KEY_QUALITY, KE
 
 /* ---- arguments ------------------------------------------------------------------------------------------------- */
 
-/* A measure within [from, to) by its column's name. */
+/* Returns the measure within [from, to) that has this column name. */
 static chart_measure measure(struct argp_state *state, const char *option, list_word name, int from, int to)
 {
     for (int m = from; m < to; m++) {
@@ -105,7 +105,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->png = arg;
         return 0;
     case KEY_PICTURES:
-        o->folders[o->folder_count++] = arg; /* as many as arguments: there is room */
+        o->folders[o->folder_count++] = arg; /* one slot per argument: there is room */
         return 0;
     case KEY_MIB:
         o->picture_bytes = (size_t)option_number(state, "picture-mib", arg, 1, 1024) << 20;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The commands of the study, as those in trim3r/commands/commands.h. Two take the place of the product's: they have its
- * options, and more. */
+/* The commands of the study, like those in trim3r/commands/commands.h. Two replace a command of the product and
+ * extend its options. */
 #ifndef TRIM3R_TOOLS_STUDY_COMMANDS_H
 #define TRIM3R_TOOLS_STUDY_COMMANDS_H
 

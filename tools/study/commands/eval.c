@@ -21,7 +21,7 @@ typedef struct study_options {
     const method *methods[METHOD_COUNT]; /* none = trim3r */
     uint32_t method_count;
     bool ablate;
-    uint32_t ablations[ABLATIONS_MOST]; /* those named; none = all that apply */
+    uint32_t ablations[ABLATIONS_MOST]; /* the ablations named; none = all that apply */
     uint32_t ablation_count;
 } study_options;
 

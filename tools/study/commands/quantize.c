@@ -25,12 +25,12 @@
 
 #define MOST_FILE_BYTES (256u << 20)
 #define PERCENTILE_8_BIT 99.99
-/* 16 bits resolve twice the largest value seen finer than any weight does, so nothing needs to be clipped. */
+/* At 16 bits, twice the largest value seen still gives a finer step than the weights have, so nothing is clipped. */
 #define HEADROOM_16_BIT 2.0f
 
 typedef struct options {
     const char *head, *output, *name;
-    char **inputs; /* for calibration: no more than there are arguments */
+    char **inputs; /* for calibration: at most one per argument */
     uint32_t input_count;
     uint32_t weight_bits, activation_bits, width, height;
     double percentile; /* 0: by the activations' width */
@@ -178,7 +178,7 @@ static uint32_t without_range(const float_head *head)
     return 0;
 }
 
-/* Ranges that training settled on for 8 bits clip what is rare; 16 bits can hold it. */
+/* Widens the ranges: those trained for 8 bits clip rare values, which 16 bits can hold. */
 static void widen_ranges(float_head *head)
 {
     for (uint32_t i = 0; i + 1 < head->graph.count; i++) {
@@ -188,7 +188,7 @@ static void widen_ranges(float_head *head)
     }
 }
 
-/* *calibrated: the layers whose ranges were measured. */
+/* Calibrates the head; *calibrated is the number of layers whose ranges were measured. */
 static int calibrate(const options *o, float_head *head, int *calibrated)
 {
     uint32_t lacking = without_range(head);

@@ -28,7 +28,7 @@ typedef struct options {
     stress_outputs to;
     char **inputs;
     uint32_t input_count;
-    uint32_t triplets; /* of each recording */
+    uint32_t triplets; /* per recording */
     bool perturb[MOST_ROWS], scene[MOST_ROWS];
     bool grade[STRESS_GRADES + 1];
 } options;
@@ -169,7 +169,7 @@ static const struct argp_option argp_options[] = {
 
 static const struct argp_child children[] = {{.argp = &reconstruction_settings_argp}, {.argp = &rival_argp}, {0}};
 
-/* Behind the options: what --rows names. */
+/* Adds the names for --rows to the help, after the options. */
 static char *list_rows(int key, const char *text, void *input)
 {
     (void)input;
@@ -247,7 +247,7 @@ static uint32_t grades_of(const options *o)
     return count;
 }
 
-/* Of a case of recorded frames. */
+/* Returns the number of cells of a case of recorded frames. */
 static uint32_t cells_of_case(const options *o)
 {
     uint32_t count = 0;
@@ -266,7 +266,7 @@ static uint32_t cells_of_scenes(const options *o)
     return count * grades_of(o);
 }
 
-/* Memory of a case's cells: rows and renders of the one at hand and of the unperturbed one. */
+/* Memory of a case's cells: rows and renders of the current cell and of the unperturbed one. */
 typedef struct cells {
     stress_row *rows, *unperturbed;
     uint8_t *renders, *plain;
@@ -319,7 +319,7 @@ static int perturb_all(stress_report *report, const options *o, const stress_cas
     return code;
 }
 
-/* A scene is a perturbation of its own kind: its rows are named for it. */
+/* Measures a scene. Its rows are named after its perturbation. */
 static int measure_scene(stress_report *report, const options *o, const stress_case *c, cells *m,
                          const stress_scene *scene, uint32_t grade)
 {
@@ -360,7 +360,7 @@ static void case_size(const options *o, uint32_t side, uint32_t *width, uint32_t
     *height = o->contest.settings.config.height != 0 ? o->contest.settings.config.height : side;
 }
 
-/* Its first triplet. */
+/* Makes room for the first triplet. */
 static int stress_room(stress_report *report, const options *o)
 {
     static const uint32_t frames[] = {0, 2, 1};
@@ -420,7 +420,7 @@ static int stress_recording(stress_report *report, const options *o, const t3r_r
     uint32_t all = t3r_recording_triplet_count(recording), chosen = triplet_count(o, recording);
     int code = CLI_OK;
     for (uint32_t i = 0; i < chosen && code == CLI_OK; i++) {
-        /* of one the first, of several the first of as many equal parts */
+        /* of one triplet the first; of several, the first of each of as many equal parts */
         uint32_t at = (uint32_t)((uint64_t)i * all / chosen);
         code = stress_triplet(report, o, recording, path, t3r_recording_triplet(recording, at));
     }
@@ -450,7 +450,7 @@ static int stress_scenes(stress_report *report, const options *o)
 
 /* ---- recordings -------------------------------------------------------------------------------------------------- */
 
-/* Opens all before the first is measured: a bad one is told at once. */
+/* Opens all before the first is measured, so that a bad one is reported at once. */
 static int open_recordings(const options *o, t3r_recording **recordings, uint32_t *cases)
 {
     for (uint32_t i = 0; i < o->input_count; i++) {

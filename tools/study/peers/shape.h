@@ -12,7 +12,7 @@
 enum { VIEWS = 2, SIDE = 256, CHANNELS_MOST = 32, LAYERS = 3, RUNS_MOST = 101 };
 
 static const struct {
-    size_t inputs, outputs, side; /* of the kernel */
+    size_t inputs, outputs, side; /* shape of the kernel */
 } layers[LAYERS] = {{24, 32, 3}, {32, 32, 1}, {32, 16, 1}};
 
 /* Any bytes: the time does not depend on them. */

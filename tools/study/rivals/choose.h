@@ -12,10 +12,10 @@
  * `count`. False without memory. */
 bool rival_choose(const double *score, uint32_t of, uint32_t count, uint32_t *kept);
 
-/* Importances of the allocation `given`: 65535 at the pixels whose points became the Gaussians kept[count], indices in
- * rising order into `scene`, 0 at all others; of kept == NULL at every retained one. `scene` is the one in `rt`, which
- * keeps its analysis; its Gaussians stand in the order of views, rows and columns. planes[views]: each of the working
- * size, rows without gaps. False where the scene is not that of the masks. */
+/* Makes the importances of the allocation `given`: 65535 at the pixels whose points became the Gaussians kept[count]
+ * (ascending indices into `scene`), 0 elsewhere; with kept == NULL, 65535 at every retained pixel. `scene` is the
+ * scene in `rt`, which keeps its analysis; its Gaussians are ordered by view, row and column. planes[views]: each of
+ * the working size, rows without gaps. False if the scene does not match the masks. */
 bool rival_planes(const t3r_runtime *rt, const t3r_scene *scene, uint32_t views, const uint32_t *kept, uint32_t count,
                   uint16_t *const planes[]);
 

@@ -8,7 +8,7 @@
 #include "cli/cli.h"
 #include "study/rivals/photometric.h"
 
-/* as 3D Gaussian Splatting sets them */
+/* values of 3D Gaussian Splatting */
 #define MOMENTUM 0.9
 #define MEMORY 0.999
 #define LEAST 1e-15
@@ -21,10 +21,10 @@ typedef struct tuner {
     splat_view *views;
     photometric *losses;
     uint32_t view_count;  /* opened of both */
-    splat_gradient *flat; /* of one view */
-    double *gradient;     /* of all parameters, as are the next two */
+    splat_gradient *flat; /* for one view */
+    double *gradient;     /* of all parameters, like the next two */
     double *mean, *square;
-    float *rgb, *rgb_gradient; /* of one view */
+    float *rgb, *rgb_gradient; /* for one view */
 } tuner;
 
 static void tuner_close(tuner *t)

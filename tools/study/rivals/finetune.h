@@ -11,7 +11,7 @@
 
 #include "study/rivals/splat_view.h"
 
-/* What a view should look like. */
+/* The target picture of a view. */
 typedef struct finetune_target {
     splat_camera camera;
     const uint8_t *rgb; /* width x height x 3 */
@@ -27,7 +27,7 @@ typedef struct finetune_rates {
  * itself up and down. Steps that fall over the iterations were no better. */
 extern const finetune_rates finetune_rates_default;
 
-/* Changes the model in place; false without memory, the model then as some iteration left it. */
+/* Changes the model in place. False if out of memory, with the model as some iteration left it. */
 bool finetune(splat_model *model, const finetune_target *targets, uint32_t target_count, uint32_t iterations,
               const finetune_rates *rates);
 

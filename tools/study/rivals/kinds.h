@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How methods choose points, and how Gaussians are made of these. */
+/* How methods choose points, and how Gaussians are made of them. */
 #ifndef TRIM3R_TOOLS_RIVALS_KINDS_H
 #define TRIM3R_TOOLS_RIVALS_KINDS_H
 
 typedef enum method_kind {
     METHOD_TRIM3R, /* allocation and head as the settings say */
-    /* rivals: the head's unpruned scene, of which those Gaussians stay that a score ranks highest (score.h) */
+    /* rivals: the Gaussians of the head's unpruned scene with the highest scores (score.h) */
     METHOD_RANDOM,
     METHOD_EAGLES,
     METHOD_LIGHTGAUSSIAN,
@@ -14,11 +14,11 @@ typedef enum method_kind {
     METHOD_KIND_COUNT
 } method_kind;
 
-/* How the points that a kind chooses become Gaussians. */
+/* How the chosen points become Gaussians. */
 typedef enum method_way {
     METHOD_PLAIN,
     METHOD_FINETUNE, /* their Gaussians are fine-tuned on the context views */
-    METHOD_HEAD,     /* the head makes new ones of them (allocation `given`), refined as ours are */
+    METHOD_HEAD,     /* the head makes new Gaussians at the points (allocation `given`), refined like trim3r's */
     METHOD_WAY_COUNT
 } method_way;
 

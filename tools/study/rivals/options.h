@@ -21,7 +21,7 @@ void option_methods(struct argp_state *state, const char *option, const char *te
  * rivals. */
 extern const struct argp rival_argp;
 
-/* A usage error where the settings do not go with one of the methods. */
+/* Reports a usage error if the settings do not fit one of the methods. */
 void rival_check_settings(struct argp_state *state, const reconstruction_options *settings,
                           const method *const methods[], uint32_t count);
 

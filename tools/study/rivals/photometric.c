@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* SSIM: Wang et al. 2004, with a Gaussian window of 11 x 11, sigma 1.5, zeros beyond the border, channels apart, as 3D
- * Gaussian Splatting has it. */
+/* SSIM: Wang et al. 2004, with a Gaussian window of 11 x 11, sigma 1.5, zeros beyond the border, each channel
+ * separately, as in 3D Gaussian Splatting. */
 #include "study/rivals/photometric.h"
 
 #include <math.h>
@@ -43,7 +43,7 @@ static void window(float taps[TAPS])
     }
 }
 
-/* line[] += weight x what lies `shift` further in from[], zeros beyond */
+/* line[] += weight x from[] shifted by `shift`, zeros beyond */
 static void add_shifted(float *restrict line, const float *restrict from, ptrdiff_t shift, ptrdiff_t count,
                         float weight)
 {
@@ -102,8 +102,8 @@ void photometric_close(photometric *p)
     *p = (photometric){0};
 }
 
-/* The derivatives of the similarity at a pixel with respect to the means of the picture, of its square and of its
- * product with the target take those means' places; the similarity is returned. */
+/* Returns the similarity at a pixel and replaces the means of the picture, of its square and of its product with the
+ * target by the derivatives of the similarity with respect to these means. */
 static float differentiate(float *mean, float *square, float *product, float target_mean, float target_square)
 {
     float a1 = 2 * *mean * target_mean + C1, a2 = 2 * (*product - *mean * target_mean) + C2;

@@ -9,7 +9,7 @@
 
 #define PHOTOMETRIC_SIMILARITY 0.2 /* the share of the second */
 
-/* A picture to be met, and what of the similarity depends on it alone. */
+/* A target picture, and the parts of the similarity that depend on it alone. */
 typedef struct photometric {
     uint32_t width, height;
     float *planes; /* 3 channels x (picture, its mean, the mean of its square); then work */

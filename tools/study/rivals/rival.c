@@ -48,7 +48,7 @@ static rival_source *open_source(method_source *shared, const t3r_recording *rec
     return source;
 }
 
-/* The context views as pictures, of the frames and the size that a build resolved, with the poses that it aligned. */
+/* Opens the context views as pictures: the frames and size that a build resolved, with the poses that it aligned. */
 static int open_pictures(rival_source *source, const reconstruction *r)
 {
     reconstruction_options *o = &source->options;
@@ -62,7 +62,7 @@ static int open_pictures(rival_source *source, const reconstruction *r)
         code = source->rgb[v] == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
                                       : developed_frame(source->recording, source->path, o->context[v], o->config.width,
                                                         o->config.height, source->rgb[v], NULL, &source->camera[v]);
-        t3r_camera aligned; /* a scene from a file has no views: poses are as given */
+        t3r_camera aligned; /* a scene from a file has no views: the poses are the given ones */
         if (code == CLI_OK && t3r_view_camera(r->runtime, v, &aligned) == T3R_OK) {
             source->camera[v] = aligned;
         }
@@ -84,7 +84,7 @@ static bool open_views(rival_source *source)
     return done;
 }
 
-/* A scene that was made elsewhere in the place of an unpruned one. */
+/* Loads a scene made elsewhere instead of an unpruned one. */
 static int load_whole(rival_source *source)
 {
     scene_file scene;
@@ -180,7 +180,7 @@ static int prune(rival_source *source, method_kind kind, uint32_t count, scene_f
     return code;
 }
 
-/* The unpruned scene and its score; *told is of all until then, of the budget of `options`. */
+/* Makes the unpruned scene and its scores. *told covers everything up to here, for the budget of `options`. */
 static int rank_whole(rival_source *source, method_kind kind, const reconstruction_options *options,
                       reconstruction_account *told)
 {

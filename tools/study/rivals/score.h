@@ -13,12 +13,13 @@
 #include "study/rivals/kinds.h"
 #include "study/rivals/splat_view.h"
 
-/* LightGaussian's exponent of the volume, as its authors released it. */
+/* LightGaussian's exponent of the volume, from its authors' code. */
 #define LIGHTGAUSSIAN_BETA 0.1
-/* How many Gaussians of a pixel EfficientGS calls dominant, as its authors released it. */
+/* How many Gaussians of a pixel EfficientGS calls dominant, from its authors' code. */
 #define EFFICIENTGS_MOST 1u
 
-/* That of the rival `kind`; of METHOD_TRIM3R, which ranks no Gaussians, score_random(). The seed is of random alone. */
+/* Computes the score of the rival `kind`; METHOD_TRIM3R, which ranks no Gaussians, gets score_random(). Only random
+ * uses the seed. */
 bool score_of(method_kind kind, const splat_model *model, const splat_view *views, uint32_t view_count, uint32_t seed,
               double *score);
 
@@ -28,9 +29,9 @@ bool score_lightgaussian(const splat_model *model, const splat_view *views, uint
 bool score_pup(const splat_model *model, const splat_view *views, uint32_t view_count, double *score);
 bool score_efficientgs(const splat_model *model, const splat_view *views, uint32_t view_count, double *score);
 
-/* Of a symmetric, positive semi-definite 6 x 6 matrix in double: the logarithm of its determinant, with pivots (of the
- * matrix scaled to a unit diagonal) held above 2^-24, where the sums of floats that it came from end; -HUGE_VAL where a
- * diagonal entry is 0. */
+/* Returns the logarithm of the determinant of a symmetric, positive semi-definite 6 x 6 matrix in double. Pivots (of
+ * the matrix scaled to a unit diagonal) are held above 2^-24, the precision of the float sums that it came from;
+ * -HUGE_VAL if a diagonal entry is 0. */
 double score_pup_log_determinant(double matrix[6][6]);
 
 #endif

@@ -18,7 +18,7 @@ typedef struct dominant {
 typedef struct ranking {
     dominant *pixels;
     uint32_t width;
-    double *weights; /* of a Gaussian, over all its pixels */
+    double *weights; /* per Gaussian, over all its pixels */
 } ranking;
 
 /* The earlier in the order of drawing stays before an equal. */

@@ -25,8 +25,8 @@ typedef struct sensitivity {
 
 typedef struct sweep {
     const splat_view *view;
-    const float *rgb; /* as drawn */
-    float *blended;   /* up to and with the splat at hand */
+    const float *rgb; /* as rendered */
+    float *blended;   /* up to and including the current splat */
     sensitivity *of;
 } sweep;
 
@@ -109,7 +109,7 @@ double score_pup_log_determinant(double matrix[FREE][FREE])
             unit[i][j] = matrix[i][j] / sqrt(matrix[i][i]) / sqrt(matrix[j][j]);
         }
     }
-    /* Gauss elimination without pivoting: all pivots of such a matrix lie in 0..1 */
+    /* Gauss elimination without pivoting: all pivots of such a matrix are in 0..1 */
     for (int k = 0; k < FREE; k++) {
         double pivot = fmax(unit[k][k], LEAST_PIVOT);
         sum += log(pivot);

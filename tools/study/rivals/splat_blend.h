@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A splat over one row of a tile: the innermost step of drawing, walking and differentiating, in loops of a fixed
- * length over all columns, so that the compiler keeps them in vectors. */
+/* A splat over one row of a tile: the innermost step of rendering, walking and differentiating, in loops of a fixed
+ * length over all columns, so that the compiler vectorizes them. */
 #ifndef TRIM3R_TOOLS_RIVALS_SPLAT_BLEND_H
 #define TRIM3R_TOOLS_RIVALS_SPLAT_BLEND_H
 
 #include "study/rivals/splat_view.h"
 
-/* exp(-q) for q in 0..16, within 2e-5 of itself up to q = 6, where alpha matters: a sixteenth of q by its series. */
+/* Returns exp(-q) for q in 0..16, within 2e-5 relative up to q = 6, where alpha matters: the series of q / 16, to
+ * the 16th power. */
 static inline float splat_decay(float q)
 {
     float t = q * (-1.0f / 16);
@@ -17,8 +18,8 @@ static inline float splat_decay(float q)
     return e * e;
 }
 
-/* alpha of columns left .. left + 7 at dy below the centre, 0 where it is below `least` or the pixel is closed;
- * dx gets their distances from the centre. One decision a loop: more, and compilers branch. */
+/* Computes alpha of columns left .. left + 7 at dy below the centre, 0 where it is below `least` or the pixel is
+ * closed; dx gets their distances from the centre. Each loop has one condition: with more, compilers branch. */
 static inline void splat_alphas(const splat *s, float least, float left, float dy,
                                 const float transmittance[SPLAT_TILE], float alpha[SPLAT_TILE], float dx[SPLAT_TILE])
 {

@@ -52,7 +52,7 @@ static void add_row(const splat *s, float least, float left, float dy, int32_t y
         float w = T[i] * alpha[i];
         float own = s->colour[0] * t->g[0][y][i] + s->colour[1] * t->g[1][y][i] + s->colour[2] * t->g[2][y][i];
         behind[i] -= w * own;
-        /* at the cap alpha depends on nothing */
+        /* at the cap, alpha is constant */
         float live = alpha[i] < SPLAT_ALPHA_MOST ? alpha[i] : 0.0f;
         float dq = -live * (T[i] * own - behind[i] / (1 - alpha[i]));
         out->q[i] += dq;

@@ -11,7 +11,7 @@
 
 #include "trim3r.h"
 
-/* Where a Gaussian's parameters stand in its row. */
+/* Offsets of a Gaussian's parameters in its row. */
 enum {
     SPLAT_POSITION = 0,  /* 3: scene units */
     SPLAT_LOG_SCALE = 3, /* 3: natural logarithm of the standard deviations in scene units */
@@ -30,8 +30,8 @@ typedef struct splat_model {
 bool splat_model_of(splat_model *model, const t3r_gaussian *gaussians, uint32_t count);
 void splat_model_free(splat_model *model);
 
-/* The Gaussian nearest to the parameters that the record holds; view and confidence stay as they are. A shape that no
- * record holds stays as it was too. */
+/* Stores the nearest Gaussian that the record can hold; view and confidence keep their values, and so does a shape
+ * that no record can hold. */
 void splat_model_store(const double parameters[SPLAT_PARAMETERS], t3r_gaussian *gaussian);
 
 #endif

@@ -9,7 +9,7 @@
 #define NEAR (1.0 / 32)     /* camera z in scene units at which splats are culled */
 #define WIDEST 16.0         /* |x / z|, |y / z| beyond which they are */
 #define MOST_PIXELS 4096.0  /* entries of the projected factor are held within */
-#define FIELD_OF_SLOPES 1.3 /* slopes of the linearisation are held within so many half fields of view */
+#define FIELD_OF_SLOPES 1.3 /* slopes of the linearisation are clamped to this many half fields of view */
 #define KEY_MOST 2147483647.0
 
 static double clamped(double x, double limit)
@@ -17,7 +17,7 @@ static double clamped(double x, double limit)
     return x < -limit ? -limit : x > limit ? limit : x;
 }
 
-/* What forward and backward share. */
+/* What the forward and the backward pass share. */
 typedef struct projection {
     double t[3];         /* camera coordinates */
     double axes[9];      /* R(q), row-major */
@@ -95,7 +95,7 @@ static bool project(const splat_camera *camera, const double *p, projection *j)
         }
     }
     project_covariance(j);
-    return isfinite(j->det); /* an optimiser may leave anything */
+    return isfinite(j->det); /* an optimiser may produce any value */
 }
 
 /* The pixels within `reach` of `centre`, cut to the picture. */
@@ -136,7 +136,7 @@ splat splat_project(const splat_camera *camera, const double *p, double alpha_le
 
 /* ---- derivatives ----------------------------------------------------------------------------------------------- */
 
-/* From the conic to the projected factor: dg[axis][k]. */
+/* Chains the gradient from the conic to the projected factor: dg[axis][k]. */
 static void chain_conic(const projection *j, const splat_gradient *g, double dg[2][3])
 {
     double A = j->A, B = j->B, C = j->C, square = j->det * j->det;
@@ -149,7 +149,7 @@ static void chain_conic(const projection *j, const splat_gradient *g, double dg[
     }
 }
 
-/* From the rotation matrix to a quaternion of any norm. */
+/* Chains the gradient from the rotation matrix to a quaternion of any norm. */
 static void chain_rotation(const double *quaternion, const double m[9], double *gradient)
 {
     double norm = sqrt(quaternion[0] * quaternion[0] + quaternion[1] * quaternion[1] + quaternion[2] * quaternion[2] +

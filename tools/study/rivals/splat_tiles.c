@@ -34,8 +34,8 @@ bool splat_view_project(splat_view *view, const splat_model *model)
     return splat_view_bin(view);
 }
 
-/* By depth, then index: three stable passes of 11 bits hold the 31 of a key. Returns how many are drawn; they stand in
- * the half of `order` that *sorted gets. */
+/* Sorts by depth, then index: three stable passes of 11 bits cover a key's 31 bits. Returns the number of splats
+ * drawn; *sorted is the half of `order` that holds them. */
 static uint32_t sort(const splat_view *view, uint32_t **sorted)
 {
     enum { BITS = 11, BUCKETS = 1 << BITS };
@@ -78,7 +78,7 @@ static bool make_room(splat_view *view, size_t entries)
     return view->list != NULL;
 }
 
-/* Counts, or with `fill` notes, the splat in every tile that it may reach. */
+/* Counts the splat in every tile that it may reach, or enters it there with `fill`. */
 static void visit_tiles(splat_view *view, uint32_t index, uint32_t *place, bool fill)
 {
     const splat *s = &view->splats[index];
@@ -96,7 +96,7 @@ static void visit_tiles(splat_view *view, uint32_t index, uint32_t *place, bool 
 bool splat_view_bin(splat_view *view)
 {
     uint32_t tiles = view->across * view->down, *sorted, drawn = sort(view, &sorted);
-    /* counts stand two places further, so that filling moves each start to the next one's */
+    /* counts are stored two places further on, so that filling moves each start to the start of the next tile */
     memset(view->first, 0, ((size_t)tiles + 2) * sizeof *view->first);
     for (uint32_t n = 0; n < drawn; n++) {
         visit_tiles(view, sorted[n], view->first + 2, false);

@@ -20,7 +20,7 @@
 #define SPLAT_CLOSED 1e-4f /* transmittance below which a pixel takes no more */
 #define SPLAT_LOW_PASS 0.3 /* px^2 */
 
-/* Tiles are as wide as a row that the compiler keeps in vectors. */
+/* A tile's width is a row that the compiler keeps in vectors. */
 enum { SPLAT_TILE = 8 };
 
 /* A projected Gaussian: q = (a dx^2 + 2 b dx dy + c dy^2) / 2 at dx, dy pixels from its centre. */
@@ -29,7 +29,7 @@ typedef struct splat {
     float a, b, c;
     float opacity;
     float colour[3];
-    int32_t left, top, right, bottom; /* the pixels that it may reach, inclusive; right < left: none */
+    int32_t left, top, right, bottom; /* the pixels that the splat may reach, inclusive; right < left: none */
     uint32_t depth_key;               /* camera z, Q20 */
 } splat;
 
@@ -40,7 +40,7 @@ typedef struct splat_gradient {
 
 typedef struct splat_view {
     splat_camera camera;
-    double alpha_least; /* SPLAT_ALPHA_LEAST; tests set it lower, as the cut has no derivative */
+    double alpha_least; /* SPLAT_ALPHA_LEAST; tests lower it, because the cut has no derivative */
     uint32_t count;     /* Gaussians of the model */
     splat *splats;
     uint32_t across, down; /* tiles */
@@ -58,14 +58,15 @@ void splat_view_close(splat_view *view);
 /* rgb: width x height x 3, 0..1; transmittance: width x height, may be NULL. */
 void splat_view_draw(const splat_view *view, float *rgb, float *transmittance);
 
-/* A row of a tile that one splat touches: alpha, 0 where it tells nothing, and the transmittance before it. */
+/* A row of a tile that one splat touches: alpha, 0 where the splat has no effect, and the transmittance before the
+ * splat. */
 typedef struct splat_row {
     uint32_t gaussian;
     uint32_t x, y, columns; /* pixels x .. x + columns - 1 of row y */
     float alpha[SPLAT_TILE], before[SPLAT_TILE];
 } splat_row;
 
-/* Calls visit() for every row of every splat; those of a pixel front to back. */
+/* Calls visit() for every row of every splat, front to back for each pixel. */
 void splat_view_walk(const splat_view *view, void (*visit)(void *user, const splat_row *row), void *user);
 
 /* Given the picture as drawn and the derivatives of a measure with respect to its values, adds the derivatives with
@@ -78,7 +79,7 @@ void splat_chain(const splat_camera *camera, const double *parameters, const spl
 
 /* ---- inside ------------------------------------------------------------------------------------------------- */
 
-/* One Gaussian as the camera sees it; right < left where it is culled. */
+/* Projects one Gaussian; right < left if it is culled. */
 splat splat_project(const splat_camera *camera, const double *parameters, double alpha_least);
 /* Fills `first` and `list` from the projected splats. */
 bool splat_view_bin(splat_view *view);

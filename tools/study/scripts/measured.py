@@ -14,28 +14,28 @@ PAGES = os.path.join(ROOT, "docs", "study")  # the measured tables and their pic
 DATA = os.path.join(ROOT, "..", "shared", "data")
 PROGRAM = os.path.join(ROOT, "build", "release", "trim3r")
 SCENES = ("hololens_b", "icl_livingroom_synth", "icl_livingroom_noisy_synth", "apc_shelf")  # test scenes with depth
-# What colours alone are measured on; the last two are training scenes.
+# The scenes for measurements of colour alone; the last two are training scenes.
 COLOUR_SCENES = ("clip_nyu_2", "clip_scannet_0", "clip_kitti_0", "strecha_fountain", "hololens_b", "icl_livingroom_synth",
                  "icl_livingroom_noisy_synth", "ngp_fox", "tum_fr3_office")
 COLOUR_CASES = 4  # triplets of a scene
 
 
 def processor():
-    """Its name, as the system has it."""
+    """Returns the processor's name, as the system reports it."""
     with open("/proc/cpuinfo", encoding="utf-8") as file:
         names = [line.split(":", 1)[1].strip() for line in file if line.startswith("model name")]
     return names[0] if names else "an unnamed processor"
 
 
 def compiler():
-    """What made PROGRAM."""
+    """Returns the compiler that built PROGRAM."""
     with open(os.path.join(os.path.dirname(PROGRAM), "CMakeCache.txt"), encoding="utf-8") as file:
         path = next(line.split("=", 1)[1].strip() for line in file if line.startswith("CMAKE_C_COMPILER:"))
     return subprocess.run([path, "--version"], check=True, capture_output=True, text=True).stdout.splitlines()[0]
 
 
 class Measurements:
-    """Files that commands make, a run of `trim3r eval` that was cut off going on where it stopped."""
+    """Keeps files that commands make. A `trim3r eval` that was interrupted resumes where it stopped."""
 
     def __init__(self, script, program=PROGRAM, cache=os.path.join(ROOT, "build", "results")):
         self.script, self.program = script, program
@@ -50,21 +50,21 @@ class Measurements:
             self.test_scenes = json.load(file)["test"]
 
     def path(self, name, command):
-        """Where the file `name` that `command` makes is kept."""
+        """Returns where the file `name` made by `command` is kept."""
         stem, ending = os.path.splitext(name)
         digest = hashlib.sha256(repr(command).encode()).hexdigest()[:8]
         return os.path.join(self.folder, f"{stem}.{digest}{ending}")
 
     def made(self, name, command, resumed=()):
-        """The file `name`, made by `command` with OUT in it, and what that printed. resumed: options with which the
-        command goes on with an OUT that it left unfinished."""
+        """Returns the file `name`, made by `command` with OUT in it, and what the command printed. resumed: options
+        with which the command resumes an unfinished OUT."""
         path = self.path(name, command)
         log = path + ".log"
         if not os.path.exists(path):
             print(f"{self.script}: {name}", file=sys.stderr, flush=True)
             fresh = os.path.join(self.folder, "new." + os.path.basename(path))
             if resumed and os.path.exists(fresh):
-                os.utime(fresh)  # of this very program and command, whatever its file's date
+                os.utime(fresh)  # made by this program and command, whatever the file's date
             with open(log, "w", encoding="utf-8") as file:
                 subprocess.run([*(fresh if c == "OUT" else c for c in command), *resumed], stdout=file, check=True)
             os.replace(fresh, path)
@@ -76,12 +76,12 @@ class Measurements:
         return self.made(f"{scene}.mcap", command)[0]
 
     def told(self, recording):
-        """What `trim3r info` tells of it."""
+        """Returns what `trim3r info` reports for the recording."""
         command = [self.program, "info", recording, "--json"]
         return json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
 
     def bits_epoch(self):
-        """What `trim3r --version` ends in."""
+        """Returns the bits epoch at the end of `trim3r --version`."""
         told = subprocess.run([self.program, "--version"], capture_output=True, check=True, text=True).stdout
         return told.split()[-1]
 
@@ -95,14 +95,15 @@ class Measurements:
 
 
 def even_triplets(root):
-    """[(context, target)] of a scene's transforms.json, evenly chosen: COLOUR_CASES, or as many as there are."""
+    """Returns [(context, target)] of a scene's transforms.json, evenly spaced: COLOUR_CASES, or fewer if there are
+    fewer."""
     every = [t for t in root["trim3r_triplets"] if t["context"][0] != t["context"][1]]
     count = min(COLOUR_CASES, len(every))
     return [(every[i * len(every) // count]["context"], every[i * len(every) // count]["target"]) for i in range(count)]
 
 
 def triplets(info):
-    """[(context, target)] of what told() tells, as eval's options want them."""
+    """Returns [(context, target)] from the result of told(), as eval's options take them."""
     return [(listed(t["context"]), str(t["target"])) for t in info["triplets"]]
 
 

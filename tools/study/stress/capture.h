@@ -20,15 +20,15 @@ typedef struct stress_view {
 typedef struct stress_capture {
     uint32_t width, height;
     uint32_t views;   /* context views; the target is view[views] */
-    bool colour_only; /* recorded without depth: planes of it are zero */
+    bool colour_only; /* recorded without depth: the depth planes are zero */
     double depth_unit;
     stress_view view[T3R_MAX_VIEWS + 1];
 } stress_capture;
 
 /* False without memory; stress_capture_free() is due in any case. Planes are zero, cameras all zero. */
 bool stress_capture_open(stress_capture *capture, uint32_t width, uint32_t height, uint32_t views, double depth_unit);
-/* Through the image stage; the working size is that of `settings`, else the first context frame's. An exit status of
- * cli.h; stress_capture_free() is due in any case. */
+/* Reads the capture through the image stage. The working size comes from `settings`, else from the first context
+ * frame. Returns an exit status of cli.h; call stress_capture_free() in any case. */
 int stress_capture_read(stress_capture *capture, const evaluation_case *what, const reconstruction_options *settings);
 /* False without memory; stress_capture_free() is due in any case. */
 bool stress_capture_copy(stress_capture *copy, const stress_capture *capture);

@@ -25,7 +25,7 @@ bool stress_finite(const gaussian_shape *shape)
 {
     double sum = 0;
     for (int i = 0; i < 3; i++) {
-        sum += log(shape->scale[i]); /* as a .ply holds it */
+        sum += log(shape->scale[i]); /* as in a .ply */
     }
     for (int i = 0; i < 4; i++) {
         sum += shape->rotation[i];

@@ -13,15 +13,15 @@
 
 #define NO_MEMORY "out of memory"
 
-/* What the rows of a cell are measured with. */
+/* Working data for measuring the rows of a cell. */
 typedef struct cell {
     const stress_case *c;
     const stress_contest *contest;
     const perturbation *p;
     double strength;
     stress_row *rows;
-    uint8_t *renders;    /* of what is scored, a row each */
-    uint8_t *now, *last; /* of noisy captures: a row each, and all points */
+    uint8_t *renders;    /* of the scored pictures, one per row */
+    uint8_t *now, *last; /* of noisy captures: one per row, and one of all points */
     double change;       /* of all points, summed over pairs of captures */
     uint32_t changes;
     double all[2]; /* PSNR and SSIM of all points; NaN until measured */
@@ -40,7 +40,8 @@ static void set_status(stress_row *row, stress_status status, const char *reason
     }
 }
 
-/* An arena that suffices for the unperturbed frames alone breaks an invariant; no memory on the host ends the test. */
+/* Breaks an invariant if the arena suffices only for the unperturbed frames. Out of memory on the host ends the
+ * test. */
 static int refuse(const cell *it, stress_row *row, int code, const char *reason)
 {
     if (strcmp(reason, NO_MEMORY) == 0) {
@@ -143,7 +144,7 @@ static int measure_all_points(cell *it, stress_run *run, uint32_t capture)
 
 /* ---- a capture -------------------------------------------------------------------------------------------------- */
 
-/* What changed since the capture before. */
+/* Adds the changes since the previous capture. */
 static void add_changes(cell *it, uint32_t capture)
 {
     uint32_t rows = stress_row_count(it->contest);
@@ -273,7 +274,7 @@ void stress_relate(stress_row *rows, const stress_row *unperturbed, uint32_t cou
         value[STRESS_PSNR_LOST] = base[STRESS_PSNR] - value[STRESS_PSNR];
         value[STRESS_SSIM_LOST] = base[STRESS_SSIM] - value[STRESS_SSIM];
         value[STRESS_BUILD_RATIO] = value[STRESS_BUILD_MS] / base[STRESS_BUILD_MS];
-        /* the rivals' is that of all points, however many there are */
+        /* a rival's value covers all points, however many there are */
         bool ours = method_kind_of(rows[i].method) == METHOD_TRIM3R;
         bool fewer = value[STRESS_GAUSSIANS] < base[STRESS_GAUSSIANS];
         if (ours && (value[STRESS_ARENA_BYTES] > base[STRESS_ARENA_BYTES] ||

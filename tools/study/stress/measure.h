@@ -5,13 +5,14 @@
 
 #include "study/stress/run.h"
 
-/* Fills `rows` (stress_row_count()), but for what takes another cell to tell, and `renders`, as many pictures. `p` may
- * be NULL. Losses are against all points of the same frames until stress_relate(). An exit status of cli.h: a refusal
- * is a result. */
+/* Fills `rows` (stress_row_count()), except values that need another cell, and `renders`, as many pictures. `p` may
+ * be NULL. Losses are against all points of the same frames until stress_relate(). Returns an exit status of cli.h;
+ * a refusal counts as a result. */
 int stress_measure(stress_row *rows, uint8_t *renders, const stress_case *c, const stress_contest *contest,
                    const perturbation *p, uint32_t grade);
 
-/* Fills losses and ratios of `rows` against the unperturbed ones, and breaks rows of trim3r whose arena is another. */
+/* Fills losses and ratios of `rows` against the unperturbed rows, and marks rows of trim3r as broken whose arena
+ * differs. */
 void stress_relate(stress_row *rows, const stress_row *unperturbed, uint32_t count);
 
 #endif

@@ -29,7 +29,7 @@ void stress_album_free(stress_album *album)
     *album = (stress_album){0};
 }
 
-/* What the first method lost at the first budget; less than anything where it was not measured. */
+/* Returns the loss of the first method at the first budget; the lowest value if it was not measured. */
 static double badness(const stress_row *rows)
 {
     return isnan(rows[0].value[STRESS_PSNR_LOST]) ? -INFINITY : rows[0].value[STRESS_PSNR_LOST];
@@ -161,7 +161,7 @@ static void add_cells(html_page *page, const char *const *texts, uint32_t count)
     html_page_table_end_row(page);
 }
 
-/* Why the `count` rows of a cell have no score, or are wrong: a line for all of them where it is the same. */
+/* Writes why the `count` rows of a cell have no score or are wrong; one line if the reason is the same for all. */
 static void add_why(html_page *page, const stress_row *rows, uint32_t count)
 {
     char strength[32], who[64];
@@ -185,7 +185,7 @@ static void add_why(html_page *page, const stress_row *rows, uint32_t count)
     }
 }
 
-/* What no picture shows: cells that were refused, and invariants that were broken. */
+/* Writes what no picture shows: refused cells and broken invariants. */
 static void add_unscored(html_page *page, const stress_row *rows, uint32_t count, uint32_t cell)
 {
     bool any = false;

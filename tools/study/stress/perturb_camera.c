@@ -16,7 +16,8 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* World units, over the first context view; 1 where it has no depth, negative without memory. */
+/* Returns the median depth in world units over the first context view; 1 if it has no depth, negative if out of
+ * memory. */
 static double median_depth(const stress_capture *capture)
 {
     size_t pixels = (size_t)capture->width * capture->height, count = 0;
@@ -60,7 +61,7 @@ static void turn(double q[4], const double r[4])
 bool perturb_pose(stress_capture *capture, double amount, uint32_t seed)
 {
     if (!(amount > 0)) {
-        return true; /* a turn by nothing may round */
+        return true; /* a turn by 0 could still round */
     }
     double median = median_depth(capture);
     for (uint32_t v = 0; v < capture->views && median >= 0; v++) {
@@ -122,7 +123,7 @@ static void sample_colour(const stress_capture *capture, const uint8_t *rgb, dou
     }
 }
 
-/* The depth along the turned camera's z of what lies at (x, y); 0 outside. */
+/* Returns the depth along the turned camera's z of the point at (x, y); 0 outside. */
 static uint16_t sample_depth(const stress_capture *capture, const uint16_t *depth, double x, double y, double z)
 {
     double column = floor(x + 0.5), row = floor(y + 0.5);

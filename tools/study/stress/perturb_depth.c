@@ -7,7 +7,7 @@
 #define LAST_STEP 65535
 #define MOST_DISCS 1000000u
 
-/* What is measured stays measured: at least one step. */
+/* Converts a measured depth, which stays measured: at least one step. */
 static uint16_t step_of(double x)
 {
     return (uint16_t)(x <= 1 ? 1 : x >= LAST_STEP ? LAST_STEP : floor(x + 0.5));
@@ -78,7 +78,7 @@ static size_t without(const stress_capture *capture, const uint16_t *depth)
     return count;
 }
 
-/* Of the pixels that had a depth, at least so many percent lose it; the last disc may take some more. */
+/* At least this percentage of the pixels with depth lose it; the last disc may take some more. */
 bool perturb_blobs(stress_capture *capture, double percent, uint32_t seed)
 {
     size_t pixels = (size_t)capture->width * capture->height;
@@ -97,7 +97,7 @@ bool perturb_blobs(stress_capture *capture, double percent, uint32_t seed)
     return true;
 }
 
-/* Each pixel's depth becomes `steps` with a chance of so many percent. */
+/* Sets each pixel's depth to `steps` with a probability of this percentage. */
 static void replace(stress_capture *capture, double percent, uint32_t seed, uint16_t steps)
 {
     size_t pixels = (size_t)capture->width * capture->height;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What goes wrong with cameras, as changes of a capture: the context views change, the target stays what was recorded
- * (huge coordinates move its camera along). */
+/* Camera faults, as changes of a capture: the context views change, the target stays as recorded (huge coordinates
+ * move its camera along). */
 #ifndef TRIM3R_TOOLS_STRESS_PERTURBATION_H
 #define TRIM3R_TOOLS_STRESS_PERTURBATION_H
 
@@ -13,9 +13,9 @@
 
 typedef struct perturbation {
     const char *name, *unit;
-    double strength[STRESS_GRADES]; /* rising; 0 would change nothing */
+    double strength[STRESS_GRADES]; /* ascending; 0 would change nothing */
     bool each_frame;                /* drawn anew in each capture of a still scene, as noise is */
-    const char *about;              /* for --help */
+    const char *about;              /* text for --help */
     /* False without memory, the capture then half done. */
     bool (*apply)(stress_capture *capture, double strength, uint32_t seed);
 } perturbation;
@@ -23,7 +23,7 @@ typedef struct perturbation {
 /* Stable order; NULL past the last. */
 const perturbation *stress_perturbation(uint32_t index);
 
-/* What every camera does to a still scene: noise of STRESS_STILL_LEVELS levels, depth noise of STRESS_STILL_DEPTH % */
+/* The noise of any camera in a still scene: STRESS_STILL_LEVELS levels, and depth noise of STRESS_STILL_DEPTH % */
 #define STRESS_STILL_LEVELS 2.0
 #define STRESS_STILL_DEPTH 0.2
 void stress_still_noise(stress_capture *capture, uint32_t seed);

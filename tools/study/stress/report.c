@@ -36,7 +36,7 @@ int stress_report_open(stress_report *report, const stress_outputs *to, const st
     return CLI_OK;
 }
 
-/* Cells take about as long as each other. */
+/* Shows the progress; cells take similar times. */
 static void show_progress(const stress_report *report)
 {
     double spent = cli_now() - report->started;

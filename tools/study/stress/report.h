@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where the rows of a stress test go: the terminal or one JSON object, a CSV file, a page of worst cases. */
+/* Outputs for the rows of a stress test: the terminal or one JSON object, a CSV file, a page of worst cases. */
 #ifndef TRIM3R_TOOLS_STRESS_REPORT_H
 #define TRIM3R_TOOLS_STRESS_REPORT_H
 
@@ -25,8 +25,8 @@ typedef struct stress_report {
     double started;
 } stress_report;
 
-/* These report on stderr and return an exit status of cli.h. Opening opens all that can be, so that a bad path is told
- * before the work; stress_report_close() is due in any case. */
+/* These report on stderr and return an exit status of cli.h. Opening opens every output possible, so that a bad path
+ * is reported before the work; call stress_report_close() in any case. */
 int stress_report_open(stress_report *report, const stress_outputs *to, const stress_contest *contest, uint32_t cells);
 /* The rows of a cell, with pictures as stress_album_offer() takes them. */
 int stress_report_cell(stress_report *report, const stress_row *rows, const uint8_t *renders, const uint8_t *plain,

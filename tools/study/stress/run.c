@@ -38,7 +38,8 @@ void stress_case_close(stress_case *c)
     evaluation_views_free(&c->views);
 }
 
-/* The changes that capture `index` shows: those of the perturbation, drawn once or anew, and a sensor's noise. */
+/* Applies the changes of capture `index`: those of the perturbation, with the same or a new draw, and a sensor's
+ * noise. */
 static bool change(stress_capture *capture, const stress_contest *contest, const perturbation *p, double strength,
                    uint32_t index)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What competes in a stress test, and one capture of a case made ready to be built from. */
+/* The contestants of a stress test, and one capture of a case that is ready to build from. */
 #ifndef TRIM3R_TOOLS_STRESS_RUN_H
 #define TRIM3R_TOOLS_STRESS_RUN_H
 
@@ -11,7 +11,7 @@
 
 #define STRESS_KEEPS_MOST 16u
 
-/* Who competes, and how often a still scene is captured. */
+/* The contestants, and how often a still scene is captured. */
 typedef struct stress_contest {
     reconstruction_options settings;
     const method *methods[METHOD_COUNT];
@@ -22,24 +22,24 @@ typedef struct stress_contest {
     uint32_t seed;
 } stress_contest;
 
-/* A row of a cell is [budget][method]. */
+/* Returns the number of rows of a cell, which are [budget][method]. */
 static inline uint32_t stress_row_count(const stress_contest *contest)
 {
     return contest->keep_count * contest->method_count;
 }
 
 typedef struct stress_case {
-    const char *name, *context, *target; /* for the tables */
+    const char *name, *context, *target; /* names for the tables */
     stress_capture base;
     evaluation_views views; /* of the unperturbed frames: target, masks */
     uint32_t budget[STRESS_KEEPS_MOST];
 } stress_case;
 
-/* From `base`, which is filled already and stays the caller's to free. An exit status of cli.h. */
+/* Opens a case from `base`, which is already filled and which the caller frees. Returns an exit status of cli.h. */
 int stress_case_open(stress_case *c, const stress_contest *contest);
 void stress_case_close(stress_case *c);
 
-/* One capture of a case, perturbed, recorded anew, ready to be built from. */
+/* One capture of a case, perturbed, recorded anew, and ready to build from. */
 typedef struct stress_run {
     stress_capture capture;
     uint8_t *bytes;

@@ -6,7 +6,7 @@
 
 #define FOCAL_PER_WIDTH 0.8660254037844386 /* 1 / (2 tan 30 degrees) */
 #define HALF_BASELINE 0.15
-#define SUBSAMPLES 2 /* a side */
+#define SUBSAMPLES 2 /* per side */
 
 static const stress_scene scenes[] = {
     {"scene-plane", "px", {16, 8, 4}, "a chequered, speckled plane: side of its squares", stress_plane},

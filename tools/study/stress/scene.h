@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Scenes that pruning finds hard, drawn on the spot: two context views 0.3 m apart and the target between them, through
- * a 60 degree lens, with exact depth in millimetres and exact poses. Lengths in metres; nothing here draws on chance
- * but through stress/random.h. */
+/* Generated scenes that are hard to prune: two context views 0.3 m apart and the target between them, through a 60
+ * degree lens, with exact depth in millimetres and exact poses. Lengths are in metres; all randomness comes from
+ * stress/random.h. */
 #ifndef TRIM3R_TOOLS_STRESS_SCENE_H
 #define TRIM3R_TOOLS_STRESS_SCENE_H
 
@@ -13,9 +13,9 @@
 
 #define STRESS_SCENE_SIDE 256u /* unless --working says otherwise */
 
-/* What a ray from (x, y, 0) through direction (dx, dy, 1) meets. */
+/* The hit of a ray from (x, y, 0) in direction (dx, dy, 1). */
 typedef struct stress_hit {
-    double depth;  /* along z, as a depth sensor tells it */
+    double depth;  /* along z, as a depth sensor measures it */
     double rgb[3]; /* 0..255 */
 } stress_hit;
 
@@ -25,7 +25,7 @@ typedef stress_hit stress_trace(double x, double y, double dx, double dy, double
 typedef struct stress_scene {
     const char *name, *unit;
     double strength[STRESS_GRADES]; /* rising in difficulty */
-    const char *about;              /* for --help */
+    const char *about;              /* text for --help */
     stress_trace *trace;
 } stress_scene;
 

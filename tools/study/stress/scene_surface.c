@@ -30,7 +30,7 @@ static double cloud(double x, double y, uint32_t seed)
     return above * (1 - v) + below * v;
 }
 
-/* Octaves of it from a period of half a metre down, 0..1 */
+/* Returns octaves of noise from a period of half a metre down, 0..1. */
 static double speckle(double x, double y, uint32_t seed)
 {
     double sum = 0, weight = 0.5;
@@ -48,7 +48,7 @@ static void tint(stress_hit *hit, double r, double g, double b, double light)
     hit->rgb[2] = b * light;
 }
 
-/* A papered wall at depth z. */
+/* Returns the hit on a papered wall at depth z. */
 static stress_hit paper(double x, double y, double dx, double dy, double z)
 {
     stress_hit hit = {.depth = z};
@@ -71,11 +71,12 @@ stress_hit stress_plane(double x, double y, double dx, double dy, double pixel, 
     return hit;
 }
 
-/* 2.5 metres away on the axis, turned about the vertical; light falls off across it, nothing else is on it. */
+/* Draws a wall 2.5 metres away on the axis, turned about the vertical; the light falls off across it, and it has no
+ * other texture. */
 stress_hit stress_wall(double x, double y, double dx, double dy, double pixel, double slant)
 {
     (void)pixel;
-    double tangent = tan(slant * RADIANS); /* tan(55) x tan(30) < 1: every ray meets it */
+    double tangent = tan(slant * RADIANS); /* tan(55) x tan(30) < 1: every ray meets the wall */
     stress_hit hit = {.depth = (2.5 + tangent * x) / (1 - tangent * dx)};
     double at_x = x + dx * hit.depth, at_y = y + dy * hit.depth;
     tint(&hit, 215, 212, 205, 1 / (1 + 0.02 * (at_x * at_x + at_y * at_y)));
@@ -113,7 +114,7 @@ static bool leaf(stress_hit *hit, double x, double y, double column, double row,
     return true;
 }
 
-/* Leaves face the camera in eight layers from one metre to 2.4 before a papered wall. */
+/* Draws leaves that face the camera, in eight layers from one metre to 2.4, before a papered wall. */
 stress_hit stress_foliage(double x, double y, double dx, double dy, double pixel, double length)
 {
     for (uint32_t layer = 0; layer < LEAF_LAYERS; layer++) {
@@ -130,13 +131,13 @@ stress_hit stress_foliage(double x, double y, double dx, double dy, double pixel
     return paper(x, y, dx, dy, BACKDROP);
 }
 
-/* A papered wall two metres away with an upright mirror around its middle that shows squares 1.5 metres behind the
- * camera; sensors that project a pattern measure its glass. */
+/* Draws a papered wall two metres away with an upright mirror around its middle, which shows squares 1.5 metres
+ * behind the camera. Sensors that project a pattern measure the glass. */
 stress_hit stress_mirror(double x, double y, double dx, double dy, double pixel, double share)
 {
     (void)pixel;
     double at_x = x + dx * 2;
-    if (fabs(at_x) > share / 100 * 2 / 1.7320508075688772) { /* half the width that is seen from its middle */
+    if (fabs(at_x) > share / 100 * 2 / 1.7320508075688772) { /* half the visible width from the middle */
         return paper(x, y, dx, dy, 2);
     }
     stress_hit hit = {.depth = 2};

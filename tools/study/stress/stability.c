@@ -16,11 +16,11 @@
 /* Median of the difference of two normal numbers, in their deviation: 0.6745 sqrt(2) */
 #define MEDIAN_DIFFERENCE 0.9539
 
-/* A scene by the pixels that it came from. */
+/* A scene indexed by the pixels of its Gaussians. */
 typedef struct snapshot {
     uint32_t *owner; /* views x pixels: the Gaussian, or NOBODY */
-    double (*at)[3]; /* of each Gaussian, world units from the frame's origin */
-    double *spacing; /* between retained pixels where it stands, world units */
+    double (*at)[3]; /* per Gaussian, world units from the frame's origin */
+    double *spacing; /* between retained pixels around the Gaussian, world units */
     uint32_t count;
 } snapshot;
 
@@ -79,7 +79,7 @@ static bool fill_places(snapshot *s, const t3r_scene *scene, const stress_run *r
     return s->at != NULL && s->spacing != NULL;
 }
 
-/* The pixels of a rival's scene: those of the unpruned one that its score chose. */
+/* Fills in the pixels of a rival's scene: the pixels of the unpruned scene that its score chose. */
 static bool fill_rival(snapshot *s, const rival_source *source, method_kind kind)
 {
     uint32_t *kept = malloc(((size_t)s->count + 1) * sizeof *kept);
@@ -91,7 +91,7 @@ static bool fill_rival(snapshot *s, const rival_source *source, method_kind kind
     return done;
 }
 
-/* Ours before it was tuned. */
+/* Fills in trim3r's scene before fine-tuning. */
 static int fill_untuned(snapshot *s, const stress_run *run, const reconstruction_options *options)
 {
     reconstruction plain;
@@ -191,7 +191,7 @@ void stress_judge_still(stress_row *row, uint32_t clusters, double noise)
     }
 }
 
-/* Capture `capture` of every row, compared with the one before. */
+/* Adds capture `capture` of every row, compared with the previous capture. */
 static int add_capture(stress_row *rows, snapshot *last, const stress_case *c, const stress_contest *contest,
                        uint32_t capture)
 {

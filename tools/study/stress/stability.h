@@ -25,22 +25,22 @@
 #define STRESS_JUDGED_CLUSTERS 300   /* the paper's */
 #define STRESS_MASK_CHANGED_MOST 0.5 /* share of the retained pixels */
 #define STRESS_MASK_CHANGED_ONE 0.6  /* likewise */
-#define STRESS_MOTION_MOST 0.75      /* of the spacing of retained pixels */
+#define STRESS_MOTION_MOST 0.75      /* as a share of the spacing of retained pixels */
 
 /* Shares: of the retained pixels with so many Gaussians; of the spacing, of which the depth's noise is `noise`. */
 double stress_mask_changed_most(double gaussians, uint32_t clusters);
 double stress_motion_most(double noise);
 
-/* The median way of a Gaussian between two captures that the depth's noise accounts for, as a share of the spacing of
- * so many Gaussians; 0 without any. */
+/* Returns the median motion of a Gaussian between two captures that the depth's noise explains, as a share of the
+ * spacing of so many Gaussians; 0 without Gaussians. */
 double stress_still_motion(const stress_capture *capture, double gaussians);
 
-/* Fills mask_changed and motion of the unperturbed rows of a case (stress_row_count()) that were measured, and breaks
- * those beyond the bounds. The retained pixels of +finetune are those of its method without. At least two captures. An
- * exit status of cli.h. */
+/* Fills mask_changed and motion of a case's measured unperturbed rows (stress_row_count()), and marks rows beyond
+ * the bounds as broken. +finetune has the retained pixels of its method without +finetune. Needs at least two
+ * captures. Returns an exit status of cli.h. */
 int stress_stability(stress_row *rows, const stress_case *c, const stress_contest *contest);
 
-/* Breaks a row of trim3r whose mask_changed or motion is beyond its bounds; noise: stress_still_motion(). */
+/* Marks a row of trim3r as broken if mask_changed or motion is beyond its bounds; noise: stress_still_motion(). */
 void stress_judge_still(stress_row *row, uint32_t clusters, double noise);
 
 #endif

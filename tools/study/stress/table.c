@@ -33,7 +33,7 @@ static const char *const names[] = {"scene", "context", "target", "perturbation"
                                     "unit",  "method",  "keep",   "status",       "reason"};
 enum { NAMES = sizeof names / sizeof *names };
 
-/* The cells that are not values, in the order of `names`. */
+/* Writes the cells that are not values, in the order of `names`. */
 static void describe(const stress_row *row, uint32_t column, char *text, size_t bytes)
 {
     char strength[32], keep[32];
@@ -125,7 +125,7 @@ double stress_mean(const stress_row *rows, uint32_t count, const stress_row *lik
 
 /* ---- terminal --------------------------------------------------------------------------------------------------- */
 
-/* What is shown of a line; the unperturbed line of a loss shows what is lost from. */
+/* What a line shows; the unperturbed line of a loss shows the reference value. */
 static const struct {
     const char *heading;
     stress_value value, unperturbed;

@@ -10,15 +10,15 @@
 
 void stress_csv_header(csv_table *table);
 void stress_csv_row(csv_table *table, const stress_row *row);
-/* An object of all columns, null where one does not apply; NULL without memory. */
+/* Returns an object of all columns, null where one does not apply; NULL if out of memory. */
 cJSON *stress_json(const stress_row *row);
 
-/* The mean over the cases of what is like `like` in perturbation, strength, method and budget; NaN where none was
- * measured. `refused` (may be NULL): how many of them were. */
+/* Returns the mean over the cases with the perturbation, strength, method and budget of `like`; NaN if none was
+ * measured. `refused` (may be NULL): the number of refused ones. */
 double stress_mean(const stress_row *rows, uint32_t count, const stress_row *like, stress_value value,
                    uint32_t *refused);
 
-/* A table a budget and measure: a line a perturbation and strength, a column a method. */
+/* Prints a table for each budget and measure: a line for each perturbation and strength, a column for each method. */
 void stress_print_tables(FILE *out, const stress_row *rows, uint32_t count, const stress_contest *contest);
 /* "0.5 stops", "4 px", "10^3", "" */
 void stress_strength(const stress_row *row, char *text, size_t bytes);

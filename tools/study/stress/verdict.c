@@ -9,7 +9,7 @@
 #include "study/stress/table.h"
 
 #define MIDDLE_GRADE 2u
-#define FLICKER_MOST 1.2 /* times that of all points: what is wanted, not guaranteed */
+#define FLICKER_MOST 1.2 /* relative to all points: a goal, not a guarantee */
 #define LEVEL 0.01       /* dB: no difference */
 #define SLOWER_THAN 1.5  /* times the unperturbed build: worth a line */
 

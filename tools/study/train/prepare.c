@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The runtime's own analysis, budget and head features for the training, so that a head learns from what it will see.
- */
+/* The runtime's own analysis, budget and head features, so that a head is trained on what it will see. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,11 +15,11 @@
 
 typedef struct prepare_settings {
     uint32_t gaussians, allocate, gamma_q8, clusters, cluster_batches, seed;
-    uint32_t rival; /* a method_kind: those points are retained that it keeps of the scene that the shipped `small`
-                       makes of all; METHOD_TRIM3R: by the allocation */
+    uint32_t rival; /* a method_kind: retains the points that it keeps of the scene that the shipped `small` makes of
+                       all points; METHOD_TRIM3R: by the allocation */
 } prepare_settings;
 
-/* Context views, one behind the other. */
+/* Context views, one after the other. */
 typedef struct prepare_views {
     uint32_t count, width, height;
     const uint8_t *rgb;       /* [count][height][width][3] */
@@ -29,12 +28,12 @@ typedef struct prepare_views {
     const double *poses;      /* [count][7]: camera to world, unit quaternion w x y z, centre in metres */
 } prepare_views;
 
-/* What is known of a retained point. Lengths in metres, axes those of its camera. */
+/* The description of a retained point. Lengths are in metres, axes are those of the point's camera. */
 typedef struct prepared_point {
     float x, y;                       /* pixel */
-    float spacing;                    /* of retained points about it, pixels */
+    float spacing;                    /* of retained points around it, pixels */
     float position[3];                /* on the surface */
-    float tangent_u[3], tangent_v[3]; /* of the surface, metres a pixel */
+    float tangent_u[3], tangent_v[3]; /* tangents of the surface, metres a pixel */
 } prepared_point;
 
 static float metres(const t3r_runtime *rt, int32_t value, int fraction)
@@ -75,13 +74,13 @@ static uint32_t note_points(const t3r_runtime *rt, const t3r_head_input *input, 
     return count;
 }
 
-/* A runtime at work, and what it needs kept. */
+/* A running runtime and its memory. */
 typedef struct preparation {
     void *arena;
     t3r_runtime *rt;
     t3r_camera cameras[T3R_MAX_VIEWS];
     t3r_scene scene;
-    uint16_t *importance; /* of a rival: a plane a view */
+    uint16_t *importance; /* for a rival: one plane per view */
 } preparation;
 
 static uint32_t measured_points(const prepare_views *views)
@@ -109,7 +108,7 @@ static t3r_config config_of(const prepare_views *views, const prepare_settings *
     config.clusters = settings->clusters;
     config.cluster_batches = settings->cluster_batches;
     config.seed = settings->seed;
-    config.refine = 0; /* of the scene nothing is read */
+    config.refine = 0; /* the scene itself is not read */
     return config;
 }
 
@@ -158,7 +157,7 @@ static t3r_status add_view(preparation *p, const prepare_views *views, uint32_t 
     return t3r_add_view(p->rt, &frame, &p->cameras[v]);
 }
 
-/* Of the scene of all points those that the rival keeps. */
+/* Retains the points that the rival keeps of the scene of all points. */
 static t3r_status retain_for(preparation *p, const prepare_views *views, const prepare_settings *settings)
 {
     const size_t pixels = (size_t)views->width * views->height;
@@ -189,9 +188,9 @@ static t3r_status analyse(preparation *p, const prepare_views *views, const prep
     return status == T3R_OK && settings->rival != METHOD_TRIM3R ? retain_for(p, views, settings) : status;
 }
 
-/* Pictures taken through the runtime together. Results, a view behind the other: `features`
- * [height][width][T3R_FEATURES]; `confidence` [height][width]; `points` of all views without gaps, in raster order,
- * counts[views] of each. 0, or the negative t3r_status with which the runtime refuses. */
+/* Takes pictures through the runtime together. Results, view after view: `features` [height][width][T3R_FEATURES];
+ * `confidence` [height][width]; `points` of all views without gaps, in raster order, counts[views] of each. Returns
+ * 0, or the runtime's negative t3r_status. */
 int32_t prepare(const prepare_views *views, const prepare_settings *settings, int8_t *features, uint8_t *confidence,
                 prepared_point *points, uint32_t *counts)
 {

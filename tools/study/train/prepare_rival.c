@@ -11,7 +11,7 @@
 typedef struct ranking {
     splat_model model;
     splat_view views[T3R_MAX_VIEWS];
-    double *score;  /* of each Gaussian */
+    double *score;  /* per Gaussian */
     uint32_t *kept; /* indices */
 } ranking;
 

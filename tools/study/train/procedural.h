@@ -102,7 +102,7 @@ static inline int32_t floori(float x)
 enum {
     TILE_SIDE_LOG2 = 9, /* tiles repeat after 512 texels */
     TILE_SIDE = 1 << TILE_SIDE_LOG2,
-    TILE_TEXELS = (TILE_SIDE * TILE_SIDE * 4 - 1) / 3, /* with all coarser levels */
+    TILE_TEXELS = (TILE_SIDE * TILE_SIDE * 4 - 1) / 3, /* including all coarser levels */
     GLYPH_COUNT = 96,
     GLYPH_SIDE = 16,
 };
@@ -112,12 +112,12 @@ typedef enum {
     TILE_NATURAL, /* 1/f^1.1 */
     TILE_SMOOTH,  /* 1/f^1.7 */
     TILE_RIDGED,  /* cracks, veins */
-    TILE_LEAVES,  /* grey dead leaves, large ones seldom */
-    TILE_PEBBLES, /* grey dead leaves of one order of sizes */
+    TILE_LEAVES,  /* grey dead leaves, with few large ones */
+    TILE_PEBBLES, /* grey dead leaves of similar sizes */
     TILE_COUNT,
 } tile_kind;
 
-/* What all pictures share: tiles with mean 0 and variance 1 (Q12, clipped at 8), and glyphs (signed distance from the
+/* Shared by all pictures: tiles with mean 0 and variance 1 (Q12, clipped at 8), and glyphs (signed distance from the
  * stroke's edge, 1/16 glyph heights, positive inside) */
 typedef struct {
     int16_t tiles[TILE_COUNT][TILE_TEXELS];
@@ -130,29 +130,29 @@ typedef enum {
     PATTERN_CHECKER,
     PATTERN_BRICKS,
     PATTERN_BOOKS,   /* stripes of random widths and colours */
-    PATTERN_MOTTLED, /* two colours, the border a contour of a tile */
+    PATTERN_MOTTLED, /* two colours, separated at a contour of a tile */
     PATTERN_TILE,    /* two colours mixed by a tile */
     PATTERN_GRAIN,   /* a tile stretched along u: wood, brushed metal, grass */
     PATTERN_TEXT,
     PATTERN_COUNT,
 } pattern_kind;
 
-/* A surface's reflectance over (u, v), whose unit the caller chooses: pixels for leaves, metres for rooms */
+/* A surface's reflectance over (u, v); the caller chooses their unit: pixels for leaves, metres for rooms */
 typedef struct {
     float colour[3][3];
     pattern_kind pattern;
     uint32_t seed;
-    float period;    /* of stripes, checks, bricks, text lines; the whole tile's width for tiles; in u's unit */
+    float period;    /* period of stripes, checks, bricks, text lines; width of the whole tile for tiles; in u's unit */
     float duty;      /* share of the first colour, 0..1 */
     float ca, sa;    /* the pattern's rotation */
     tile_kind tile;  /* of the pattern */
-    tile_kind weave; /* a tile that varies lightness everywhere */
+    tile_kind weave; /* a tile that varies the lightness everywhere */
     float weave_width, weave_amount, tint_amount;
-    float grain_amount; /* of the same tile 9 times finer */
+    float grain_amount; /* amount of the same tile, 9 times finer */
     float offset[2];
 } material;
 
-/* A place's colours: how often each family occurs, and its light */
+/* The colours of a place: how often each family occurs, and its light */
 typedef struct {
     float weight[16];
     float light[3];
@@ -160,7 +160,7 @@ typedef struct {
 
 /* false: no memory */
 bool atlas_fill(atlas *shared, uint64_t seed);
-/* A tile's value at (u, v) in turns of the tile, seen at `footprint` turns a pixel */
+/* Returns a tile's value at (u, v) in turns of the tile, filtered for `footprint` turns a pixel */
 float tile_at(const atlas *shared, tile_kind tile, float u, float v, float footprint);
 /* The glyph's signed distance at (x, y) in 0..1, in glyph heights, positive inside */
 float glyph_at(const atlas *shared, uint32_t glyph, float x, float y);
@@ -174,7 +174,7 @@ void material_at(const atlas *shared, const material *m, float u, float v, float
 
 /* ---- the camera ------------------------------------------------------------------------------------------------- */
 
-enum { SUBSAMPLES = 3 }; /* a pixel is seen by 3 x 3 rays */
+enum { SUBSAMPLES = 3 }; /* 3 x 3 rays per pixel */
 
 typedef struct {
     float exposure; /* linear gain */
@@ -182,7 +182,7 @@ typedef struct {
     float vignette;               /* loss of light in the corner, 0..1 */
     float blur;                   /* standard deviation of the optics, pixels */
     float sharpen;                /* unsharp masking after the tone curve */
-    float contrast;               /* of the S-shaped tone curve, 0 = sRGB's */
+    float contrast;               /* contrast of the S-shaped tone curve, 0 = sRGB's */
     float shot_noise, read_noise; /* standard deviations at white and black, of full scale */
     float saturation;
 } camera_look;
@@ -194,7 +194,8 @@ float look_exposure(const float *linear, int width, int height, float key);
 /* linear: [height][width][3], overwritten; scratch: as large; image: [height][width][3] */
 void develop(const camera_look *look, generator *noise, int width, int height, float *linear, float *scratch,
              uint8_t *image);
-/* Three passes of a running mean that together come near a Gaussian; planes of `channels`; scratch as large as data */
+/* Blurs by three passes of a running mean, which approximate a Gaussian; planes of `channels`; scratch is as large
+ * as data */
 void blur_planes(float *data, float *scratch, int width, int height, int channels, float sigma);
 
 /* ---- what Python calls ------------------------------------------------------------------------------------------ */

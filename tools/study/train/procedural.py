@@ -28,7 +28,7 @@ import native
 PARTS = ("material", "camera", "leaves", "furniture", "light", "poster", "view", "path", "room")
 SOURCES = tuple(f"procedural_{part}.c" for part in PARTS)
 HEADERS = ("procedural.h", "procedural_scene.h")
-# No contraction and no fast-math: -march=native must not change what is drawn
+# No contraction and no fast-math: -march=native must not change the pictures
 FLAGS = ("-std=gnu11", "-O3", "-march=native", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
 
 _loaded = {}
@@ -67,7 +67,7 @@ def _mix(*parts):
 
 
 class Procedural:
-    """A stream of pictures. `index` counts what was drawn: set it to go on where a stream stopped."""
+    """A stream of pictures. `index` counts the pictures drawn; set it to resume a stream."""
 
     def __init__(self, seed, index=0, build_folder=None, flags=FLAGS):
         self.seed, self.index = seed, index
@@ -120,14 +120,14 @@ def _smooth(field, width):
 
 
 def _blobs(rng, shape, share):
-    """A mask of irregular patches that covers about `share` of the picture."""
+    """Returns a mask of irregular patches that covers about `share` of the picture."""
     width = int(rng.integers(2, max(3, min(shape) // 16)))
     field = _smooth(rng.standard_normal(shape, dtype=np.float32), width)
     return field < np.quantile(field, share)
 
 
 def depth_edges(depth, ratio=0.03):
-    """Pixels beside a jump of depth by more than `ratio` of it."""
+    """Returns the pixels next to a jump of depth by more than `ratio` of it."""
     edge = np.zeros(depth.shape, bool)
     for axis in (0, 1):
         near, far = (depth[1:], depth[:-1]) if axis == 0 else (depth[:, 1:], depth[:, :-1])
@@ -138,7 +138,8 @@ def depth_edges(depth, ratio=0.03):
 
 
 def depth_lattice(rng, shape):
-    """A mask of the pixels that another camera's depth samples fall on, a coarser lattice turned and stretched."""
+    """Returns a mask of the pixels that another camera's depth samples fall on: a coarser lattice, turned and
+    stretched."""
     height, width = shape
     step, angle = rng.uniform(1.2, 4.0), rng.uniform(-0.2, 0.2)
     aspect, bend = rng.uniform(0.9, 1.1), rng.uniform(-0.02, 0.02)
@@ -202,14 +203,14 @@ def degrade_depth(rng, depth, holes=True, noise=True):
             gone |= made > np.quantile(made, rng.uniform(0.7, 0.99))
         if rng.random() < 0.2:
             gone |= rng.random(shape) < rng.uniform(0.0, 0.1)
-        if gone.mean() < 0.95:  # a frame without depth teaches nothing
+        if gone.mean() < 0.95:  # a frame without depth is useless for training
             made[gone] = 0
     return made.astype(np.float32, copy=False)
 
 
 def expose(rng, image):
-    """The same picture as another exposure shows it: gain within 0.7 stops, white balance within a few per cent, a
-    slight change of contrast; computed in linear light. uint8 to uint8, `image` is left alone."""
+    """Returns the picture at another exposure: gain within 0.7 stops, white balance within a few per cent, a slight
+    change of contrast; computed in linear light. uint8 to uint8, `image` is not changed."""
     rng = _rng(rng)
     gain = 2 ** float(np.clip(0.3 * rng.standard_normal(), -0.7, 0.7))
     gains, gamma = gain * (1 + 0.03 * rng.standard_normal(3)), 2 ** (0.06 * rng.standard_normal())
@@ -232,8 +233,8 @@ def _depth_picture(depth):
 
 
 def contact_sheet(seed, rooms=False, size=256, columns=6, rows=4):
-    """Leaves: a picture a cell. Rooms: rows of three views, their middle one's depth, that depth degraded, and the
-    middle view exposed otherwise."""
+    """Returns a sheet. Leaves: a picture a cell. Rooms: rows of three views, the middle one's depth, that depth
+    degraded, and the middle view at another exposure."""
     source, rng, cells = Procedural(seed), np.random.default_rng(seed), []
     while len(cells) < rows * columns:
         if rooms:
@@ -247,7 +248,7 @@ def contact_sheet(seed, rooms=False, size=256, columns=6, rows=4):
 
 
 def write_png(path, image):
-    """uint8 [height, width, 3] RGB as a PNG, without a library for it."""
+    """Writes uint8 [height, width, 3] RGB as a PNG, without a library."""
     height, width, _ = image.shape
     rows = np.hstack((np.zeros((height, 1), np.uint8), image.reshape(height, width * 3))).tobytes()
 

@@ -38,10 +38,10 @@ float look_exposure(const float *linear, int width, int height, float key)
     }
     float white = exp2f(0.5f * (float)(top + 1) - 12.5f);
     float gain = key / exp2f((float)(sum / count) + 0.5f);
-    return minf(gain, maxf(1.1f / white, 0.6f * gain)); /* a window may burn out before the room drowns */
+    return minf(gain, maxf(1.1f / white, 0.6f * gain)); /* a window may burn out before the room gets too dark */
 }
 
-/* One running mean of 2 r + 1 samples, borders repeated; from and to do not overlap */
+/* Computes a running mean of 2 r + 1 samples, borders repeated; from and to do not overlap */
 static void running_mean(const float *from, float *to, int count, int stride, int r)
 {
     float scale = 1.0f / (float)(2 * r + 1), sum = from[0] * (float)(r + 1);
@@ -55,7 +55,7 @@ static void running_mean(const float *from, float *to, int count, int stride, in
     }
 }
 
-/* A column pass row by row, so that memory is read in order; sums has a row's length */
+/* Runs a column pass row by row, so that memory is read in order; sums has a row's length */
 static void running_mean_rows(const float *from, float *to, int row, int rows, int r, float *sums)
 {
     float scale = 1.0f / (float)(2 * r + 1);
@@ -78,7 +78,7 @@ static void running_mean_rows(const float *from, float *to, int row, int rows, i
     }
 }
 
-/* [1 - 2 k, k] weights whose variance is sigma^2, for sigma below a pixel */
+/* Blurs with weights [1 - 2 k, k] of variance sigma^2, for sigma below a pixel */
 static void small_blur(float *data, float *scratch, int width, int height, int channels, float sigma)
 {
     float k = minf(0.5f * sigma * sigma, 0.25f);
@@ -109,7 +109,7 @@ void blur_planes(float *data, float *scratch, int width, int height, int channel
         small_blur(data, scratch, width, height, channels, sigma);
         return;
     }
-    /* a mean of n samples has the variance (n^2 - 1) / 12; two of them each way, a tent */
+    /* a mean of n samples has the variance (n^2 - 1) / 12; two of them in each direction make a tent */
     int r = floori(0.5f * sqrtf(6.0f * sigma * sigma + 1.0f));
     int row = width * channels;
     float sums[3 * 2048 + 2048];

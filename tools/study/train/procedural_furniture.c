@@ -153,7 +153,7 @@ static void cabinet(room *r, generator *g, vec foot, float yaw)
     clutter(r, g, (vec){foot.x, -2.0f * half.y, foot.z}, half.x, half.z, yaw, 1 + draw_index(g, 9));
 }
 
-/* A place at one of the walls: yaw turns -z, a thing's front, into the room */
+/* Returns a place at one of the walls: yaw turns -z, the front of the furniture, into the room */
 static vec at_wall(const room *r, generator *g, float depth, float *yaw)
 {
     int side = draw_index(g, 4);

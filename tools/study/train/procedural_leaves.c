@@ -30,17 +30,17 @@ typedef struct {
     int sides, material;
     uint32_t glyph;
     float gain, shade_s, shade_t; /* lightness = gain (1 + shade_s s + shade_t t) */
-    float round, shine;           /* how far it is lit as a bulging body, how glossy */
+    float round, shine;           /* strength of shading as a bulging body, glossiness */
     float offset[2];
 } leaf;
 
-/* What stands together: one kind of clutter with few materials */
+/* A group: one kind of clutter with few materials */
 typedef struct {
     float x, y, spread_x, spread_y; /* centre and extent, pixels */
     float low, high;                /* sizes */
-    float near, far;                /* 1/z of the leaves over that of what lies behind */
+    float near, far;                /* ratio of the leaves' 1/z to that of their background */
     float shapes[SHAPE_COUNT];
-    float upright; /* share of leaves along the picture's axes */
+    float upright; /* share of leaves parallel to the picture's axes */
     float stretch; /* largest aspect ratio */
     float slant, round, shine;
 } group;
@@ -110,7 +110,7 @@ static void leaf_draw(const painting *p, const group *from, generator *g, leaf *
     if (made->shape == SHAPE_POLYGON) {
         polygon_draw(made, g);
     }
-    /* nearer than the wall by a ratio, parallel to it up to a slant that keeps 1/z within 40 % over the leaf */
+    /* nearer than the wall by a ratio, and parallel to it up to a slant that keeps 1/z within 40 % over the leaf */
     const leaf *wall = &p->leaves[0];
     float behind = wall->w + wall->wx * (made->x - wall->x) + wall->wy * (made->y - wall->y);
     float ratio = from->far * powf(from->near / from->far, draw(g));
@@ -200,7 +200,7 @@ static inline __attribute__((always_inline)) void mark(painting *p, int index, c
     }
 }
 
-/* One loop a shape, so that the compiler may vectorise the simple ones */
+/* One loop per shape, so that the compiler may vectorise the simple ones */
 static void mark_leaf(painting *p, int index)
 {
     switch (p->leaves[index].shape) {
@@ -279,7 +279,7 @@ static int add_material(painting *p, generator *g, float size, float texture)
     return p->material_count++;
 }
 
-/* A half of the picture or a band through it, on a plane of its own: ceiling, floor, side wall, table, door */
+/* Adds half of the picture or a band through it as a plane of its own: ceiling, floor, side wall, table, door */
 static void add_surface(painting *p, generator *g, float texture)
 {
     leaf *l = &p->leaves[p->leaf_count++];
@@ -307,7 +307,7 @@ static void add_surface(painting *p, generator *g, float texture)
     l->offset[0] = draw_in(g, -1000.0f, 1000.0f);
 }
 
-/* What lies on a leaf or is printed on it: in its box, on its plane, along its axes mostly */
+/* Adds what is on a leaf or printed on it: in its box, on its plane, mostly along its axes */
 static void add_parts(painting *p, generator *g, const leaf *on, int first, int count, int parts)
 {
     float size = minf(on->half_s, on->half_t);
@@ -442,7 +442,7 @@ static void shade(const painting *p, const leaf *l, float x, float y, float rgb[
             }
         }
     }
-    /* Darker where the mean of what lies around, towards the light, is nearer: contact shadows, corners */
+    /* Darker where the surroundings towards the light are nearer on average: contact shadows, corners */
     float w = l->w + l->wx * dx + l->wy * dy;
     int sx = (int)clampf(x + p->shadow_x, 0.0f, (float)(p->width - 1));
     int sy = (int)clampf(y + p->shadow_y, 0.0f, (float)(p->height - 1));
@@ -459,7 +459,7 @@ static void shade(const painting *p, const leaf *l, float x, float y, float rgb[
     }
 }
 
-/* Every leaf that a pixel's subsamples see is shaded once, at their mean, and weighs as many as they are */
+/* Shades every leaf that a pixel's subsamples see once, at their mean, weighted by their number */
 static void shade_pixel(painting *p, int x, int y)
 {
     int columns = p->width * SUBSAMPLES, found = 0;
@@ -495,8 +495,9 @@ static void shade_pixel(painting *p, int x, int y)
     }
 }
 
-/* Far to near. The farthest layer is stretched into what hides it; a nearer one knows only what is seen of it, so that
- * beside a blurred edge of the nearest the farthest may shine through the middle one: a soft edge all the same. */
+/* Composes from far to near. The farthest layer is stretched into the area that hides it; a nearer layer has only
+ * its visible part, so that beside a blurred edge of the nearest layer the farthest may shine through the middle
+ * one. The edge is still soft. */
 static void compose(painting *p, float *linear)
 {
     int count = p->width * p->height;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "procedural_scene.h"
 
-/* Whether something other than the room and `except` lies between at and at + along */
+/* Whether something other than the room and `except` is between at and at + along */
 static bool blocked(const room *r, vec at, vec along, int except)
 {
     float scale = 1.0f / dot(along, along);
     bool near[MAX_BODIES];
-    for (int i = 0; i < r->caster_count; i++) { /* a loop of its own: it vectorises */
+    for (int i = 0; i < r->caster_count; i++) { /* a separate loop, which vectorises */
         float x = r->caster_x[i] - at.x, y = r->caster_y[i] - at.y, z = r->caster_z[i] - at.z;
         float t = clampf((x * along.x + y * along.y + z * along.z) * scale, 0.0f, 1.0f);
         x -= t * along.x;
@@ -28,7 +28,8 @@ static bool blocked(const room *r, vec at, vec along, int except)
     return false;
 }
 
-/* A face's middle, its half edges, and its outward normal (into the room for the room itself), in the body's frame */
+/* Computes a face's middle, its half edges, and its outward normal (for the room itself: inward), in the body's
+ * frame */
 void face_frame(const body *b, int face, vec *middle, vec *along, vec *across, vec *normal)
 {
     float sign = face & 1 ? 1.0f : -1.0f;
@@ -104,7 +105,7 @@ static void light_at(const room *r, vec at, vec normal, int self, float rgb[3])
     }
 }
 
-/* Light is stored on a lattice over every box face, 13 to 18 cm apart where that is not too many */
+/* Stores light on a lattice over every box face, 13 to 18 cm apart unless that takes too many points */
 void store_light(room *r)
 {
     for (int i = 1; i < r->body_count; i++) {
@@ -145,7 +146,7 @@ void store_light(room *r)
             r->luxel_count += b->columns[face] * b->rows[face];
             for (int y = 0; y < b->rows[face]; y++) {
                 for (int x = 0; x < b->columns[face]; x++) {
-                    /* a little inside the edge: corner points lie in neighbours */
+                    /* slightly inside the edge: corner points are inside neighbours */
                     float s = 0.98f * (2.0f * (float)x / (float)(b->columns[face] - 1) - 1.0f);
                     float t = 0.98f * (2.0f * (float)y / (float)(b->rows[face] - 1) - 1.0f);
                     vec at = add(middle, add(times(along, s), times(across, t)));

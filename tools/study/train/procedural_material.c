@@ -15,7 +15,8 @@ static int level_offset(int level)
     return offset;
 }
 
-/* Octaves of smooth noise on a torus, each `keep` as strong as the one twice as wide: amplitude 1/f^(1 - log2 keep) */
+/* Adds octaves of smooth noise on a torus, each `keep` times as strong as the next coarser one: amplitude 1/f^(1 -
+ * log2 keep) */
 static bool add_octaves(float *plane, generator *g, float keep)
 {
     static const int coarsest = 2;
@@ -79,7 +80,7 @@ static void fill_leaves(float *plane, generator *g, float low, float high)
     }
 }
 
-/* To mean 0 and variance 1, then every coarser level */
+/* Normalises to mean 0 and variance 1, then makes every coarser level */
 static void store_tile(int16_t *tile, float *plane)
 {
     double sum = 0.0, squares = 0.0;
@@ -99,7 +100,7 @@ static void store_tile(int16_t *tile, float *plane)
         for (int i = 0; i < side * side; i++) {
             out[i] = (int16_t)floori(plane[i] * 4096.0f + 0.5f);
         }
-        for (int y = 0; y < side / 2; y++) { /* in place: what is written lies before what is still to be read */
+        for (int y = 0; y < side / 2; y++) { /* in place: writes stay before the reads */
             for (int x = 0; x < side / 2; x++) {
                 const float *from = plane + 2 * y * side + 2 * x;
                 plane[y * (side / 2) + x] = 0.25f * (from[0] + from[1] + from[side] + from[side + 1]);
@@ -131,7 +132,8 @@ float tile_at(const atlas *shared, tile_kind tile, float u, float v, float footp
 
 /* ---- glyphs ----------------------------------------------------------------------------------------------------- */
 
-/* Two to five strokes between the knots of a 3 x 4 lattice: no script's letters, but their density and their joints */
+/* Draws two to five strokes between the knots of a 3 x 4 lattice: letters of no script, but with the density and
+ * joints of letters */
 static void fill_glyph(int8_t *glyph, generator *g)
 {
     float x[6], y[6];
@@ -216,7 +218,7 @@ bool atlas_fill(atlas *shared, uint64_t seed)
 
 typedef struct {
     float hue[2], saturation[2], value[2]; /* hue in turns, all of the sRGB colour */
-    float indoor, outdoor;                 /* how often */
+    float indoor, outdoor;                 /* frequency */
 } family;
 
 static const family FAMILIES[] = {
@@ -325,7 +327,7 @@ void material_draw(material *made, const palette *from, generator *g, float size
 void material_draw_calm(material *made, const palette *from, generator *g, float size, float texture)
 {
     material_draw(made, from, g, size, texture);
-    float keep = draw_chance(g, 0.2f) ? 0.9f : draw_in(g, 0.1f, 0.7f);   /* of the saturation */
+    float keep = draw_chance(g, 0.2f) ? 0.9f : draw_in(g, 0.1f, 0.7f);   /* share of the saturation that stays */
     float lift = draw_chance(g, 0.35f) ? 0.0f : draw_in(g, 0.05f, 0.6f); /* lighter, as most walls are */
     for (int i = 0; i < 3; i++) {
         float *rgb = made->colour[i], grey = 0.25f * rgb[0] + 0.6f * rgb[1] + 0.15f * rgb[2];
@@ -337,7 +339,7 @@ void material_draw_calm(material *made, const palette *from, generator *g, float
     made->weave_amount *= 0.6f;
 }
 
-/* Share of [x - w/2, x + w/2] that lies in the first `duty` of a unit period: an exact box filter */
+/* Returns the share of [x - w/2, x + w/2] in the first `duty` of a unit period: an exact box filter */
 static float pulse(float x, float w, float duty)
 {
     float low = x - 0.5f * w, high = x + 0.5f * w;
@@ -399,7 +401,7 @@ static float pattern_at(const atlas *shared, const material *m, float u, float v
         float value = tile_at(shared, m->tile, along * x + m->offset[0], y + m->offset[1], 0.6f * w);
         return clampf(0.5f + 0.33f * value, 0.0f, 1.0f);
     }
-    case PATTERN_TEXT: { /* lines of words; a cell is 0.6 of a line high and as wide as 0.45 of it */
+    case PATTERN_TEXT: { /* lines of words; a cell is 0.6 of a line high and 0.45 of a line wide */
         float line = y + m->offset[1];
         int32_t row = floori(line);
         float column = x * 2.2f;

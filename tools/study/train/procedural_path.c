@@ -36,8 +36,8 @@ static void look_at(viewpoint *v, vec target, float roll)
     v->y = sub(times(y, cosf(roll)), times(x, sinf(roll)));
 }
 
-/* A walk of at most a quarter of the distance looked at, eyes on what lies there, a hand's tremor added. The last try
- * is taken whatever it sees: every room has a picture. */
+/* Draws a walk of at most a quarter of the viewing distance, looking at one place, with a hand's tremor. The last
+ * try is always accepted, so that every room has a picture. */
 void path_draw(const room *r, generator *g, int width, int height, int views, viewpoint *made)
 {
     float side = (float)(width < height ? width : height), focal = side * draw_in(g, 0.86f, 1.17f);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A made-up room: what stands in it, and what its parts do. Each part a file; procedural_room.c calls them in turn. */
+/* A made-up room: its objects and the steps that render them, each in a file; procedural_room.c calls them in turn. */
 #ifndef T3R_PROCEDURAL_SCENE_H
 #define T3R_PROCEDURAL_SCENE_H
 
@@ -31,7 +31,7 @@ typedef struct {
     body_kind kind;
     vec centre, half;
     float c, s;      /* yaw about y */
-    float reach;     /* radius of the sphere around it */
+    float reach;     /* radius of the bounding sphere */
     bool inside_out; /* the room itself */
     int material[6];
     int poster[6]; /* -1 = none */
@@ -60,7 +60,7 @@ typedef struct {
     palette colours;
     float ambient[3];
     vec size; /* full extents; size.y = height */
-    /* what casts shadows that the stored light can hold: neither lamps nor things of a few centimetres */
+    /* bodies whose shadows the stored light can resolve: neither lamps nor things of a few centimetres */
     float caster_x[MAX_BODIES], caster_y[MAX_BODIES], caster_z[MAX_BODIES], caster_reach2[MAX_BODIES];
     int casters[MAX_BODIES], caster_count;
     float (*luxels)[3];
@@ -175,19 +175,20 @@ static inline float hit(const body *b, vec at, vec along, int *face)
 /* Materials, tables, chairs, shelves, what hangs on walls, lamps; the room's own walls are body 0. */
 void furnish(room *r, generator *g);
 
-/* Diffuse light, [3] linear: what lamps and sky send to a place, in shadow of `casters`. store_light() keeps it on a
- * grid over the faces of boxes, stored_light() reads it at s, t in 0..1 of a face, open_light() is that of round
- * bodies. */
+/* Diffuse light, [3] linear: the light from lamps and sky at a place, with the shadows of `casters`. store_light()
+ * stores it on a grid over the faces of boxes, stored_light() reads it at s, t in 0..1 of a face, open_light()
+ * computes it for round bodies. */
 void face_frame(const body *b, int face, vec *middle, vec *along, vec *across, vec *normal);
 void store_light(room *r);
 void open_light(const room *r, const body *b, vec at, vec normal, float rgb[3]);
 void stored_light(const room *r, const body *b, int face, float s, float t, float rgb[3]);
 
-/* A dead-leaves picture to hang up; u and v in 0..1, footprint in poster widths. False: no memory. */
+/* Makes a dead-leaves picture for a wall; u and v in 0..1, footprint in poster widths. False: out of memory. */
 bool poster_draw(poster *made, const atlas *shared, uint64_t seed);
 void poster_at(const poster *p, float u, float v, float footprint, float rgb[3]);
 
-/* One view, [height][width][3] linear and its depth, metres; near and owner: room for SUBSAMPLES^2 rays a pixel. */
+/* Renders one view, [height][width][3] linear and its depth, metres; near and owner: room for SUBSAMPLES^2 rays a
+ * pixel. */
 void see_room(const room *r, const viewpoint *v, int width, int height, float *near, uint16_t *owner, float *linear,
               float *depth);
 

@@ -9,7 +9,7 @@ static vec ray_of(const viewpoint *v, float x, float y)
     return add(v->z, add(times(v->x, (x - v->cx) / v->fx), times(v->y, (y - v->cy) / v->fy)));
 }
 
-/* Rows and columns of subsamples that may see the body; all of them where it reaches behind the camera */
+/* Computes the rows and columns of subsamples that may see the body; all of them if it reaches behind the camera */
 static void screen_box(const body *b, const viewpoint *v, int columns, int rows, int box[4])
 {
     float low_x = 1e9f, low_y = 1e9f, high_x = -1e9f, high_y = -1e9f;
@@ -49,7 +49,7 @@ static void screen_box(const body *b, const viewpoint *v, int columns, int rows,
     }
 }
 
-/* hit_box() along a row of rays, without branches, so that it vectorises; faces: 0..5 */
+/* Runs hit_box() along a row of rays, without branches, so that it vectorises; faces: 0..5 */
 static void hit_box_row(const body *b, vec at, vec row, vec right, int from, int to, float *depths, int *faces)
 {
     vec h = b->half;
@@ -134,7 +134,7 @@ static void shade_hit(const room *r, const viewpoint *v, int owner, float x, flo
     } else {
         int ignored;
         z = hit_round(b, at, along, &ignored);
-        if (!(z < 1e6f)) { /* the mean of the rays that met it misses it by a hair: its limb */
+        if (!(z < 1e6f)) { /* the mean of the rays that hit the body misses it by a hair, at its limb */
             z = -dot(at, along) / dot(along, along);
         }
         p = add(at, times(along, z));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the camera tells of itself when it is plugged in: USB 2.0, 9.5 and 9.6; UVC 1.0, chapter 3. */
+/* The camera's descriptors, sent when it is plugged in: USB 2.0, 9.5 and 9.6; UVC 1.0, chapter 3. */
 #ifndef T3R_TESTS_USB_DESCRIPTORS_H
 #define T3R_TESTS_USB_DESCRIPTORS_H
 
@@ -7,9 +7,8 @@
 
 #define DESCRIPTOR_MOST_BYTES 256u
 
-/* A descriptor by its type (USB_DT_DEVICE, USB_DT_CONFIG or USB_DT_STRING) and index to out[DESCRIPTOR_MOST_BYTES]; its
- * bytes, 0: there is none.
- */
+/* Writes a descriptor by its type (USB_DT_DEVICE, USB_DT_CONFIG or USB_DT_STRING) and index to
+ * out[DESCRIPTOR_MOST_BYTES]; returns its bytes, 0 if there is none. */
 uint32_t descriptor_get(uint8_t type, uint8_t index, uint8_t *out);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What befalls the camera, and when: so often a stream began, so many of its frames were sent. */
+/* The camera's faults and their times: the number of the stream, and of the frame in it. */
 #ifndef T3R_TESTS_USB_FAULTS_H
 #define T3R_TESTS_USB_FAULTS_H
 
@@ -11,7 +11,7 @@ typedef enum fault_kind {
     FAULT_NONE,
     FAULT_ERROR,  /* the frame carries the error bit (UVC 1.0, 2.4.3.3) */
     FAULT_CUT,    /* the frame ends after half of its bytes */
-    FAULT_STALL,  /* from this frame on the stream stands still */
+    FAULT_STALL,  /* the stream stalls from this frame on */
     FAULT_UNPLUG, /* the plug is pulled within the frame, and put back later */
     FAULT_LEAVE,  /* the plug is pulled within the frame for good */
 } fault_kind;
@@ -26,7 +26,7 @@ typedef struct faults {
     uint32_t count;
 } faults;
 
-/* "STREAM.FRAME=error", likewise cut, stall, unplug, leave. 0, or -1: it is none of these, or one too many. */
+/* Adds "STREAM.FRAME=error", likewise cut, stall, unplug, leave. Returns 0, or -1: unknown, or one too many. */
 int faults_add(faults *self, const char *text);
 fault_kind faults_at(const faults *self, uint32_t stream, uint32_t frame);
 

@@ -17,7 +17,7 @@
 
 #define AWAY_S 1 /* between unplugging and the next plug */
 #define TRY_NS 50000000
-#define MOST_TRIES 100 /* of plugging in: the port is taken until the kernel has seen the camera leave */
+#define MOST_TRIES 100 /* tries to plug in: the port is taken until the kernel has seen the camera leave */
 
 static pictures images;
 static faults planned;
@@ -45,7 +45,7 @@ static int answer_control(int bus, const usbip_call *call, uint8_t *data)
     return usbip_answer(bus, call, data, call->in ? (uint32_t)count : call->bytes);
 }
 
-/* One call of the host's. -1: the bus is gone. */
+/* Handles one call of the host. Returns -1 if the bus is gone. */
 static int serve(int bus)
 {
     static uint8_t data[DESCRIPTOR_MOST_BYTES];
@@ -63,7 +63,7 @@ static int serve(int bus)
     return asked ? 0 : usbip_refuse(bus, &call);
 }
 
-/* From plug to unplug. */
+/* Runs from plug to unplug. */
 static stream_end live(int bus)
 {
     stream_end end = STREAM_GOES_ON;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The images that the camera sends, from two files: YUYV images one behind the other; JPEGs, each behind its length in
+/* The images that the camera sends, from two files: YUYV images one after the other; JPEGs, each after its length in
  * four bytes, little-endian. */
 #ifndef T3R_TESTS_USB_PICTURES_H
 #define T3R_TESTS_USB_PICTURES_H

@@ -10,7 +10,7 @@
 
 typedef struct requests {
     uint8_t probed, format; /* CAMERA_YUYV or CAMERA_MJPG: wished for, agreed on */
-    bool committed;         /* a stream begins: the caller takes notice and clears it */
+    bool committed;         /* a stream begins: the caller reads and clears it */
 } requests;
 
 /* `data` holds what came with the request and has room for DESCRIPTOR_MOST_BYTES. The bytes of the answer,

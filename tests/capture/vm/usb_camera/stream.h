@@ -31,13 +31,13 @@ typedef enum stream_end { STREAM_GOES_ON, STREAM_BUS_GONE, STREAM_UNPLUG, STREAM
 
 /* The host committed to a format: frame 0 comes next. */
 void stream_begin(stream *self, uint8_t format, int64_t now_ns);
-/* The bus is another one: nobody waits. */
+/* Resets the stream for a new bus without pending transfers. */
 void stream_reset(stream *self);
-/* A transfer to be filled; false: too many are. */
+/* Queues a transfer to be filled; false: too many are queued. */
 bool stream_ask(stream *self, const usbip_call *call);
-/* The host no longer waits for that transfer; false: it has been filled. */
+/* Removes a transfer that the host no longer waits for; false: it has been filled. */
 bool stream_forget(stream *self, uint32_t sequence);
-/* When the next payload goes out; -1: the host has to do something first. */
+/* Returns when the next payload is sent; -1: the host has to act first. */
 int64_t stream_next_ns(const stream *self);
 /* Sends the next payload. */
 stream_end stream_send(stream *self, int bus);

@@ -63,7 +63,7 @@ int usbip_receive(int bus, usbip_call *call, uint8_t *data, uint32_t most)
     }
     *call = (usbip_call){.sequence = ntohl(header[SEQUENCE]), .unlink = command == CMD_UNLINK};
     if (call->unlink) {
-        call->unlinked = ntohl(header[FLAGS_OR_STATUS]); /* the field behind the common ones is the sequence */
+        call->unlinked = ntohl(header[FLAGS_OR_STATUS]); /* the field after the common ones is the sequence */
         return 0;
     }
     call->in = header[DIRECTION] != 0;

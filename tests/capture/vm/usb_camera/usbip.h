@@ -6,24 +6,26 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What the host asks for. */
+/* A request of the host. */
 typedef struct usbip_call {
     uint32_t sequence; /* the answer names it */
     bool unlink;       /* the call `unlinked` is given up; else a transfer */
     uint32_t unlinked;
     bool in; /* to the host */
     uint32_t endpoint;
-    uint32_t bytes; /* that it sent, or has room for */
+    uint32_t bytes; /* sent by the host, or the room for the answer */
     uint8_t setup[8];
 } usbip_call;
 
-/* Plugs a high-speed device into port 0: the socket, or -1 with errno. Closing the socket unplugs it. */
+/* Plugs a high-speed device into port 0. Returns the socket, or -1 with errno. Closing the socket unplugs the
+ * device. */
 int usbip_plug(void);
-/* The next call; what it sent goes to data[most]. 0, or -1: the bus is gone, or asks for more than that. */
+/* Receives the next call; what it sent goes to data[most]. Returns 0, or -1: the bus is gone, or wants more than
+ * that. */
 int usbip_receive(int bus, usbip_call *call, uint8_t *data, uint32_t most);
-/* A transfer is over: `bytes` were sent or taken; of `in` they are in data. */
+/* Ends a transfer: `bytes` were sent or taken; if `in`, they are in data. */
 int usbip_answer(int bus, const usbip_call *call, const uint8_t *data, uint32_t bytes);
-/* It was refused: the endpoint stalls. */
+/* Refuses a transfer: the endpoint stalls. */
 int usbip_refuse(int bus, const usbip_call *call);
 /* The answer to `unlink`: whether that call was still there. */
 int usbip_unlinked(int bus, const usbip_call *call, bool was_there);
