@@ -39,7 +39,7 @@ with tempfile.TemporaryDirectory() as folder:
     refuse(USAGE, "--ablate does not know ''", [*one, "--ablate=full,"])
     refuse(USAGE, "--ablate names k-5 twice", [*one, "--ablate=k-5,full,k-5"])
     refuse(USAGE, "excludes --methods and --heads", [*one, "--ablate", "--methods", "trim3r"])
-    refuse(USAGE, "excludes --methods and --heads", [*one, "--ablate", "--heads", "small,base"])
+    refuse(USAGE, "excludes --methods and --heads", [*one, "--ablate", "--heads", "small,tiny"])
     for more in (["--methods=random"], ["--ablate"]):
         refuse(USAGE, "--scene is scored as it is", [room, "--scene", f"{folder}/mine.ply", *more])
     rival = json.loads(run(trim3r, "eval", *one, "--keep", "10", "--working", "32x32", "--refine", "0", "--views", "4",

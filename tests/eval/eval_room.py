@@ -130,7 +130,7 @@ def evaluate_names(folder, room):
                                f"{folder}/names", "--json").stdout)["rows"]
     names = [r["picture"] for r in rows]
     check(names == ["1/trim3r_5.png", "1/trim3r_refine-0_5.png", "1/trim3r_haar_levels-3_5.png",
-                    "1/trim3r_paper_k-50_5.png", "1/trim3r_analytic_5.png", "1/trim3r_5.png", "1/full_refine-0_5.png",
+                    "1/trim3r_clusters-50_paper_5.png", "1/trim3r_analytic_5.png", "1/trim3r_5.png", "1/full_refine-0_5.png",
                     "1/k-5_refine-0_5.png"], f"names: {names}")
     check(all(os.path.exists(f"{folder}/names/{name}") for name in names), "and the files")
     check((rows[2]["wavelet"], rows[2]["levels"], rows[3]["clusters"], rows[7]["clusters"]) == ("haar", "3", "50", "5"),
