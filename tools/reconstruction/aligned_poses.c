@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
@@ -14,6 +15,9 @@
  * unlike the scalar part, keeps small angles exact. */
 static double degrees_between(const int32_t a_q30[4], const int32_t b_q30[4])
 {
+    if (memcmp(a_q30, b_q30, 4 * sizeof a_q30[0]) == 0) {
+        return 0; /* the quotient would be off by its rounding */
+    }
     double back[4], b[4], quotient[4];
     for (int i = 0; i < 4; i++) {
         back[i] = i == 0 ? a_q30[i] : -(double)a_q30[i];
