@@ -8,7 +8,6 @@ import sys
 import branches
 
 AREAS = ("unit", "oracle", "workers", "kernels", "formats")
-NOT_RUN = "data" # tests that need recorded scenes
 GOLDEN_WAYS = ([], ["--arena", "min", "--tasks", "reverse", "--workers", "3"], ["--moved"], ["--cpu-mask", "all"])
 
 HEADS = ("none", "analytic", "tiny", "small")
@@ -43,8 +42,8 @@ def forget(folder):
 
 def run_tests(folder):
     for area in AREAS:
-        quiet("ctest", "--test-dir", folder / "tests" / area, "--label-regex", "^program$", "--label-exclude", f"^{NOT_RUN}$",
-              "--no-tests=error", "--parallel", str(os.cpu_count()), "--timeout", "1200", "--output-on-failure")
+        quiet("ctest", "--test-dir", folder / "tests" / area, "--label-regex", "program$", "--no-tests=error",
+              "--parallel", str(os.cpu_count()), "--timeout", "1200", "--output-on-failure")
     for way in GOLDEN_WAYS:
         quiet(folder / "golden_driver", *way)
 
