@@ -10,7 +10,7 @@
 #include "captured_frame.h"
 #include "host/sink.h"
 #include "host/text.h"
-#include "mcap/chunk_packer.h"
+#include "mcap/packer.h"
 #include "messages/fixed_camera.h"
 
 typedef struct t3r_triplet {

@@ -6,6 +6,7 @@
 #include <argp.h>
 #include <stdbool.h>
 
+#include "mcap/chunk_packer.h"
 #include "recording/recording.h"
 
 typedef struct recording_options {
