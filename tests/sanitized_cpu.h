@@ -4,6 +4,12 @@
 #ifndef TRIM3R_TESTS_SANITIZED_CPU_H
 #define TRIM3R_TESTS_SANITIZED_CPU_H
 
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
 #include "host/cpu.h"
 #include "sanitized.h"
 #include "trim3r.h"
