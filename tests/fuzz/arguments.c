@@ -24,6 +24,9 @@ uint32_t take32(input *in)
 
 uint32_t below(input *in, uint32_t bound)
 {
+    if (bound == 0) {
+        return take32(in);
+    }
     uint32_t x = take8(in);
     return (bound > 256 ? x << 8 | take8(in) : x) % bound;
 }

@@ -28,7 +28,7 @@ typedef struct input {
 
 uint8_t take8(input *in);
 uint32_t take32(input *in);
-/* Below the bound, which is not 0: a byte of input, or two. */
+/* Draws a number below the bound from one or two bytes of input; 0 = any number, from four. */
 uint32_t below(input *in, uint32_t bound);
 /* Returns a size near the small ones, or one that must be refused. */
 uint32_t take_side(input *in);
