@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "cli/cli.h"
-#include "cli/work/process_pool.h"
+#include "cli/jobs/process_pool.h"
 
 #define ITEMS 23u
 #define LARGE 300000u /* bytes: more than a pipe holds */

@@ -8,9 +8,9 @@
 
 #include "bench/spread.h"
 #include "cli/cli.h"
+#include "cli/jobs/other_program.h"
 #include "cli/tables/json_input.h"
 #include "cli/tables/json_output.h"
-#include "cli/work/other_program.h"
 #include "host/file_bytes.h"
 
 #define ERROR_BYTES 512

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/jobs/process_pool.h"
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
-#include "cli/work/process_pool.h"
 #include "evaluation/cases.h"
 #include "reconstruction/chosen_head.h"
 #include "reconstruction/options/option_names.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/work/process_pool.h"
+#include "cli/jobs/process_pool.h"
 
 /* With fewer cases per process than this, the contestants of a case are distributed as well, although each process
  * then makes what they share. */

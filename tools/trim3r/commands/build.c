@@ -8,11 +8,11 @@
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
+#include "cli/jobs/work_times.h"
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
 #include "cli/text/style.h"
-#include "cli/work/work_times.h"
 #include "import/estimation/poses_output.h"
 #include "import/estimation/recording_poses.h"
 #include "reconstruction/aligned_poses.h"

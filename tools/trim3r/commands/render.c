@@ -11,10 +11,10 @@
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
+#include "cli/jobs/work_times.h"
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
-#include "cli/work/work_times.h"
 #include "core/hash.h"
 #include "import/viewpoint.h"
 #include "pictures/picture.h"

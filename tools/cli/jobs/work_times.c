@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cli/work/work_times.h"
+#include "cli/jobs/work_times.h"
 
 #include <stdio.h>
 

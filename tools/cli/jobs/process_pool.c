@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cli/work/process_pool.h"
+#include "cli/jobs/process_pool.h"
 
 #include <errno.h>
 #include <poll.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "cli/work/other_program.h"
+#include "cli/jobs/other_program.h"
 
 #include <errno.h>
 #include <fcntl.h>
