@@ -2,32 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """colours.py TRIM3R: errors, warnings and headings have colours on a terminal, and nowhere else."""
 import os
-import pty
 import re
 import subprocess
 import sys
 
 from program import TRIM3R, check, expect, in_scratch, room
+from terminal import on_terminal
 
 ESCAPE = "\x1b["
 TERMINAL = {key: value for key, value in os.environ.items() if key != "NO_COLOR"} | {"TERM": "xterm"}
 
 
 def shown(*command, **more):
-    """Both streams as a terminal gets them."""
-    ours, theirs = pty.openpty()
-    ended = subprocess.Popen([TRIM3R, *map(str, command)], stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs,
-                             env=TERMINAL | more)
-    os.close(theirs)
-    said = b""
-    try:
-        while part := os.read(ours, 65536):
-            said += part
-    except OSError:  # the other end is closed
-        pass
-    ended.wait(timeout=60)
-    os.close(ours)
-    return said.decode().replace("\r\n", "\n")
+    """Returns what both streams write on a terminal."""
+    return on_terminal([TRIM3R, *map(str, command)], env=TERMINAL | more)[1].replace("\r\n", "\n")
 
 
 def colours():

@@ -8,6 +8,8 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+
 TRIM3R = os.path.abspath(sys.argv[1])
 HEADS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "quant", "heads")
 failures = []

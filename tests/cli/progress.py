@@ -3,39 +3,21 @@
 """progress.py TRIM3R: what long commands say on a terminal: how much is done, and of an evaluation how many rows and how
 long it goes on, by what this run has made; nothing of it where stderr is no terminal."""
 import os
-import pty
 import re
 import subprocess
 import tempfile
-import threading
 
 from common import TRIM3R, check, done, run
+from terminal import on_terminal
 
 CLEARED = "\r\x1b[K"
 ROWS = re.compile(r"\r(\d+) of (\d+) rows(?:, (\d+) (s|min) left)?")
 
 
-def on_terminal(*command, expect=0):
+def shown(*command, expect=0):
     """Returns what the program writes to stderr on a terminal."""
-    ours, theirs = pty.openpty()
-    said = []
-
-    def read():
-        try:
-            while part := os.read(ours, 65536):
-                said.append(part)
-        except OSError:  # the other end is closed
-            pass
-
-    reader = threading.Thread(target=read)
-    reader.start()
-    ended = subprocess.run([TRIM3R, *map(str, command)], stdout=subprocess.DEVNULL, stderr=theirs, timeout=300,
-                           env=os.environ | {"NO_COLOR": "1"})
-    os.close(theirs)
-    reader.join()
-    os.close(ours)
-    text = b"".join(said).decode()
-    check(ended.returncode == expect, f"{command}: {ended.returncode} {text}")
+    status, text = on_terminal([TRIM3R, *map(str, command)], both=False, env=os.environ | {"NO_COLOR": "1"})
+    check(status == expect, f"{command}: {status} {text}")
     return text
 
 
@@ -48,13 +30,13 @@ with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     run("room", "--size", "64x64", "-o", "room.mcap")
 
-    text = on_terminal("room", "--size", "320x240", "--frames", 24, "-o", "long.mcap")
+    text = shown("room", "--size", "320x240", "--frames", 24, "-o", "long.mcap")
     percents = [int(p) for p in re.findall(r"\rdrawing the room +(\d+) %", text)]
     check(len(percents) > 1 and percents == sorted(percents) and percents[-1] < 100, f"the part that is done: {percents}")
     check(text.endswith(CLEARED), f"the line is gone at the end: {text[-50:]!r}")
 
     call = ("eval", "room.mcap", "--keep", "60,40,20,10", "--csv", "rows.csv")
-    lines = told(on_terminal(*call))
+    lines = told(shown(*call))
     with open("rows.csv") as file:
         table = file.read().splitlines(keepends=True)
     total = len(table) - 1
@@ -66,11 +48,11 @@ with tempfile.TemporaryDirectory() as folder:
     there = total // 2
     with open("rows.csv", "w") as file:
         file.writelines(table[: 1 + there])
-    lines = told(on_terminal(*call, "--resume"))
+    lines = told(shown(*call, "--resume"))
     check({line[0] for line in lines} == set(range(total)), f"rows that were there are counted: {lines}")
     check(all(timed == (count > there) for count, _, timed in lines), f"the time is that of the rows made now: {lines}")
 
-    text = on_terminal("eval", "room.mcap", "--keep", 10, "--images", "rows.csv/none", "--csv", "one.csv", expect=1)
+    text = shown("eval", "room.mcap", "--keep", 10, "--images", "rows.csv/none", "--csv", "one.csv", expect=1)
     check(re.search(r"(^|\x1b\[K)trim3r eval: [^\r]*\r\n", text), f"a message has its line to itself: {text!r}")
 
     ended = subprocess.run([TRIM3R, *call], capture_output=True, text=True, timeout=300)
