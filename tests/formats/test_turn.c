@@ -67,7 +67,7 @@ static void turns_all_alike(void **state)
     (void)state;
     for (int axes = SCENE_AXES_AS_THEY_ARE; axes <= SCENE_AXES_LUF; axes++) {
         for (int up = SCENE_UP_UNKNOWN; up <= SCENE_UP_MZ; up++) {
-            const scene_turn turn = scene_turn_to((scene_axes)axes, (scene_up)up);
+            const scene_turn turn = scene_turn_between(SCENE_AXES_AS_THEY_ARE, (scene_axes)axes, (scene_up)up);
             check_turn(&turn);
         }
     }
@@ -97,7 +97,7 @@ static void points_up(void **state)
         const scene_up up = scene_up_named(ups[i].name);
         assert_int_not_equal(up, SCENE_UP_UNKNOWN);
         for (int axes = SCENE_AXES_AS_THEY_ARE; axes <= SCENE_AXES_LUF; axes++) {
-            const scene_turn turn = scene_turn_to((scene_axes)axes, up);
+            const scene_turn turn = scene_turn_between(SCENE_AXES_AS_THEY_ARE, (scene_axes)axes, up);
             double turned[3];
             turn_vector(&turn, ups[i].up, turned);
             assert_true(turned[0] == 0 && turned[1] == 1 && turned[2] == 0);
@@ -113,8 +113,8 @@ static void knows_the_axes_of_formats(void **state)
     (void)state;
     const double point[3] = {1, 2, 3}, rub[3] = {1, -2, -3}, luf[3] = {-1, -2, 3};
     for (int axes = SCENE_AXES_AS_THEY_ARE; axes <= SCENE_AXES_LUF; axes++) {
-        const scene_turn to = scene_turn_to((scene_axes)axes, SCENE_UP_UNKNOWN),
-                         from = scene_turn_from((scene_axes)axes);
+        const scene_turn to = scene_turn_between(SCENE_AXES_AS_THEY_ARE, (scene_axes)axes, SCENE_UP_UNKNOWN),
+                         from = scene_turn_between((scene_axes)axes, SCENE_AXES_AS_THEY_ARE, SCENE_UP_UNKNOWN);
         double there[3], back[3];
         turn_vector(&to, point, there);
         turn_vector(&from, there, back);
@@ -123,7 +123,7 @@ static void knows_the_axes_of_formats(void **state)
         assert_memory_equal(there, want, sizeof there);
     }
     const int64_t origin[3] = {INT64_C(1) << 61, -5, 7};
-    const scene_turn turn = scene_turn_to(SCENE_AXES_RUB, SCENE_UP_UNKNOWN);
+    const scene_turn turn = scene_turn_between(SCENE_AXES_AS_THEY_ARE, SCENE_AXES_RUB, SCENE_UP_UNKNOWN);
     int64_t turned[3];
     scene_turn_origin(&turn, origin, turned);
     assert_true(turned[0] == origin[0] && turned[1] == 5 && turned[2] == -7);

@@ -37,7 +37,7 @@ static inline int fuzz_scene(const char *name, const uint8_t *data, size_t size)
 {
     scene_file scene;
     char error[256] = "";
-    if (scene_file_parse(name, data, size, &scene, error, sizeof error) != 0) {
+    if (scene_file_parse(name, data, size, 0, &scene, error, sizeof error) != 0) {
         if (error[0] == '\0' || scene.gaussians != NULL || scene.harmonics_q12 != NULL) {
             abort();
         }

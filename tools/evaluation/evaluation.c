@@ -228,7 +228,7 @@ static int through_file(reconstruction *loaded, const reconstruction *built, con
     }
     int failed = scene_file_write(path, &built->scene, 0, NULL, error, sizeof error);
     if (failed == 0) {
-        failed = scene_file_read(path, &scene, error, sizeof error);
+        failed = scene_file_read(path, 0, &scene, error, sizeof error);
     }
     unlink(path);
     part_files_forget(path);
@@ -329,7 +329,7 @@ static int measure_scene(evaluation_row *row, uint8_t *render, const evaluation_
     scene_file scene;
     reconstruction loaded;
     char error[512] = "";
-    if (scene_file_read(options->scene, &scene, error, sizeof error) != 0) {
+    if (scene_file_read(options->scene, 0, &scene, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     row->value[EVALUATION_GAUSSIANS] = scene.count;

@@ -51,7 +51,7 @@ static int look_at_judged(const char *path)
 {
     scene_file scene;
     char error[512] = "";
-    if (scene_file_read(path, &scene, error, sizeof error) != 0) {
+    if (scene_file_read(path, 0, &scene, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     scene_file_free(&scene);

@@ -11,7 +11,7 @@
 int scene_to_prune(const char *path, scene_file *scene)
 {
     char error[512] = "";
-    return scene_file_read(path, scene, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
+    return scene_file_read(path, 0, scene, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
 static int make_frame(scene_frames *made, uint32_t view, const scene_file *scene, const char *scene_path,

@@ -6,16 +6,29 @@
 #include <stdlib.h>
 
 #include "core/scene_frame.h"
+#include "geometry/quaternion.h"
 #include "host/reason.h"
 #include "scene/gaussian_shape.h"
+#include "scene/scene_extent.h"
 
-/* Farthest position for the runtime, in scene units; leaves a margin for the rounding of the origin. */
-#define FARTHEST 1023
+/* Widest scale of the fixed point, in scene units: such a Gaussian covers every picture. */
+#define SCALE_MOST 0x1p29
 
-static int compare_doubles(const void *a, const void *b)
+int scene_rows_read(const scene_rows *rows, uint32_t index, scene_row *row, char *error, size_t error_bytes)
 {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+    static const char *const axes[] = {"x", "y", "z"};
+    if (rows->read(rows->user, index, row, error, error_bytes) != 0) {
+        return -1;
+    }
+    for (int i = 0; i < 3; i++) {
+        if (!(fabs(row->position[i]) <= SCENE_POSITION_MOST)) {
+            return t3r_reason(error, error_bytes, "Gaussian %" PRIu32 ": %s = %g", index, axes[i], row->position[i]);
+        }
+    }
+    const double norm = quaternion_norm(row->rotation);
+    return norm > 0 && isfinite(norm)
+               ? 0
+               : t3r_reason(error, error_bytes, "Gaussian %" PRIu32 ": a rotation without length", index);
 }
 
 /* Converts a world coordinate to Q32; |value| < 2^30. */
@@ -24,66 +37,25 @@ static int64_t to_q32(double value)
     return (int64_t)nearbyint(ldexp(value, 32));
 }
 
-/* Reads a row and turns it to the axes of the scene. */
-static int read_row(const scene_rows *rows, const scene_turn *turn, uint32_t index, scene_row *row, char *error,
-                    size_t error_bytes)
-{
-    if (rows->read(rows->user, index, row, error, error_bytes) != 0) {
-        return -1;
-    }
-    scene_turn_apply(turn, row->position, row->rotation, rows->degree, row->rest);
-    return 0;
-}
-
-/* Chooses a frame for a file without one: origin at the mean position, median distance from it in [1, 2) scene units.
- * If the farthest is beyond the runtime's range of 2^10, the exponent rises by up to 6: positions then still resolve
- * 2^-14 of the median distance. */
+/* Chooses a frame for a file without one: origin at the centre, typical distance in [1, 2) scene units. */
 static int choose_frame(const scene_rows *rows, const scene_turn *turn, t3r_scene_frame *frame, char *error,
                         size_t error_bytes)
 {
-    double mean[3] = {0};
-    scene_row row;
-    for (uint32_t i = 0; i < rows->count; i++) {
-        if (read_row(rows, turn, i, &row, error, error_bytes) != 0) {
-            return -1;
-        }
-        for (int axis = 0; axis < 3; axis++) {
-            mean[axis] += row.position[axis] / rows->count;
-        }
+    scene_extent extent;
+    if (scene_extent_of(rows, &extent, error, error_bytes) != 0) {
+        return -1;
     }
-    double *distance = malloc(rows->count * sizeof *distance);
-    if (distance == NULL) {
-        return t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", rows->count);
-    }
-    double largest_scale = -INFINITY;
-    for (uint32_t i = 0; i < rows->count; i++) {
-        (void)read_row(rows, turn, i, &row, error, error_bytes); /* checked above */
-        const double *p = row.position, *scale = row.log_scale;
-        distance[i] = sqrt((p[0] - mean[0]) * (p[0] - mean[0]) + (p[1] - mean[1]) * (p[1] - mean[1]) +
-                           (p[2] - mean[2]) * (p[2] - mean[2]));
-        largest_scale = fmax(largest_scale, fmax(scale[0], fmax(scale[1], scale[2])));
-    }
-    qsort(distance, rows->count, sizeof *distance, compare_doubles);
-    double median = distance[rows->count / 2], farthest = distance[rows->count - 1];
-    free(distance);
-    /* Gaussians that share one place are as large as their scales */
-    double size = median > 0 ? median : farthest > 0 ? farthest : exp(fmin(fmax(largest_scale, -30), 30));
-    double span = fmax(fmax(fabs(mean[0]), fabs(mean[1])), fmax(fabs(mean[2]), farthest));
-    int exponent;
-    (void)frexp(size, &exponent);
-    exponent--;
-    if (!(span < 0x1p30) || exponent < T3R_EXPONENT_LEAST || exponent > T3R_EXPONENT_MOST) {
+    double *centre = extent.centre, none[4] = {1, 0, 0, 0};
+    scene_turn_apply(turn, centre, none, 0, NULL);
+    frame->exponent = scene_extent_exponent(&extent);
+    if (!(fmax(fabs(centre[0]), fmax(fabs(centre[1]), fabs(centre[2]))) < 0x1p30) ||
+        frame->exponent < T3R_EXPONENT_LEAST || frame->exponent > T3R_EXPONENT_MOST) {
         return t3r_reason(error, error_bytes,
-                          "half of the positions lie within %g units of (%g, %g, %g): outside 2^-24..2^24", size,
-                          mean[0], mean[1], mean[2]);
+                          "half of the positions lie within %g units of (%g, %g, %g): outside 2^-24..2^24",
+                          extent.typical, centre[0], centre[1], centre[2]);
     }
-    int raised = 0;
-    while (raised < 6 && exponent + raised < T3R_EXPONENT_MOST && ldexp(farthest, -exponent - raised) >= FARTHEST) {
-        raised++;
-    }
-    frame->exponent = exponent + raised;
     for (int axis = 0; axis < 3; axis++) {
-        frame->origin_q32[axis] = to_q32(mean[axis]);
+        frame->origin_q32[axis] = to_q32(centre[axis]);
     }
     return 0;
 }
@@ -108,45 +80,46 @@ static uint16_t clamp_to(double value, int most)
     return (uint16_t)(value <= 0 ? 0 : value >= most ? most : nearbyint(value));
 }
 
-/* Converts harmonics. Coefficients beyond 8 are clamped to 8: colours need no more than 2. */
-static void convert_harmonics(const scene_row *row, uint32_t degree, int16_t *harmonics_q12)
+/* Converts harmonics. Returns whether one is beyond 8, where it is clamped. */
+static bool convert_harmonics(const scene_row *row, uint32_t degree, int16_t *harmonics_q12)
 {
+    bool clipped = false;
     for (uint32_t i = 0; i < 3 * (harmonics_rest(degree) + 1); i++) {
-        const double value = i < 3 ? row->harmonic[i] : row->rest[i / 3 - 1][i % 3];
-        harmonics_q12[i] = (int16_t)fmax(fmin(nearbyint(value * 4096), INT16_MAX), INT16_MIN);
+        const double value = nearbyint((i < 3 ? row->harmonic[i] : row->rest[i / 3 - 1][i % 3]) * 4096);
+        harmonics_q12[i] = (int16_t)fmax(fmin(value, INT16_MAX), INT16_MIN);
+        clipped = clipped || value != harmonics_q12[i];
     }
+    return clipped;
 }
 
 static int convert_row(const scene_rows *rows, const scene_turn *turn, uint32_t index, scene_file *scene, char *error,
                        size_t error_bytes)
 {
-    static const char *const axes[] = {"x", "y", "z"};
+    static const double middle[3] = {0};
     const t3r_scene_frame *frame = &scene->frame;
     t3r_gaussian *g = &scene->gaussians[index];
     scene_row row;
     double scale[3];
-    if (read_row(rows, turn, index, &row, error, error_bytes) != 0) {
+    if (scene_rows_read(rows, index, &row, error, error_bytes) != 0) {
         return -1;
     }
+    scene_turn_apply(turn, row.position, row.rotation, rows->degree, row.rest);
+    for (int i = 0; i < 3 && !(rows->has_frame && rows->local); i++) {
+        row.position[i] -= ldexp((double)frame->origin_q32[i], -32);
+    }
+    scene->remarks.pulled += scene_pull(&row, middle, ldexp(SCENE_REACH, frame->exponent));
     *g = (t3r_gaussian){.confidence = 255};
     for (int i = 0; i < 3; i++) {
-        double origin = rows->has_frame && rows->local ? 0 : ldexp((double)frame->origin_q32[i], -32);
-        double position = nearbyint(ldexp(row.position[i] - origin, 20 - frame->exponent));
-        if (!(fabs(position) < T3R_POSITION_MOST_Q20)) {
-            return t3r_reason(error, error_bytes, "vertex %" PRIu32 ": %s = %g lies too far from the others", index,
-                              axes[i], row.position[i]);
-        }
-        g->position_q20[i] = (int32_t)position;
+        g->position_q20[i] = (int32_t)nearbyint(ldexp(row.position[i], 20 - frame->exponent));
         g->colour_q7[i] = clamp_to((0.5 + HARMONICS_ZERO * row.harmonic[i]) * 32640, 32640);
-        scale[i] = exp(row.log_scale[i] - frame->exponent * M_LN2);
+        scale[i] = fmin(exp(row.log_scale[i] - frame->exponent * M_LN2), SCALE_MOST);
     }
     if (gaussian_shape_set(g, scale, row.rotation) != 0) {
-        return t3r_reason(error, error_bytes,
-                          "vertex %" PRIu32 ": a rotation without length, or a scale beyond the format", index);
+        return t3r_reason(error, error_bytes, "Gaussian %" PRIu32 ": a shape beyond the format", index);
     }
     g->opacity_q15 = clamp_to(32768 / (1 + exp(-row.opacity_logit)), 32767);
     if (scene->degree > 0) {
-        convert_harmonics(&row, scene->degree, scene_file_harmonics(scene, index));
+        scene->remarks.clipped += convert_harmonics(&row, scene->degree, scene_file_harmonics(scene, index));
     }
     return 0;
 }
@@ -155,7 +128,7 @@ int scene_file_from_rows(const scene_rows *rows, scene_file *out, char *error, s
 {
     *out = (scene_file){0};
     scene_file scene = {.frame = rows->frame, .count = rows->count, .degree = rows->degree};
-    const scene_turn turn = scene_turn_from(rows->axes);
+    const scene_turn turn = scene_turn_between(rows->axes, SCENE_AXES_AS_THEY_ARE, SCENE_UP_UNKNOWN);
     if ((rows->has_frame ? check_frame(&scene.frame, error, error_bytes)
                          : choose_frame(rows, &turn, &scene.frame, error, error_bytes)) != 0) {
         return -1;

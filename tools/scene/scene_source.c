@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Converts the runtime's fixed point to the numbers of scene files. */
 #include <math.h>
 
+#include "geometry/quaternion.h"
 #include "scene/gaussian_shape.h"
 #include "scene/scene_rows.h"
+
+/* ---- rows of the runtime's fixed point --------------------------------------------------------------------------- */
 
 /* Returns the logit of an opacity. 0 has no logit, so it is written as an eighth of a step, which reads as 0 again. */
 static double opacity_logit(uint16_t opacity_q15)
@@ -12,50 +14,73 @@ static double opacity_logit(uint16_t opacity_q15)
     return log(opacity / (1 - opacity));
 }
 
-static void put_harmonics(const scene_source *source, uint32_t index, scene_row *row)
+static void put_harmonics(const scene_file *scene, uint32_t index, scene_row *row)
 {
-    const scene_file *scene = source->scene;
     const int16_t *harmonics_q12 = scene_file_harmonics(scene, index);
     for (uint32_t i = 0; i < 3 * (harmonics_rest(scene->degree) + 1); i++) {
         *(i < 3 ? &row->harmonic[i] : &row->rest[i / 3 - 1][i % 3]) = ldexp(harmonics_q12[i], -12);
     }
 }
 
-/* Writes the position before the turn. */
-static void put_position(const scene_source *source, uint32_t index, double position[3])
+static int read_gaussian(void *user, uint32_t index, scene_row *row, char *error, size_t error_bytes)
 {
-    const t3r_scene_frame *frame = &source->scene->frame;
-    for (int i = 0; i < 3; i++) {
-        double origin = (source->flags & SCENE_FILE_LOCAL) != 0 ? 0 : ldexp((double)frame->origin_q32[i], -32);
-        position[i] = origin + ldexp(source->scene->gaussians[index].position_q20[i], frame->exponent - 20);
-    }
-}
-
-void scene_source_position(const scene_source *source, uint32_t index, double position[3])
-{
-    double rotation[4] = {1, 0, 0, 0}, none[HARMONICS_REST_MOST][3];
-    put_position(source, index, position);
-    scene_turn_apply(&source->turn, position, rotation, 0, none);
-}
-
-void scene_source_row(const scene_source *source, uint32_t index, scene_row *row)
-{
-    const t3r_scene_frame *frame = &source->scene->frame;
-    const t3r_gaussian *g = &source->scene->gaussians[index];
+    (void)error;
+    (void)error_bytes;
+    const scene_file *scene = user;
+    const t3r_gaussian *g = &scene->gaussians[index];
+    const int32_t exponent = scene->frame.exponent;
     gaussian_shape shape = gaussian_shape_of(g);
     *row = (scene_row){.opacity_logit = opacity_logit(g->opacity_q15)};
-    put_position(source, index, row->position);
     for (int i = 0; i < 3; i++) {
+        row->position[i] = ldexp(g->position_q20[i], exponent - 20);
         row->harmonic[i] = (g->colour_q7[i] / 32640.0 - 0.5) / HARMONICS_ZERO;
-        row->log_scale[i] = log(shape.scale[i]) + frame->exponent * M_LN2;
+        row->log_scale[i] = log(shape.scale[i]) + exponent * M_LN2;
     }
     for (int i = 0; i < 4; i++) {
         row->rotation[i] = shape.rotation[i];
     }
-    if (source->scene->degree > 0) {
-        put_harmonics(source, index, row);
+    if (scene->degree > 0) {
+        put_harmonics(scene, index, row);
     }
-    scene_turn_apply(&source->turn, row->position, row->rotation, source->scene->degree, row->rest);
+    return 0;
+}
+
+scene_rows scene_rows_of(const scene_file *scene)
+{
+    return (scene_rows){.count = scene->count,
+                        .has_frame = true,
+                        .local = true,
+                        .frame = scene->frame,
+                        .degree = scene->degree,
+                        .read = read_gaussian,
+                        .user = (void *)(uintptr_t)scene}; /* only read */
+}
+
+/* ---- rows of a file to write ------------------------------------------------------------------------------------- */
+
+/* Replaces infinite logarithms, of which readers make no use: opacities within 2^-20 of the ends, and scales of 0 as
+ * the thinnest that are written. */
+static void make_finite(scene_row *row)
+{
+    const double logit_most = 20 * M_LN2;
+    row->opacity_logit = isfinite(row->opacity_logit) ? row->opacity_logit : copysign(logit_most, row->opacity_logit);
+    const double largest = fmax(row->log_scale[0], fmax(row->log_scale[1], row->log_scale[2]));
+    const double least = isfinite(largest) ? largest + log(GAUSSIAN_SHAPE_THINNEST) : log(GAUSSIAN_SHAPE_POINT);
+    for (int i = 0; i < 3; i++) {
+        row->log_scale[i] = isfinite(row->log_scale[i]) ? row->log_scale[i] : least;
+    }
+}
+
+void scene_source_row(const scene_source *source, uint32_t index, scene_row *row)
+{
+    const scene_rows *rows = source->rows;
+    (void)rows->read(rows->user, index, row, NULL, 0); /* checked when the scene's extent was measured */
+    for (int i = 0; i < 3; i++) {
+        row->position[i] += source->shift[i];
+    }
+    make_finite(row);
+    quaternion_normalise(row->rotation);
+    scene_turn_apply(&source->turn, row->position, row->rotation, rows->degree, row->rest);
 }
 
 double scene_row_opacity(const scene_row *row)

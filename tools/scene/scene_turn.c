@@ -57,17 +57,13 @@ static const double *from_scene(scene_axes axes)
     return axes == SCENE_AXES_RUB ? half_about_x : axes == SCENE_AXES_LUF ? half_about_z : stays;
 }
 
-scene_turn scene_turn_to(scene_axes axes, scene_up up)
+scene_turn scene_turn_between(scene_axes from, scene_axes to, scene_up up)
 {
-    double both[4];
-    const bool bare = axes == SCENE_AXES_AS_THEY_ARE && up != SCENE_UP_UNKNOWN;
-    quaternion_multiply(bare ? half_about_x : from_scene(axes), ups[up].rotation, both);
-    return axes_turn(both);
-}
-
-scene_turn scene_turn_from(scene_axes axes)
-{
-    return axes_turn(from_scene(axes)); /* a half turn is its own inverse */
+    double turned[4], all[4];
+    const bool bare = to == SCENE_AXES_AS_THEY_ARE && up != SCENE_UP_UNKNOWN;
+    quaternion_multiply(ups[up].rotation, from_scene(from), turned); /* a half turn is its own inverse */
+    quaternion_multiply(bare ? half_about_x : from_scene(to), turned, all);
+    return axes_turn(all);
 }
 
 void scene_turn_apply(const scene_turn *turn, double position[3], double rotation[4], uint32_t degree,

@@ -35,11 +35,9 @@ typedef struct scene_turn {
     harmonics_turn harmonics;
 } scene_turn;
 
-/* Returns the turn from a scene to a file with these axes. If `up` is known, y points up in the file, whatever its
- * format. */
-scene_turn scene_turn_to(scene_axes axes, scene_up up);
-/* Returns the turn from a file with these axes to a scene. */
-scene_turn scene_turn_from(scene_axes axes);
+/* Returns the turn from a file with the axes `from` to one with `to`. If `up` is known, it is an axis of the scene, and
+ * y points up in the second file, whatever its format. */
+scene_turn scene_turn_between(scene_axes from, scene_axes to, scene_up up);
 /* Returns the turn by a unit quaternion w x y z. */
 scene_turn scene_turn_of(const double rotation[4]);
 /* Turns a Gaussian with harmonics up to a degree of 0..3. */

@@ -121,7 +121,7 @@ static int diff_scenes(const diff_options *o)
     scene_file scene[2] = {0};
     char error[ERROR_BYTES] = "";
     for (int i = 0; i < 2; i++) {
-        if (scene_file_read(o->path[i], &scene[i], error, sizeof error) != 0) {
+        if (scene_file_read(o->path[i], 0, &scene[i], error, sizeof error) != 0) {
             scene_file_free(&scene[0]);
             return cli_error(CLI_BAD_INPUT, "%s", error);
         }

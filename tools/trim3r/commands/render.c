@@ -414,7 +414,7 @@ int command_render(int argc, char **argv)
     work_times times;
     work_times_begin(&times);
     int code = choose_viewpoints(&o, &views);
-    if (code == CLI_OK && scene_file_read(o.scene, &scene, error, sizeof error) != 0) {
+    if (code == CLI_OK && scene_file_read(o.scene, 0, &scene, error, sizeof error) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s", error);
     }
     work_times_end(&times, WORK_READ);

@@ -299,7 +299,7 @@ int command_view(int argc, char **argv)
     char error[ERROR_BYTES] = "";
     scene_file scene = {0};
     reconstruction r = {0};
-    if (o.scene != NULL && scene_file_read(o.scene, &scene, error, sizeof error) != 0) {
+    if (o.scene != NULL && scene_file_read(o.scene, 0, &scene, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     const int code = show(&o, &scene, &r);

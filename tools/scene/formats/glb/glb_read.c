@@ -253,7 +253,7 @@ static int read_row(void *user, uint32_t index, scene_row *row, char *error, siz
 
 /* ---- containers -------------------------------------------------------------------------------------------------- */
 
-static int parse_json(const reader *r, const cJSON *root, scene_file *out)
+static int parse_json(const reader *r, const cJSON *root, const scene_sink *sink)
 {
     const cJSON *primitive;
     uint32_t mesh_index = 0;
@@ -268,7 +268,7 @@ static int parse_json(const reader *r, const cJSON *root, scene_file *out)
                              .axes = SCENE_AXES_LUF,
                              .read = read_row,
                              .user = &file};
-    return scene_file_from_rows(&rows, out, r->error, r->error_bytes);
+    return sink->take(sink->user, &rows, r->error, r->error_bytes);
 }
 
 /* Reads the chunk at *at, which moves past it. */
@@ -287,13 +287,12 @@ static int next_chunk(const reader *r, const uint8_t *bytes, size_t count, size_
     return 0;
 }
 
-int glb_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+int glb_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes)
 {
     reader r = {NULL, 0, error, error_bytes};
     const uint8_t *text;
     uint32_t text_bytes;
     size_t at = GLB_HEADER_BYTES;
-    *out = (scene_file){0};
     if (count < GLB_HEADER_BYTES || memcmp(bytes, GLB_MAGIC, 4) != 0 ||
         t3r_load_le32(bytes + GLB_VERSION_AT) != GLB_VERSION) {
         return FAIL(&r, "byte 0: not a .glb of version 2");
@@ -310,7 +309,7 @@ int glb_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, 
     if (root == NULL) {
         return -1;
     }
-    const int result = parse_json(&r, root, out);
+    const int result = parse_json(&r, root, sink);
     cJSON_Delete(root);
     return result;
 }

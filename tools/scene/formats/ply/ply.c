@@ -8,6 +8,7 @@ const scene_format scene_format_ply = {
     .magic = "ply",
     .foreign = "byte 0: not a .ply file, nor another scene",
     .degree = 3,
+    .holds_origin = true,
     .parse = ply_parse,
     .write = ply_write,
 };

@@ -121,8 +121,8 @@ static int read_vertex(void *user, uint32_t index, scene_row *row, char *error, 
     return 0;
 }
 
-static int parse_vertices(const ply_header *header, const uint8_t *bytes, size_t count, scene_file *out, char *error,
-                          size_t error_bytes)
+static int parse_vertices(const ply_header *header, const uint8_t *bytes, size_t count, const scene_sink *sink,
+                          char *error, size_t error_bytes)
 {
     const ply_element *vertex;
     ply_vertices vertices = {0};
@@ -143,16 +143,15 @@ static int parse_vertices(const ply_header *header, const uint8_t *bytes, size_t
                        .degree = vertices.degree,
                        .read = read_vertex,
                        .user = &vertices};
-    return scene_file_from_rows(&rows, out, error, error_bytes);
+    return sink->take(sink->user, &rows, error, error_bytes);
 }
 
-int ply_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+int ply_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes)
 {
-    *out = (scene_file){0};
     ply_header header;
     if (ply_header_read(bytes, count, &header, error, error_bytes) != 0) {
         return -1;
     }
-    return packed_ply_is(&header) ? packed_ply_parse(&header, bytes, count, out, error, error_bytes)
-                                  : parse_vertices(&header, bytes, count, out, error, error_bytes);
+    return packed_ply_is(&header) ? packed_ply_parse(&header, bytes, count, sink, error, error_bytes)
+                                  : parse_vertices(&header, bytes, count, sink, error, error_bytes);
 }

@@ -37,7 +37,7 @@ static double logarithm(double position)
 /* Computes bounds and codebooks. Returns 0, or -1 without memory. */
 static int survey(const scene_source *source, sog_file *sog)
 {
-    const size_t count = source->scene->count;
+    const size_t count = source->rows->count;
     double *scales = malloc((3 * count + 1) * sizeof *scales), *colours = malloc((3 * count + 1) * sizeof *colours);
     const bool is_made = scales != NULL && colours != NULL;
     for (uint32_t i = 0; i < count && is_made; i++) {
@@ -107,7 +107,7 @@ static int begin_pictures(sog_file *sog, uint32_t count)
 static int fill_pictures(const scene_source *source, sog_file *sog)
 {
     uint32_t *order = scene_order_morton(source);
-    for (uint32_t i = 0; i < source->scene->count && order != NULL; i++) {
+    for (uint32_t i = 0; i < source->rows->count && order != NULL; i++) {
         scene_row row;
         uint8_t *texels[SOG_PICTURES];
         for (int k = 0; k < SOG_PICTURES; k++) {
@@ -256,7 +256,7 @@ static int write_archive(FILE *file, const sog_file *sog, uint32_t count, char *
 
 int sog_write(FILE *file, const scene_source *source, char *error, size_t error_bytes)
 {
-    const uint32_t count = source->scene->count;
+    const uint32_t count = source->rows->count;
     sog_file sog = {.degree = source->degree};
     int result = survey(source, &sog) == 0 && begin_pictures(&sog, count) == 0 && fill_pictures(source, &sog) == 0
                      ? 0

@@ -88,7 +88,7 @@ static int read_row(void *user, uint32_t index, scene_row *row, char *error, siz
     return 0;
 }
 
-static int make_scene(spz_file *file, scene_file *out, char *error, size_t error_bytes)
+static int take_rows(spz_file *file, const scene_sink *sink, char *error, size_t error_bytes)
 {
     const uint32_t degree = file->layout.degree;
     const scene_rows rows = {.count = file->layout.count,
@@ -96,7 +96,7 @@ static int make_scene(spz_file *file, scene_file *out, char *error, size_t error
                              .axes = SCENE_AXES_RUB,
                              .read = read_row,
                              .user = file};
-    return scene_file_from_rows(&rows, out, error, error_bytes);
+    return sink->take(sink->user, &rows, error, error_bytes);
 }
 
 /* ---- containers -------------------------------------------------------------------------------------------------- */
@@ -160,10 +160,9 @@ static int unpack_streams(const uint8_t *bytes, size_t count, spz_file *file, ui
     return 0;
 }
 
-int spz_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+int spz_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes)
 {
     spz_file file = {0};
-    *out = (scene_file){0};
     if (count < SPZ_HEADER_BYTES || memcmp(bytes, SPZ_MAGIC, 4) != 0) {
         return t3r_reason(error, error_bytes, "byte 0: not an .spz file");
     }
@@ -181,7 +180,7 @@ int spz_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, 
     file.streams[SPZ_HARMONICS] = whole;
     int result = unpack_streams(bytes, count, &file, whole, error, error_bytes);
     if (result == 0) {
-        result = make_scene(&file, out, error, error_bytes);
+        result = take_rows(&file, sink, error, error_bytes);
     }
     free(whole);
     return result;
@@ -226,12 +225,11 @@ static int inflate_file(z_stream *stream, uint64_t packed, spz_file *file, uint8
     return 0;
 }
 
-int spz_parse_gzip(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+int spz_parse_gzip(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes)
 {
     enum { GZIP = 16, WINDOW_BITS = 15 };
     spz_file file = {0};
     uint8_t *whole = NULL;
-    *out = (scene_file){0};
     z_stream stream = {.next_in = (Bytef *)(uintptr_t)bytes,
                        .avail_in = (uInt)(count < UINT32_MAX ? count : UINT32_MAX)};
     if (inflateInit2(&stream, GZIP + WINDOW_BITS) != Z_OK) {
@@ -239,7 +237,7 @@ int spz_parse_gzip(const uint8_t *bytes, size_t count, scene_file *out, char *er
     }
     int result = inflate_file(&stream, count, &file, &whole, error, error_bytes);
     if (result == 0) {
-        result = make_scene(&file, out, error, error_bytes);
+        result = take_rows(&file, sink, error, error_bytes);
     }
     free(whole);
     inflateEnd(&stream);
