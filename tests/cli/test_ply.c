@@ -254,8 +254,8 @@ static void refuses_foreign_headers(void **state)
         const char *from, *to, *reason;
     } bad[] = {
         {"ply\n", "plx\n", "not a .ply"},
-        {"binary_little_endian", "ascii", "binary_little_endian"},
-        {"binary_little_endian", "binary_big_endian", "binary_little_endian"},
+        {"binary_little_endian", "ascii", "cut off"},
+        {"binary_little_endian", "binary_middle_endian", "are read"},
         {"format binary_little_endian 1.0\n", "", "no format"},
         {"element vertex 1", "element face 1", "no element vertex"},
         {"element vertex 1", "element vertex -1", "no element"},
@@ -273,6 +273,7 @@ static void refuses_foreign_headers(void **state)
         {"float y", "float x", "twice"},
         {"property float opacity\n", "", "opacity is missing"},
         {"rot_3", "rot_4", "rot_3 is missing"},
+        {"scale_1", "scale_4", "scale_1 is missing"},
         {"end_header", "and_header", "unknown header line"},
         {"end_header\n", "comment trim3r exponent 99\ncomment trim3r origin_q32 0 0 0\nend_header\n", "exponent"},
         {"end_header\n", "comment trim3r exponent 0\ncomment trim3r origin_q32 9223372036854775807 0 0\nend_header\n",
@@ -370,7 +371,8 @@ static void reads_foreign_layouts(void **state)
     scene_file_free(&scene);
 }
 
-/* All points at a size of 1 but one far outside: it is moved where it does not fit, and the others keep their places. */
+/* All points at a size of 1 but one far outside: it is moved where it does not fit, and the others keep their places.
+ */
 static void fits_outliers(void **state)
 {
     (void)state;

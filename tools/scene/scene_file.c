@@ -6,9 +6,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "cli/cli.h"
 #include "cli/files/whole_file.h"
+#include "cli/options/file_kind.h"
 #include "core/scene_frame.h"
 #include "host/file_bytes.h"
 #include "host/reason.h"
@@ -43,7 +45,7 @@ static const scene_format *format_of_path(const char *path)
     size_t longest = 0;
     for (int i = 0; i < FORMATS_COUNT; i++) {
         const size_t end = strlen(formats[i]->suffix);
-        if (length > end && end > longest && strcmp(path + length - end, formats[i]->suffix) == 0) {
+        if (length > end && end > longest && strcasecmp(path + length - end, formats[i]->suffix) == 0) {
             found = formats[i];
             longest = end;
         }
@@ -62,10 +64,12 @@ static const scene_format *format_of_bytes(const uint8_t *bytes, size_t count)
     return NULL;
 }
 
-bool scene_file_is_read(const char *path)
+bool scene_file_is_one(const char *path)
 {
-    const scene_format *format = format_of_path(path);
-    return format != NULL && format->parse != NULL;
+    const file_kind kind = file_kind_of(path);
+    const scene_format *named = format_of_path(path);
+    return kind == FILE_SCENE ||
+           (kind != FILE_RECORDING && kind != FILE_PICTURE && named != NULL && named->parse != NULL);
 }
 
 bool scene_file_is_written(const char *path)
@@ -177,8 +181,16 @@ static void warn_of_far(const char *path, uint32_t count, const char *done)
                     path, count, done);
 }
 
+static void warn_of_text(const char *path, const char *text)
+{
+    if (text != NULL && text[0] != '\0') {
+        (void)cli_error(CLI_OK, "warning: %s: %s", path, text);
+    }
+}
+
 static void warn_of_remarks(const char *path, const scene_remarks *remarks)
 {
+    warn_of_text(path, remarks->text);
     warn_of_dropped(path, remarks->dropped);
     if (remarks->pulled > 0) {
         warn_of_far(path, remarks->pulled, "drawn nearer, and smaller in proportion");
@@ -203,7 +215,9 @@ int scene_file_read(const char *path, int flags, scene_file *out, char *error, s
         t3r_reason(error, error_bytes, "%s: %s", path, reason);
     }
     free(bytes);
-    warn_of_remarks(path, &out->remarks);
+    if ((flags & SCENE_FILE_QUIET) == 0) {
+        warn_of_remarks(path, &out->remarks);
+    }
     return result;
 }
 
@@ -294,6 +308,11 @@ static int write_all(const char *path, const scene_rows *rows, const scene_exten
     if (moves) {
         warn_of_origin(path, format, &source);
     }
+    if (rows->mip && !format->holds_mip) {
+        warn_of_text(path,
+                     "this format has no place for the mark of mip-splatting (antialiased): viewers will draw the "
+                     "scene too bright");
+    }
     return whole_file_commit(&file, NULL, error, error_bytes);
 }
 
@@ -338,7 +357,7 @@ int scene_file_write(const char *path, const t3r_scene *scene, int flags, const 
 /* ---- converting -------------------------------------------------------------------------------------------------- */
 
 typedef struct conversion {
-    const char *to;
+    const char *from, *to;
     int flags;
     scene_conversion *out;
     bool is_read; /* a reason is about the file that is written */
@@ -353,6 +372,7 @@ static int take_conversion(void *user, const scene_rows *rows, char *error, size
         return -1;
     }
     c->is_read = true;
+    warn_of_text(c->from, rows->remark);
     c->out->degree_read = rows->degree;
     return write_rows(c->to, rows, &extent, c->flags | kept, NULL, c->out, error, error_bytes);
 }
@@ -368,7 +388,7 @@ int scene_file_convert(const char *from, const char *to, int flags, scene_conver
         return -1;
     }
     char reason[512] = "";
-    conversion to_do = {.to = to, .flags = flags, .out = out};
+    conversion to_do = {.from = from, .to = to, .flags = flags, .out = out};
     const scene_sink sink = {take_conversion, &to_do};
     const int result = parse_rows(from, bytes, count, flags, &sink, &dropped, reason, sizeof reason);
     free(bytes);

@@ -16,6 +16,7 @@ typedef struct scene_remarks {
     uint32_t pulled;  /* Gaussians beyond the fixed point, moved to its end (scene_pull()) */
     uint32_t clipped; /* Gaussians with harmonics beyond 8, which are 8 now */
     uint32_t dropped; /* invalid Gaussians left out */
+    char text[96];    /* what of the file is not read; "": nothing */
 } scene_remarks;
 
 /* A scene outside the arena. */
@@ -25,8 +26,15 @@ typedef struct scene_file {
     uint32_t count;
     uint32_t degree;        /* of its harmonics, 0..3 */
     int16_t *harmonics_q12; /* heap; NULL: degree 0. In the layout of t3r_harmonics_colour(), Gaussian by Gaussian */
+    bool mip;               /* opacities are those of mip-splatting; see mip_opacity.h */
     scene_remarks remarks;
 } scene_file;
+
+/* Whether the Gaussians look different from each viewpoint. */
+static inline bool scene_file_depends_on_view(const scene_file *scene)
+{
+    return scene->degree > 0 || scene->mip;
+}
 
 /* Returns the numbers in harmonics_q12 per Gaussian. */
 static inline size_t scene_file_harmonics_count(const scene_file *scene)
@@ -40,17 +48,21 @@ static inline int16_t *scene_file_harmonics(const scene_file *scene, uint32_t in
     return scene->harmonics_q12 + index * scene_file_harmonics_count(scene);
 }
 
-/* Whether a path has the suffix of a scene file that can be read, or written. */
-bool scene_file_is_read(const char *path);
+/* Whether a file is a scene by its content; or by its suffix, if it does not exist or its content is no other kind. */
+bool scene_file_is_one(const char *path);
+/* Whether a path has the suffix of a scene file that can be written. */
 bool scene_file_is_written(const char *path);
 /* Writes the suffixes of files that can be written: ".ply, .splat". */
 const char *scene_file_suffixes(char text[SCENE_FILE_SUFFIXES_BYTES]);
 
 /* For reading: leaves out and counts Gaussians with numbers that are not finite or a rotation without length; without
  * it one of them refuses the file. */
-enum { SCENE_FILE_DROP_INVALID = 4 };
+enum {
+    SCENE_FILE_DROP_INVALID = 4,
+    SCENE_FILE_QUIET = 8, /* no warnings: the file was read before */
+};
 
-/* Reads a scene in the format that its first bytes identify, else its suffix. flags: 0 or SCENE_FILE_DROP_INVALID.
+/* Reads a scene in the format that its first bytes identify, else its suffix. flags: 0, or a sum of the two above.
  * Prints a warning for each of the remarks. Returns 0, or -1 with "what, where" in error[]. The scene frame (origin,
  * exponent) is the one in the file's SCENE_FILE_COMMENTS, else chosen from the positions. */
 int scene_file_read(const char *path, int flags, scene_file *out, char *error, size_t error_bytes);

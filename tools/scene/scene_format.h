@@ -16,6 +16,7 @@ typedef struct scene_format {
     scene_axes axes;     /* of written files; the reader knows its own */
     uint32_t degree;     /* highest degree of harmonics that is written, 0..3 */
     bool holds_origin;   /* a file can say where its origin is in the world */
+    bool holds_mip;      /* a file can say that its opacities are those of mip-splatting */
     bool shares_bits;    /* the farthest Gaussian decides how exactly the others' positions are written */
     /* Hands the rows to the sink, and returns what it returns; -1 with the reason in error[] if the bytes are no such
      * file. NULL: not read. */

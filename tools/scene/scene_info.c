@@ -122,7 +122,7 @@ static int tell_all(const scene_info_request *request, all_told *told)
     int code = CLI_OK;
     for (uint32_t i = 0; i < request->scene_count && code == CLI_OK; i++) {
         scene_file scene;
-        if (scene_file_read(request->scenes[i], 0, &scene, error, sizeof error) != 0) {
+        if (scene_file_read(request->scenes[i], request->flags, &scene, error, sizeof error) != 0) {
             return cli_error(CLI_BAD_INPUT, "%s", error);
         }
         told->scene[i] = tell_scene(&scene);

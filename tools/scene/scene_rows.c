@@ -3,18 +3,13 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 
-#include "core/scene_frame.h"
 #include "geometry/quaternion.h"
 #include "host/reason.h"
 #include "scene/gaussian_shape.h"
-#include "scene/scene_extent.h"
 
-/* Widest scale of the fixed point, in scene units: such a Gaussian covers every picture. */
-#define SCALE_MOST 0x1p29
-
-int scene_rows_read(const scene_rows *rows, uint32_t index, scene_row *row, char *error, size_t error_bytes)
+/* Reads a row. Returns 0, or -1 with the reason in error[], if one of its numbers cannot be used. */
+static int read_valid(const scene_rows *rows, uint32_t index, scene_row *row, char *error, size_t error_bytes)
 {
     static const char *const axes[] = {"x", "y", "z"};
     if (rows->read(rows->user, index, row, error, error_bytes) != 0) {
@@ -31,128 +26,99 @@ int scene_rows_read(const scene_rows *rows, uint32_t index, scene_row *row, char
                : t3r_reason(error, error_bytes, "Gaussian %" PRIu32 ": a rotation without length", index);
 }
 
-/* Converts a world coordinate to Q32; |value| < 2^30. */
-static int64_t to_q32(double value)
+int scene_rows_read(const scene_rows *rows, uint32_t index, scene_row *row, char *error, size_t error_bytes)
 {
-    return (int64_t)nearbyint(ldexp(value, 32));
+    char reason[160] = "";
+    return read_valid(rows, index, row, reason, sizeof reason) == 0
+               ? 0
+               : t3r_reason(error, error_bytes, "%s (--drop-invalid leaves such Gaussians out)", reason);
 }
 
-/* Chooses a frame for a file without one: origin at the centre, typical distance in [1, 2) scene units. */
-static int choose_frame(const scene_rows *rows, const scene_turn *turn, t3r_scene_frame *frame, char *error,
-                        size_t error_bytes)
+/* ---- rows of the runtime's fixed point --------------------------------------------------------------------------- */
+
+/* Returns the logit of an opacity. 0 has no logit, so it is written as an eighth of a step, which reads as 0 again. */
+static double opacity_logit(uint16_t opacity_q15)
 {
-    scene_extent extent;
-    if (scene_extent_of(rows, &extent, error, error_bytes) != 0) {
-        return -1;
-    }
-    double *centre = extent.centre, none[4] = {1, 0, 0, 0};
-    scene_turn_apply(turn, centre, none, 0, NULL);
-    frame->exponent = scene_extent_exponent(&extent);
-    if (!(fmax(fabs(centre[0]), fmax(fabs(centre[1]), fabs(centre[2]))) < 0x1p30) ||
-        frame->exponent < T3R_EXPONENT_LEAST || frame->exponent > T3R_EXPONENT_MOST) {
-        return t3r_reason(error, error_bytes,
-                          "half of the positions lie within %g units of (%g, %g, %g): outside 2^-24..2^24",
-                          extent.typical, centre[0], centre[1], centre[2]);
-    }
-    for (int axis = 0; axis < 3; axis++) {
-        frame->origin_q32[axis] = to_q32(centre[axis]);
-    }
-    return 0;
+    double opacity = opacity_q15 == 0 ? 0.125 / 32768 : opacity_q15 / 32768.0;
+    return log(opacity / (1 - opacity));
 }
 
-static int check_frame(const t3r_scene_frame *frame, char *error, size_t error_bytes)
+static void put_harmonics(const scene_file *scene, uint32_t index, scene_row *row)
 {
-    if (frame->exponent < T3R_EXPONENT_LEAST || frame->exponent > T3R_EXPONENT_MOST) {
-        return t3r_reason(error, error_bytes, "the header names an exponent of %" PRId32 ", outside %d..%d",
-                          frame->exponent, T3R_EXPONENT_LEAST, T3R_EXPONENT_MOST);
+    const int16_t *harmonics_q12 = scene_file_harmonics(scene, index);
+    for (uint32_t i = 0; i < 3 * (harmonics_rest(scene->degree) + 1); i++) {
+        *(i < 3 ? &row->harmonic[i] : &row->rest[i / 3 - 1][i % 3]) = ldexp(harmonics_q12[i], -12);
     }
-    for (int axis = 0; axis < 3; axis++) {
-        /* 2^30 world units, so that the difference of two origins fits */
-        if (frame->origin_q32[axis] <= -(INT64_C(1) << 62) || frame->origin_q32[axis] >= INT64_C(1) << 62) {
-            return t3r_reason(error, error_bytes, "the header names an origin beyond 2^30");
-        }
-    }
-    return 0;
 }
 
-static uint16_t clamp_to(double value, int most)
+static int read_gaussian(void *user, uint32_t index, scene_row *row, char *error, size_t error_bytes)
 {
-    return (uint16_t)(value <= 0 ? 0 : value >= most ? most : nearbyint(value));
-}
-
-/* Converts harmonics. Returns whether one is beyond 8, where it is clamped. */
-static bool convert_harmonics(const scene_row *row, uint32_t degree, int16_t *harmonics_q12)
-{
-    bool clipped = false;
-    for (uint32_t i = 0; i < 3 * (harmonics_rest(degree) + 1); i++) {
-        const double value = nearbyint((i < 3 ? row->harmonic[i] : row->rest[i / 3 - 1][i % 3]) * 4096);
-        harmonics_q12[i] = (int16_t)fmax(fmin(value, INT16_MAX), INT16_MIN);
-        clipped = clipped || value != harmonics_q12[i];
-    }
-    return clipped;
-}
-
-static int convert_row(const scene_rows *rows, const scene_turn *turn, uint32_t index, scene_file *scene, char *error,
-                       size_t error_bytes)
-{
-    static const double middle[3] = {0};
-    const t3r_scene_frame *frame = &scene->frame;
-    t3r_gaussian *g = &scene->gaussians[index];
-    scene_row row;
-    double scale[3];
-    if (scene_rows_read(rows, index, &row, error, error_bytes) != 0) {
-        return -1;
-    }
-    scene_turn_apply(turn, row.position, row.rotation, rows->degree, row.rest);
-    for (int i = 0; i < 3 && !(rows->has_frame && rows->local); i++) {
-        row.position[i] -= ldexp((double)frame->origin_q32[i], -32);
-    }
-    scene->remarks.pulled += scene_pull(&row, middle, ldexp(SCENE_REACH, frame->exponent));
-    *g = (t3r_gaussian){.confidence = 255};
+    (void)error;
+    (void)error_bytes;
+    const scene_file *scene = user;
+    const t3r_gaussian *g = &scene->gaussians[index];
+    const int32_t exponent = scene->frame.exponent;
+    gaussian_shape shape = gaussian_shape_of(g);
+    *row = (scene_row){.opacity_logit = opacity_logit(g->opacity_q15)};
     for (int i = 0; i < 3; i++) {
-        g->position_q20[i] = (int32_t)nearbyint(ldexp(row.position[i], 20 - frame->exponent));
-        g->colour_q7[i] = clamp_to((0.5 + HARMONICS_ZERO * row.harmonic[i]) * 32640, 32640);
-        scale[i] = fmin(exp(row.log_scale[i] - frame->exponent * M_LN2), SCALE_MOST);
+        row->position[i] = ldexp(g->position_q20[i], exponent - 20);
+        row->harmonic[i] = (g->colour_q7[i] / 32640.0 - 0.5) / HARMONICS_ZERO;
+        row->log_scale[i] = log(shape.scale[i]) + exponent * M_LN2;
     }
-    if (gaussian_shape_set(g, scale, row.rotation) != 0) {
-        return t3r_reason(error, error_bytes, "Gaussian %" PRIu32 ": a shape beyond the format", index);
+    for (int i = 0; i < 4; i++) {
+        row->rotation[i] = shape.rotation[i];
     }
-    g->opacity_q15 = clamp_to(32768 / (1 + exp(-row.opacity_logit)), 32767);
     if (scene->degree > 0) {
-        scene->remarks.clipped += convert_harmonics(&row, scene->degree, scene_file_harmonics(scene, index));
+        put_harmonics(scene, index, row);
     }
     return 0;
 }
 
-int scene_file_from_rows(const scene_rows *rows, scene_file *out, char *error, size_t error_bytes)
+scene_rows scene_rows_of(const scene_file *scene)
 {
-    *out = (scene_file){0};
-    scene_file scene = {.frame = rows->frame, .count = rows->count, .degree = rows->degree};
-    const scene_turn turn = scene_turn_between(rows->axes, SCENE_AXES_AS_THEY_ARE, SCENE_UP_UNKNOWN);
-    if ((rows->has_frame ? check_frame(&scene.frame, error, error_bytes)
-                         : choose_frame(rows, &turn, &scene.frame, error, error_bytes)) != 0) {
-        return -1;
-    }
-    scene.gaussians = malloc(rows->count * sizeof *scene.gaussians);
-    scene.harmonics_q12 =
-        rows->degree == 0 ? NULL : malloc(rows->count * scene_file_harmonics_count(&scene) * sizeof(int16_t));
-    if (scene.gaussians == NULL || (rows->degree > 0 && scene.harmonics_q12 == NULL)) {
-        scene_file_free(&scene);
-        return t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", rows->count);
-    }
-    for (uint32_t i = 0; i < rows->count; i++) {
-        if (convert_row(rows, &turn, i, &scene, error, error_bytes) != 0) {
-            scene_file_free(&scene);
-            return -1;
-        }
-    }
-    *out = scene;
-    return 0;
+    return (scene_rows){.count = scene->count,
+                        .has_frame = true,
+                        .local = true,
+                        .frame = scene->frame,
+                        .degree = scene->degree,
+                        .mip = scene->mip,
+                        .read = read_gaussian,
+                        .user = (void *)(uintptr_t)scene}; /* only read */
 }
 
-void scene_file_free(scene_file *scene)
+/* ---- rows of a file to write ------------------------------------------------------------------------------------- */
+
+/* Replaces infinite logarithms, of which readers make no use: opacities within 2^-20 of the ends, and scales of 0 as
+ * the thinnest that are written. */
+static void make_finite(scene_row *row)
 {
-    free(scene->gaussians);
-    free(scene->harmonics_q12);
-    *scene = (scene_file){0};
+    const double logit_most = 20 * M_LN2;
+    row->opacity_logit = isfinite(row->opacity_logit) ? row->opacity_logit : copysign(logit_most, row->opacity_logit);
+    const double largest = fmax(row->log_scale[0], fmax(row->log_scale[1], row->log_scale[2]));
+    const double least = isfinite(largest) ? largest + log(GAUSSIAN_SHAPE_THINNEST) : log(GAUSSIAN_SHAPE_POINT);
+    for (int i = 0; i < 3; i++) {
+        row->log_scale[i] = isfinite(row->log_scale[i]) ? row->log_scale[i] : least;
+    }
+}
+
+void scene_source_row(const scene_source *source, uint32_t index, scene_row *row)
+{
+    const scene_rows *rows = source->rows;
+    (void)rows->read(rows->user, index, row, NULL, 0); /* checked when the scene's extent was measured */
+    for (int i = 0; i < 3; i++) {
+        row->position[i] += source->shift[i];
+    }
+    make_finite(row);
+    quaternion_normalise(row->rotation);
+    scene_turn_apply(&source->turn, row->position, row->rotation, rows->degree, row->rest);
+}
+
+double scene_row_opacity(const scene_row *row)
+{
+    return 1 / (1 + exp(-row->opacity_logit));
+}
+
+double scene_row_colour(const scene_row *row, int channel)
+{
+    return 0.5 + HARMONICS_ZERO * row->harmonic[channel];
 }

@@ -28,16 +28,20 @@ typedef struct scene_rows {
     bool has_frame; /* the file has a frame; else one is chosen from the positions */
     bool local;     /* positions are relative to the given frame's origin */
     t3r_scene_frame frame;
-    uint32_t degree; /* of the rows' harmonics, 0..3 */
-    scene_axes axes; /* of the file */
+    uint32_t degree;    /* of the rows' harmonics, 0..3 */
+    scene_axes axes;    /* of the file */
+    bool mip;           /* opacities are those of mip-splatting (SPZ's "antialiased") */
+    const char *remark; /* what of the file is not read; NULL: nothing */
     /* Reads row `index`, any number of times. Returns 0, or -1 with the reason in error[]. */
     int (*read)(void *user, uint32_t index, scene_row *row, char *error, size_t error_bytes);
     void *user;
 } scene_rows;
 
+#define SCENE_REMARK_DEGREE_4 "harmonics of degree 4 are left out"
+
 /* Reads a row and checks it: its position is within SCENE_POSITION_MOST, its rotation has a length. */
 int scene_rows_read(const scene_rows *rows, uint32_t index, scene_row *row, char *error, size_t error_bytes);
-#define SCENE_POSITION_MOST 0x1p100
+#define SCENE_POSITION_MOST 0x1p1000
 
 /* Takes the rows of a file, which live until it returns. Returns 0, or -1 with the reason in error[]. */
 typedef struct scene_sink {

@@ -9,11 +9,18 @@
 
 #include "scene/harmonics.h"
 
-/* The axes of a format's files. */
+/* The axes of a file: where x, y and z point, of left or right, up or down, forward or backward. Numbers and meaning
+ * are those of nianticlabs/spz, whose files can declare any of them; half of them mirror a scene. From SCENE_AXES_LFD
+ * on that library turns the axes with the number 8 less by a quarter about x, which is not what its names say. */
 typedef enum scene_axes {
     SCENE_AXES_AS_THEY_ARE, /* the scene's axes, whatever they are */
-    SCENE_AXES_RUB,         /* x right, y up, z backward */
-    SCENE_AXES_LUF,         /* x left, y up, z forward */
+    SCENE_AXES_LDB,
+    SCENE_AXES_RUB = 4, /* x right, y up, z backward */
+    SCENE_AXES_RDF = 6, /* x right, y down, z forward: as scenes */
+    SCENE_AXES_LUF = 7, /* x left, y up, z forward */
+    SCENE_AXES_LFD = 9,
+    SCENE_AXES_RBU = 16,
+    SCENE_AXES_LAST = SCENE_AXES_RBU
 } scene_axes;
 
 /* The axis of a scene that points up. */
@@ -30,8 +37,9 @@ typedef enum scene_up {
 
 typedef struct scene_turn {
     bool none;          /* identity: need not be applied */
+    bool mirrors;       /* the rotation is followed by x, y, z -> -x, -y, -z */
     double rotation[4]; /* unit quaternion, w x y z */
-    double matrix[9];   /* the same, row-major; between axes the entries are -1, 0 and 1 */
+    double matrix[9];   /* of positions, row-major; between axes the entries are -1, 0 and 1 */
     harmonics_turn harmonics;
 } scene_turn;
 

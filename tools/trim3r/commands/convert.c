@@ -27,6 +27,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     options *o = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->flags;
+        return 0;
     case 'o':
         o->output = argument;
         return 0;
@@ -62,6 +65,7 @@ static const struct argp_option argp_options[] = {
     {0},
 };
 
+static const struct argp_child children[] = {{.argp = &scene_input_argp}, {0}};
 static const struct argp argp = {
     .options = argp_options,
     .parser = parse_option,
@@ -74,6 +78,7 @@ static const struct argp argp = {
            "  trim3r convert scene.ply -o scene.spz\n"
            "  trim3r convert theirs.compressed.ply -o theirs.ply\n"
            "  trim3r convert scene.ply --up z -o scene.splat",
+    .children = children,
 };
 
 static void report(const options *o, const scene_conversion *done)

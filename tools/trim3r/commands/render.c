@@ -20,6 +20,7 @@
 #include "pictures/picture.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_error.h"
+#include "scene/scene_options.h"
 
 #define ERROR_BYTES 512
 #define MAX_PATH_BYTES 4096
@@ -122,6 +123,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->settings.processor;
+        state->child_inputs[1] = &o->settings.scene_flags;
         return 0;
     case KEY_VIEW:
         o->view = option_number(state, "view", arg, 0, UINT32_MAX);
@@ -176,7 +178,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-static const struct argp_child children[] = {{.argp = &processor_argp}, {0}};
+static const struct argp_child children[] = {{.argp = &processor_argp}, {.argp = &scene_input_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,
@@ -317,7 +319,7 @@ static int render_one(const render_options *o, reconstruction *r, const viewpoin
     };
     r->give_up_at = o->most_ms > 0 ? cli_now() + o->most_ms / 1e3 : 0;
     work_times_pass(times);
-    int code = reconstruction_look_from(r, &view->camera);
+    int code = reconstruction_look_from(r, &view->camera, view->width, view->height);
     if (code != CLI_OK) {
         return code;
     }
@@ -414,7 +416,7 @@ int command_render(int argc, char **argv)
     work_times times;
     work_times_begin(&times);
     int code = choose_viewpoints(&o, &views);
-    if (code == CLI_OK && scene_file_read(o.scene, 0, &scene, error, sizeof error) != 0) {
+    if (code == CLI_OK && scene_file_read(o.scene, o.settings.scene_flags, &scene, error, sizeof error) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s", error);
     }
     work_times_end(&times, WORK_READ);

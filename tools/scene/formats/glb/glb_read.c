@@ -31,6 +31,7 @@ typedef struct accessor {
 typedef struct glb_file {
     accessor attributes[GLB_ATTRIBUTES_MOST];
     uint32_t degree;
+    const char *remark; /* as in scene_rows */
     glb_placement placement;
 } glb_file;
 
@@ -163,6 +164,23 @@ static int read_accessor(const reader *r, const cJSON *root, uint32_t index, uin
     return 0;
 }
 
+/* Says what harmonics the reader leaves out; NULL: none. */
+static const char *remark_of(const cJSON *attributes, uint32_t degree)
+{
+    const cJSON *each;
+    uint32_t count = 0;
+    bool has_more = false; /* a higher degree than the runtime draws */
+    cJSON_ArrayForEach(each, attributes)
+    {
+        count += strncmp(each->string, GLB_EXTENSION ":SH_DEGREE_", sizeof GLB_EXTENSION ":SH_DEGREE_" - 1) == 0;
+        has_more = has_more || strcmp(each->string, GLB_EXTENSION ":SH_DEGREE_4_COEF_0") == 0;
+    }
+    return count <= 1 + harmonics_rest(degree) ? NULL
+           : has_more && degree == HARMONICS_DEGREE_MOST
+               ? SCENE_REMARK_DEGREE_4
+               : "harmonics of a degree that lacks a coefficient are left out";
+}
+
 static int find_attributes(const reader *r, const cJSON *root, const cJSON *primitive, glb_file *out)
 {
     const cJSON *attributes = get(primitive, "attributes");
@@ -183,6 +201,7 @@ static int find_attributes(const reader *r, const cJSON *root, const cJSON *prim
             out->degree++;
         }
     }
+    out->remark = remark_of(attributes, out->degree);
     return 0;
 }
 
@@ -266,6 +285,7 @@ static int parse_json(const reader *r, const cJSON *root, const scene_sink *sink
     const scene_rows rows = {.count = file.attributes[GLB_POSITION].count,
                              .degree = file.degree,
                              .axes = SCENE_AXES_LUF,
+                             .remark = file.remark,
                              .read = read_row,
                              .user = &file};
     return sink->take(sink->user, &rows, r->error, r->error_bytes);

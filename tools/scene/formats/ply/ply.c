@@ -9,6 +9,7 @@ const scene_format scene_format_ply = {
     .foreign = "byte 0: not a .ply file, nor another scene",
     .degree = 3,
     .holds_origin = true,
+    .holds_mip = true,
     .parse = ply_parse,
     .write = ply_write,
 };

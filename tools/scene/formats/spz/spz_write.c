@@ -138,6 +138,7 @@ static void write_packed(FILE *file, const spz_layout *layout, const packed_stre
     t3r_store_le32(header + SPZ_COUNT_AT, layout->count);
     header[SPZ_DEGREE_AT] = (uint8_t)layout->degree;
     header[SPZ_FRACTION_AT] = (uint8_t)layout->fraction_bits;
+    header[SPZ_FLAGS_AT] = (uint8_t)layout->flags;
     header[SPZ_STREAMS_AT] = (uint8_t)stream_count;
     t3r_store_le32(header + SPZ_TABLE_AT, SPZ_HEADER_BYTES);
     fwrite(header, 1, sizeof header, file);
@@ -158,7 +159,8 @@ int spz_write(FILE *file, const scene_source *source, char *error, size_t error_
     if (fraction_bits < 0) {
         return t3r_reason(error, error_bytes, "positions of 2^23 world units and more have no place in an .spz");
     }
-    const spz_layout layout = {SPZ_VERSION, source->rows->count, source->degree, (uint32_t)fraction_bits};
+    const spz_layout layout = {SPZ_VERSION, source->rows->count, source->degree, (uint32_t)fraction_bits,
+                               source->rows->mip ? SPZ_FLAG_MIP : 0};
     const int stream_count = source->degree > 0 ? SPZ_STREAMS : SPZ_HARMONICS;
     packed_stream streams[SPZ_STREAMS] = {0};
     const int result = pack_streams(source, &layout, stream_count, streams);
