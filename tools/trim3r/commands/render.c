@@ -286,14 +286,27 @@ static int write_picture(const char *path, uint32_t index, uint32_t count, const
     return picture_write_png(name, p, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
-/* Scene units in Q20 to steps of the depth picture; what does not fit 16 bits becomes 65535. */
-static void convert_depth(const uint32_t *depth_q20, size_t count, double unit, int exponent, uint16_t *out)
+/* Converts scene units in Q20 to steps of the depth picture. A depth of more steps than 16 bits hold becomes 0, none.
+ * Returns the number of these pixels. */
+static uint32_t convert_depth(const uint32_t *depth_q20, size_t count, double unit, int exponent, uint16_t *out)
 {
     double steps = ldexp(1.0, exponent - 20) / unit;
+    uint32_t far = 0;
     for (size_t i = 0; i < count; i++) {
         double value = nearbyint(depth_q20[i] * steps);
-        out[i] = depth_q20[i] == 0 ? 0 : value < 1 ? 1 : value > 65535 ? 65535 : (uint16_t)value;
+        out[i] = depth_q20[i] == 0 || value > UINT16_MAX ? 0 : value < 1 ? 1 : (uint16_t)value;
+        far += value > UINT16_MAX;
     }
+    return far;
+}
+
+static bool shows_nothing(const uint16_t *alpha_q15, size_t count)
+{
+    size_t i = 0;
+    while (i < count && alpha_q15[i] == 0) {
+        i++;
+    }
+    return i == count;
 }
 
 typedef struct planes {
@@ -314,7 +327,7 @@ static int render_one(const render_options *o, reconstruction *r, const viewpoin
         .rgb_stride_bytes = view->width * 3,
         .depth_q20 = o->depth != NULL ? p->depth_q20 : NULL,
         .depth_stride_bytes = view->width * 4,
-        .alpha_q15 = o->alpha != NULL ? p->alpha_q15 : NULL,
+        .alpha_q15 = p->alpha_q15,
         .alpha_stride_bytes = view->width * 2,
     };
     r->give_up_at = o->most_ms > 0 ? cli_now() + o->most_ms / 1e3 : 0;
@@ -333,11 +346,21 @@ static int render_one(const render_options *o, reconstruction *r, const viewpoin
         const char *from = o->pose != NULL ? o->pose : o->trajectory != NULL ? o->trajectory : o->recording;
         return reconstruction_error(status, from, &r->config, r->arena_bytes);
     }
+    if (shows_nothing(p->alpha_q15, pixels)) {
+        (void)cli_error(CLI_OK, "warning: view %" PRIu32 " shows nothing of the scene: no Gaussian is in front of it",
+                        index);
+    }
     *hash = t3r_hash_bytes(*hash, p->rgb, pixels * 3);
     code = write_picture(o->output, index, count, &(picture){view->width, view->height, 3, 8, p->rgb});
     picture grey = {view->width, view->height, 1, 16, p->grey};
     if (code == CLI_OK && o->depth != NULL) {
-        convert_depth(p->depth_q20, pixels, o->depth_unit, r->scene.frame.exponent, p->grey);
+        const uint32_t far = convert_depth(p->depth_q20, pixels, o->depth_unit, r->scene.frame.exponent, p->grey);
+        if (far > 0) {
+            (void)cli_error(CLI_OK,
+                            "warning: %s: %" PRIu32 " pixels are farther than 65535 steps of %g, and 0: raise "
+                            "--depth-unit",
+                            o->depth, far, o->depth_unit);
+        }
         code = write_picture(o->depth, index, count, &grey);
     }
     if (code == CLI_OK && o->alpha != NULL) {
