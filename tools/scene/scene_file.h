@@ -26,7 +26,7 @@ typedef struct scene_file {
     uint32_t count;
     uint32_t degree;        /* of its harmonics, 0..3 */
     int16_t *harmonics_q12; /* heap; NULL: degree 0. In the layout of t3r_harmonics_colour(), Gaussian by Gaussian */
-    bool mip;               /* opacities are those of mip-splatting; see mip_opacity.h */
+    bool mip;               /* opacities are those of mip-splatting; see seen_gaussian.h */
     scene_remarks remarks;
 } scene_file;
 
