@@ -133,7 +133,9 @@ static int tell_all(const scene_info_request *request, all_told *told)
         }
         scene_file_free(&scene);
     }
-    told->bins = scale_bins_of(told->scales, request->scene_count);
+    if (code == CLI_OK) {
+        told->bins = scale_bins_of(told->scales, request->scene_count);
+    }
     return code;
 }
 

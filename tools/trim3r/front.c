@@ -12,6 +12,7 @@
 
 #include "cli/cli.h"
 #include "cli/options/man_page.h"
+#include "cli/tables/json_output.h"
 #include "cli/text/edit_distance.h"
 #include "cli/text/style.h"
 #include "host/text.h"
@@ -217,6 +218,7 @@ static void open_closed_streams(void)
 int trim3r_main(int argc, char **argv, const trim3r_extension *added)
 {
     open_closed_streams();
+    json_watch_memory();
     list_commands(added);
     argp_err_exit_status = CLI_BAD_USAGE;
     signal(SIGXFSZ, SIG_IGN); /* a file too large is an error of write() like any other */

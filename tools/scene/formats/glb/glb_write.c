@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/tables/json_output.h"
 #include "core/little_endian.h"
 #include "host/little_floats.h"
 #include "host/reason.h"
@@ -111,6 +112,7 @@ static void add_translation(cJSON *node, const scene_source *source)
 static char *make_json(const scene_source *source, const glb_layout *layout)
 {
     const int none = 0;
+    json_watch_memory();
     cJSON *root = cJSON_CreateObject(), *item = cJSON_AddObjectToObject(root, "asset");
     cJSON_AddStringToObject(item, "version", "2.0");
     cJSON_AddStringToObject(item, "generator", "trim3r");
@@ -132,9 +134,7 @@ static char *make_json(const scene_source *source, const glb_layout *layout)
     item = cJSON_AddObjectToObject(cJSON_AddObjectToObject(item, "extensions"), GLB_EXTENSION);
     cJSON_AddStringToObject(item, "kernel", "ellipse");
     cJSON_AddStringToObject(item, "colorSpace", "srgb_rec709_display");
-    char *text = cJSON_PrintUnformatted(root);
-    cJSON_Delete(root);
-    return text;
+    return json_text(root);
 }
 
 /* ---- numbers ----------------------------------------------------------------------------------------------------- */
