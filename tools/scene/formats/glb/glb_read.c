@@ -93,7 +93,7 @@ static int find_primitive(const reader *r, const cJSON *root, const cJSON **prim
                 continue;
             }
             if (*primitive != NULL) {
-                return FAIL(r, "two primitives of Gaussians: one is read");
+                return FAIL(r, "two primitives of Gaussians: files with one are read; export the scene as one .ply");
             }
             *primitive = each;
             *mesh_index = index;
@@ -112,11 +112,14 @@ static int check_extensions(const reader *r, const cJSON *root, const cJSON *pri
     cJSON_ArrayForEach(each, required)
     {
         if (!cJSON_IsString(each) || strcmp(each->valuestring, GLB_EXTENSION) != 0) {
-            return FAIL(r, "it needs the extension '%s'", cJSON_IsString(each) ? each->valuestring : "?");
+            return FAIL(r, "it needs the extension '%s', which is not read; export the scene as .ply or .spz",
+                        cJSON_IsString(each) ? each->valuestring : "?");
         }
     }
     if (get(gaussians, "extensions") != NULL) {
-        return FAIL(r, "the Gaussians have an extension of their own");
+        return FAIL(
+            r,
+            "the Gaussians have an extension of their own, as those packed as SPZ; export the scene as .ply or .spz");
     }
     return is_text(gaussians, "kernel", "ellipse") && is_text(gaussians, "colorSpace", "srgb_rec709_display")
                ? 0

@@ -128,6 +128,10 @@ static int read_meta(const reader *r, const cJSON *meta, uint64_t packed, sog_fi
         int index;
     } files[SOG_PICTURES] = {{"means", 0}, {"means", 1}, {"scales", 0}, {"quats", 0}, {"sh0", 0}};
     uint32_t version;
+    if (get(meta, "version") == NULL && get(meta, "means") != NULL) {
+        return FAIL(r, SOG_META ": SOG of version 1; %d is read: convert it by PlayCanvas's splat-transform",
+                    SOG_VERSION);
+    }
     if (get_whole(r, meta, "version", UINT32_MAX, &version) != 0) {
         return -1;
     }
