@@ -7,7 +7,7 @@ import sys
 
 import branches
 
-AREAS = ("unit", "oracle", "workers", "kernels", "formats")
+AREAS = ("unit", "oracle", "workers", "kernels", "formats", "planning")
 GOLDEN_WAYS = ([], ["--arena", "min", "--tasks", "reverse", "--workers", "3"], ["--moved"], ["--cpu-mask", "all"])
 
 HEADS = ("none", "analytic", "tiny", "small")

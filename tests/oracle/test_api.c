@@ -707,11 +707,6 @@ static const char *stage_name(int i)
     return t3r_stage_name((t3r_stage)i);
 }
 
-static const char *work_name(int i)
-{
-    return t3r_work_name((t3r_work)i);
-}
-
 static const char *allocation_name(int i)
 {
     return t3r_allocation_name((t3r_allocation)i);
@@ -762,7 +757,6 @@ static void texts(void **state)
         int first, count;
     } tables[] = {
         {stage_name, 0, T3R_STAGE_COUNT},
-        {work_name, 0, T3R_WORK_COUNT},
         {allocation_name, T3R_ALLOCATE_CONFIGURED + 1, T3R_ALLOCATE_COUNT},
         {head_name, T3R_HEAD_CONFIGURED + 1, T3R_HEAD_COUNT},
         {wavelet_name, 0, T3R_WAVELET_COUNT},

@@ -66,13 +66,11 @@ static void another_interface(void **state)
     const uint64_t other = t3r_header_interface() + 1;
     t3r_config config = some_config();
     t3r_plan_info plan;
-    t3r_ram_info ram;
     t3r_runtime *rt = opened(&config);
     size_t least, most;
     assert_int_equal(t3r_plan_as(other, &config, &plan), T3R_ERR_INTERFACE);
     assert_int_equal(t3r_plan_bytes_as(other, &config, &least, &most), T3R_ERR_INTERFACE);
     assert_int_equal(t3r_plan_within_as(other, SIZE_MAX, &config), T3R_ERR_INTERFACE);
-    assert_int_equal(t3r_ram_config_as(other, 1 << 20, &config, &ram), T3R_ERR_INTERFACE);
     assert_int_equal(t3r_attach_as(other, &rt, arena, arena_bytes), T3R_ERR_INTERFACE);
     assert_null(rt);
     assert_int_equal(t3r_init_as(other, &rt, arena, arena_bytes, &config), T3R_ERR_INTERFACE);
@@ -106,11 +104,6 @@ static void missing_pointers(void **state)
     assert_int_equal(t3r_head_crc(NULL), 0);
     assert_int_equal(t3r_cluster_count(NULL), 0);
     assert_int_equal(t3r_cluster_batch_count(NULL), 0);
-    static const t3r_work_counts counts = {{1}};
-    static const t3r_prices prices = {{1000}};
-    assert_int_equal(t3r_price_of(&counts, NULL, T3R_STAGE_IMAGE), 0);
-    assert_int_equal(t3r_price_of(NULL, &prices, T3R_STAGE_IMAGE), 0);
-    assert_int_equal(t3r_price_of_build(NULL, &prices), 0);
     assert_int_equal(t3r_refinement_passes(NULL), 0);
     assert_int_equal(t3r_render_passes(NULL), 0);
     t3r_runtime *rt = opened(&config);

@@ -450,7 +450,7 @@ static int run_calibration(const bench_options *o)
         json_print(root);
         return CLI_OK;
     }
-    printf("%s: prices of %d kinds of work; largest error of a stage's time in a trial:\n", o->output, T3R_WORK_COUNT);
+    printf("%s: prices of %d kinds of work; largest error of a stage's time in a trial:\n", o->output, WORK_KIND_COUNT);
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
         printf("%-14s %5.1f %%\n", t3r_stage_name((t3r_stage)stage), errors[stage] * 100);
     }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r plan: what an arena holds and how much work a build is, before anything runs; or which settings fit. */
 #include "trim3r/commands/commands.h"
-#include "trim3r/commands/plan_ram.h"
 
 #include <argp.h>
 #include <inttypes.h>
@@ -16,7 +15,9 @@
 #include "cli/tables/json_output.h"
 #include "core/fixed.h"
 #include "pictures/plan_picture.h"
+#include "planning/choices.h"
 #include "planning/fitting.h"
+#include "planning/ram.h"
 #include "planning/work_table.h"
 #include "reconstruction/options/head_option.h"
 #include "reconstruction/options/option_names.h"
@@ -69,7 +70,7 @@ static const struct argp_option options[] = {
     {"within", KEY_WITHIN, "BYTES[K|M|G]", 0,
      "bytes of an arena, for the largest budget that it can hold, at most --gaussians (all points of the views)", 0},
     {"ram", KEY_RAM, "BYTES[K|M|G]", 0,
-     "bytes of a device's RAM, as 256K or 4M: print the settings that serve it best, and what takes it", 0},
+     "bytes of a device's RAM, as 256K or 4M: print the best settings for it, and what takes it", 0},
     {"preset", KEY_PRESET, "fast|balanced|best", 0, "head and refinement that build has for so much work", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
     {"keep-analysis", KEY_KEEP_ANALYSIS, NULL, 0, "keep the analysis after the build, so that the budget can change",
@@ -90,7 +91,7 @@ static bool lists(const plan_options *o)
 static t3r_config unset(void)
 {
     t3r_config config = t3r_default_config(0, 0, 2, 0);
-    config.refine = T3R_ANY_REFINE;
+    config.refine = CHOICES_ANY_REFINE;
     return config;
 }
 
@@ -222,8 +223,8 @@ static const struct argp argp = {
     .children = children,
 };
 
-static void print_json(const t3r_config *config, const t3r_plan_info *plan, const t3r_work_counts *work,
-                       const t3r_prices *prices)
+static void print_json(const t3r_config *config, const t3r_plan_info *plan, const work_counts *work,
+                       const work_prices *prices)
 {
     cJSON *root = cJSON_CreateObject();
     json_add_integer(root, "width", config->width);
@@ -308,17 +309,17 @@ static int lower_budget(t3r_config *config, uint64_t bytes)
 static int print_plan(const plan_options *o, const t3r_config *config, const chosen_head *head)
 {
     t3r_plan_info plan;
-    t3r_work_counts work;
+    work_counts work;
     machine m;
     t3r_status status = t3r_plan(config, &plan);
     if (status == T3R_OK) {
         const size_t bytes = o->within != 0 ? (size_t)o->within : plan.bytes;
-        status = t3r_count_work(config, bytes, head->weights, head->bytes, &work);
+        status = work_count(config, bytes, head->weights, &work);
     }
     if (status != T3R_OK) {
         return reconstruction_error(status, "settings", config, 0);
     }
-    const t3r_prices *prices = o->fitting.machine != NULL ? &m.prices : NULL;
+    const work_prices *prices = o->fitting.machine != NULL ? &m.prices : NULL;
     int code = prices != NULL ? fitting_machine(&o->fitting, config->workers, &m) : CLI_OK;
     if (code == CLI_OK && o->svg != NULL) {
         code = write_svg(o->svg, &plan);
@@ -346,7 +347,7 @@ int command_plan(int argc, char **argv)
     plan_options o = {.config = unset()};
     file_options_parse(&argp, argc, argv, &o);
     if (o.ram != 0) {
-        return plan_ram(o.ram, o.json);
+        return ram_print(o.ram, o.json);
     }
 
     t3r_config config = o.config;
@@ -357,7 +358,7 @@ int command_plan(int argc, char **argv)
     if (lists(&o)) {
         return fitting_list(&o.fitting, &config, o.head, o.json, o.markdown);
     }
-    if (config.refine == T3R_ANY_REFINE) {
+    if (config.refine == CHOICES_ANY_REFINE) {
         config.refine = T3R_DEFAULT_REFINE;
     }
     chosen_head head;

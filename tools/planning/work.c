@@ -1,19 +1,37 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How much work a build is, and what that takes at some prices: SPEC, "Work". */
-#include "arena.h"
+#include "planning/work.h"
+
 #include "core/config.h"
 #include "core/fixed.h"
 #include "head/head.h"
 #include "head/weights.h"
-#include "operations.h"
+#include "layout/arena.h"
 #include "pointmap/align.h"
 #include "refine/view_levels.h"
 #include "state/state.h"
 #include "stereo/stereo_views.h"
 #include "superclusters/superclusters.h"
 
-#define OPERATIONS_OF(NAME, name, stage) [T3R_WORK_##NAME] = T3R_OPERATIONS_##NAME,
-const t3r_prices t3r_operations = {{T3R_WORKS(OPERATIONS_OF)}};
+static const struct {
+    const char *name;
+    t3r_stage stage;
+} kinds[] = {
+#define ROW(NAME, name, stage) {name, T3R_STAGE_##stage},
+    WORK_KINDS(ROW)
+#undef ROW
+};
+
+const char *work_name(work_kind kind)
+{
+    return kinds[kind].name;
+}
+
+t3r_stage work_stage(work_kind kind)
+{
+    return kinds[kind].stage;
+}
+
+/* ---- counts ------------------------------------------------------------------------------------------------------ */
 
 /* Every product here stays below 2^64: pixels of all views are at most 2^28, Gaussians 2^24, passes and slices 2^8, and
  * KEEPS_ALL 2^10. */
@@ -51,29 +69,29 @@ static uint64_t aligned_pixels(const t3r_config *c, const sizes *s)
 
 static void count_clustering(const sizes *s, uint64_t *units)
 {
-    units[T3R_WORK_SEEDING] = s->sampled * s->clusters;
-    units[T3R_WORK_BATCHES] = s->batched;
-    units[T3R_WORK_LABELS] = s->points;
-    units[T3R_WORK_CENTRES] = (s->batched + s->points) * s->clusters;
-    units[T3R_WORK_NEIGHBOURS] = (s->batches + 1) * s->clusters * s->clusters;
+    units[WORK_SEEDING] = s->sampled * s->clusters;
+    units[WORK_BATCHES] = s->batched;
+    units[WORK_LABELS] = s->points;
+    units[WORK_CENTRES] = (s->batched + s->points) * s->clusters;
+    units[WORK_NEIGHBOURS] = (s->batches + 1) * s->clusters * s->clusters;
 }
 
 static void count_analysis(const t3r_config *c, const sizes *s, uint64_t *units)
 {
     const uint64_t pairs = s->views * (s->views - 1) / 2;
-    units[T3R_WORK_IMAGE] = s->points;
+    units[WORK_IMAGE] = s->points;
     if (c->depth == T3R_DEPTH_STEREO) {
-        units[T3R_WORK_STEREO] = T3R_MIN(pairs, T3R_STEREO_PARTNERS * s->views) * s->pixels;
+        units[WORK_STEREO] = T3R_MIN(pairs, T3R_STEREO_PARTNERS * s->views) * s->pixels;
     } else {
-        units[T3R_WORK_DEPTH] = s->points;
+        units[WORK_DEPTH] = s->points;
     }
-    units[T3R_WORK_POINTMAP] = s->points;
-    units[T3R_WORK_COMPARISON] = 2 * pairs * s->pixels + aligned_pixels(c, s);
-    units[T3R_WORK_WAVELET] = s->points;
+    units[WORK_POINTMAP] = s->points;
+    units[WORK_COMPARISON] = 2 * pairs * s->pixels + aligned_pixels(c, s);
+    units[WORK_WAVELET] = s->points;
     if (s->clusters > 1) {
         count_clustering(s, units);
     }
-    units[T3R_WORK_BUDGET] = s->points;
+    units[WORK_BUDGET] = s->points;
 }
 
 /* Whether a worker's part of the head's work has room for packed layers. */
@@ -84,16 +102,16 @@ static bool is_packed(const t3r_config *c, const t3r_layout *layout, const void 
 }
 
 /* Plane layers run at every cell of their grid, point layers at each Gaussian. */
-static void count_network(const void *weights, const t3r_config *c, const sizes *s, t3r_work macs, uint64_t *units)
+static void count_network(const void *weights, const t3r_config *c, const sizes *s, work_kind macs, uint64_t *units)
 {
-    units[T3R_WORK_FEATURES] = s->points;
+    units[WORK_FEATURES] = s->points;
     const uint32_t layers = t3r_weights_header_of(weights).layers;
     for (uint32_t i = 0; i < layers; i++) {
         const t3r_layer layer = t3r_weights_layer(weights, i);
         const uint32_t cell = 1u << layer.level;
         const uint64_t across = (c->width + cell - 1) / cell, down = (c->height + cell - 1) / cell;
         const uint64_t places = layer.kind == T3R_LAYER_POINT ? s->gaussians : across * down * s->views;
-        units[T3R_WORK_ACTIVATIONS] += places * layer.outputs;
+        units[WORK_ACTIVATIONS] += places * layer.outputs;
         units[macs] += places * layer.outputs * t3r_layer_taps(&layer);
     }
 }
@@ -110,11 +128,11 @@ static void count_head(const t3r_config *c, const t3r_layout *layout, const void
 {
     if (c->head == T3R_HEAD_LEARNED) {
         const bool packed = is_packed(c, layout, weights);
-        count_network(weights, c, s, packed ? T3R_WORK_MACS : T3R_WORK_UNPACKED_MACS, units);
-        units[T3R_WORK_LIFTS] = s->gaussians;
+        count_network(weights, c, s, packed ? WORK_MACS : WORK_UNPACKED_MACS, units);
+        units[WORK_LIFTS] = s->gaussians;
     } else {
-        units[T3R_WORK_DISC_PIXELS] = s->points;
-        units[T3R_WORK_DISC_GAUSSIANS] = count_discs(c, s);
+        units[WORK_DISC_PIXELS] = s->points;
+        units[WORK_DISC_GAUSSIANS] = count_discs(c, s);
     }
 }
 
@@ -128,33 +146,28 @@ static void count_drawing(const t3r_config *c, const sizes *s, uint32_t slices, 
     const uint64_t listed = (c->refine * slices + again) * s->views;
     const uint64_t compared = c->refine * s->views * s->pixels * (slices + 2) / 3;
     const uint64_t drawn = compared + (c->structural ? compared / 16 : 0); /* measured */
-    units[T3R_WORK_REFINE_PIXELS] = drawn;
-    units[T3R_WORK_REFINE_GAUSSIANS] = listed * s->gaussians;
-    units[T3R_WORK_CORRECTIONS] = c->refine * s->gaussians;
+    units[WORK_REFINE_PIXELS] = drawn;
+    units[WORK_REFINE_GAUSSIANS] = listed * s->gaussians;
+    units[WORK_CORRECTIONS] = c->refine * s->gaussians;
     if (c->max_gaussians < KEEPS_ALL) {
-        units[T3R_WORK_REMADE_PIXELS] = drawn * (KEEPS_ALL - c->max_gaussians) / c->max_gaussians;
+        units[WORK_REMADE_PIXELS] = drawn * (KEEPS_ALL - c->max_gaussians) / c->max_gaussians;
     }
-    units[T3R_WORK_RASTER_PIXELS] = (uint64_t)c->render_width * c->render_height;
-    units[T3R_WORK_RASTER_GAUSSIANS] = c->gaussians;
+    units[WORK_RASTER_PIXELS] = (uint64_t)c->render_width * c->render_height;
+    units[WORK_RASTER_GAUSSIANS] = c->gaussians;
 }
 
-t3r_status t3r_count_work(const t3r_config *config, size_t bytes, const void *weights, size_t weight_bytes,
-                          t3r_work_counts *counts)
+t3r_status work_count(const t3r_config *config, size_t bytes, const void *weights, work_counts *counts)
 {
-    T3R_REFUSE_UNLESS(config != NULL && counts != NULL, T3R_ERR_ARGUMENT);
-    const t3r_status status = t3r_config_check(config);
-    if (status != T3R_OK || config->stream != 0) {
-        return status != T3R_OK ? status : T3R_ERR_CONFIG;
-    }
-    if (config->head == T3R_HEAD_LEARNED && t3r_weights_check(weights, weight_bytes) != T3R_OK) {
-        return T3R_ERR_WEIGHTS;
-    }
     t3r_layout layout;
-    if (t3r_lay_out(config, bytes, &layout) != T3R_OK) {
-        return T3R_ERR_ARENA;
+    t3r_status status = t3r_config_check(config);
+    if (status == T3R_OK) {
+        status = t3r_lay_out(config, bytes, &layout);
+    }
+    if (status != T3R_OK) {
+        return status;
     }
     const sizes s = sizes_of(config);
-    *counts = (t3r_work_counts){{0}};
+    *counts = (work_counts){{0}};
     if (config->views > 0) {
         count_analysis(config, &s, counts->units);
         count_head(config, &layout, weights, &s, counts->units);
@@ -163,45 +176,24 @@ t3r_status t3r_count_work(const t3r_config *config, size_t bytes, const void *we
     return T3R_OK;
 }
 
-/* ---- prices ---------------------------------------------------------------------------------------------------- */
+/* ---- prices ------------------------------------------------------------------------------------------------------ */
 
-static uint64_t add_to_most(uint64_t a, uint64_t b)
+double work_price(const work_counts *counts, const work_prices *prices, t3r_stage stage)
 {
-    return a > UINT64_MAX - b ? UINT64_MAX : a + b;
-}
-
-/* units x milli / 1000, rounded down; by less than milli where the product does not fit, which is below 2^-22 of it. A
- * quotient and its remainder together would call one more helper on 32-bit cores. */
-static uint64_t priced(uint64_t units, uint32_t milli)
-{
-    const uint64_t most = milli == 0 ? UINT64_MAX : UINT64_MAX / milli;
-    if (units <= most) {
-        return units * milli / 1000;
-    }
-    const uint64_t thousands = units / 1000;
-    return thousands > most ? UINT64_MAX : thousands * milli;
-}
-
-#define STAGE_OF(NAME, name, stage) [T3R_WORK_##NAME] = T3R_STAGE_##stage,
-static const t3r_stage stages[] = {T3R_WORKS(STAGE_OF)};
-
-uint64_t t3r_price_of(const t3r_work_counts *counts, const t3r_prices *prices, t3r_stage stage)
-{
-    const bool known = counts != NULL && prices != NULL;
-    uint64_t sum = 0;
-    for (int work = 0; work < T3R_WORK_COUNT && known; work++) {
-        if (stages[work] == stage) {
-            sum = add_to_most(sum, priced(counts->units[work], prices->milli[work]));
+    double sum = 0;
+    for (int kind = 0; kind < WORK_KIND_COUNT; kind++) {
+        if (kinds[kind].stage == stage) {
+            sum += (double)counts->units[kind] * prices->milli[kind] / 1000;
         }
     }
     return sum;
 }
 
-uint64_t t3r_price_of_build(const t3r_work_counts *counts, const t3r_prices *prices)
+double work_price_of_build(const work_counts *counts, const work_prices *prices)
 {
-    uint64_t sum = 0;
+    double sum = 0;
     for (int stage = 0; stage < T3R_STAGE_RASTER; stage++) {
-        sum = add_to_most(sum, t3r_price_of(counts, prices, (t3r_stage)stage));
+        sum += work_price(counts, prices, (t3r_stage)stage);
     }
     return sum;
 }

@@ -16,10 +16,10 @@
 static machine some_machine(void)
 {
     machine m = {.threads = 3, .cpu = "avx2"};
-    for (int work = 0; work < T3R_WORK_COUNT; work++) {
+    for (int work = 0; work < WORK_KIND_COUNT; work++) {
         m.prices.milli[work] = (uint32_t)work * 1000003u;
     }
-    m.prices.milli[T3R_WORK_MACS] = UINT32_MAX;
+    m.prices.milli[WORK_MACS] = UINT32_MAX;
     return m;
 }
 
@@ -48,9 +48,9 @@ static void text_with(const char *instead, const char *by, char *text, size_t by
                                      "{\"trim3r_machine\": 1, \"bits_epoch\": %d, \"threads\": 1, "
                                      "\"cpu_used\": \"none\", \"picoseconds\": {",
                                      T3R_BITS_EPOCH);
-    for (int work = 0; work < T3R_WORK_COUNT; work++) {
+    for (int work = 0; work < WORK_KIND_COUNT; work++) {
         length += (size_t)snprintf(text + length, bytes - length, "%s\"%s\": 5", work > 0 ? ", " : "",
-                                   t3r_work_name((t3r_work)work));
+                                   work_name((work_kind)work));
     }
     snprintf(text + length, bytes - length, "}}");
     char *at = instead != NULL ? strstr(text, instead) : NULL;
@@ -68,7 +68,7 @@ static void refuses_foreign_files(void **state)
     machine m;
     text_with(NULL, NULL, text, sizeof text);
     assert_int_equal(machine_parse(&m, text, strlen(text), error, sizeof error), 0);
-    assert_int_equal(m.prices.milli[T3R_WORK_LABELS], 5);
+    assert_int_equal(m.prices.milli[WORK_LABELS], 5);
     const struct {
         const char *instead, *by, *why;
     } bad[] = {

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What a new view loses against the best settings measured, in 1/16 dB of PSNR, by head, passes of refinement and
  * percent of the points kept: docs/study/plan.md. tools/study/scripts/plan quality --write makes this file. */
-#ifndef T3R_QUALITY_H
-#define T3R_QUALITY_H
+#ifndef TRIM3R_TOOLS_QUALITY_H
+#define TRIM3R_TOOLS_QUALITY_H
 
 #include <stdint.h>
 
-#define T3R_QUALITY_HEADS 3
-#define T3R_QUALITY_PASSES 6
-#define T3R_QUALITY_SHARES 7
+#define QUALITY_HEADS 3
+#define QUALITY_PASSES 6
+#define QUALITY_SHARES 7
 
-static const uint8_t t3r_quality_passes[T3R_QUALITY_PASSES] = {0, 1, 2, 4, 8, 16};
-static const uint8_t t3r_quality_percent[T3R_QUALITY_SHARES] = {100, 50, 20, 10, 5, 2, 1};
+static const uint8_t quality_passes[QUALITY_PASSES] = {0, 1, 2, 4, 8, 16};
+static const uint8_t quality_percent[QUALITY_SHARES] = {100, 50, 20, 10, 5, 2, 1};
 
 /* analytic, tiny, small */
-static const uint8_t t3r_quality_loss_q4[T3R_QUALITY_HEADS][T3R_QUALITY_PASSES][T3R_QUALITY_SHARES] = {
+static const uint8_t quality_loss_q4[QUALITY_HEADS][QUALITY_PASSES][QUALITY_SHARES] = {
     {{90, 92, 101, 113, 131, 167, 195},
      {52, 56, 62, 72, 91, 122, 153},
      {35, 39, 50, 56, 71, 102, 131},
