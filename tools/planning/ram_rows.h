@@ -9,7 +9,7 @@
 
 /* X(RAM in bytes, side, views, Gaussians, head, refine), a row a size from the smallest up */
 #define RAM_ROWS(X)                                                                                                    \
-    X(131072, 48, 2, 364, "tiny", 4)                                                                                   \
+    X(131072, 48, 2, 281, "tiny", 4)                                                                                   \
     X(196608, 64, 2, 434, "tiny", 4)                                                                                   \
     X(262144, 80, 2, 744, "tiny", 4)                                                                                   \
     X(524288, 128, 2, 1356, "tiny", 4)                                                                                 \
