@@ -8,6 +8,21 @@
 #include "cli/cli.h"
 #include "trim3r.h"
 
+error_t option_field(int key, char *argument, struct argp_state *state)
+{
+    void *field = (char *)state->input + (key & 0xffff);
+    switch (key & ~0xffff) {
+    case TO_SWITCH:
+        *(bool *)field = true;
+        return 0;
+    case TO_TEXT:
+        *(const char **)field = argument;
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high)
 {
     uint32_t value = low, count;

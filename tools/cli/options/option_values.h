@@ -6,9 +6,17 @@
 
 #include <argp.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "trim3r.h"
+
+/* Key of an option that fills one field of the parser's input, a struct `type`: a switch (bool) or a text. */
+#define OPTION_TO(type, field)                                                                                         \
+    ((int)offsetof(type, field) | _Generic(((type *)NULL)->field, bool : TO_SWITCH, const char * : TO_TEXT))
+enum { TO_SWITCH = 0x100000, TO_TEXT = 0x200000 };
+/* Fills the field of such a key. Returns ARGP_ERR_UNKNOWN for any other key. */
+error_t option_field(int key, char *argument, struct argp_state *state);
 
 /* Returns a whole number in [low, high]. */
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high);

@@ -27,16 +27,16 @@
 
 #define ERROR_BYTES 512
 
-enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_UP, KEY_PROFILE, KEY_JSON };
+enum { KEY_LOCAL = 0x1000, KEY_COMMENTS, KEY_UP };
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
     {"output", 'o', "SCENE.ply", OPTION_WRITES(FILE_SCENE), "scene to write (needed, or --colmap)", 0},
-    {"colmap", KEY_COLMAP, "DIR", OPTION_WRITES(FILE_OTHER) | OPTION_FOLDER,
+    {"colmap", OPTION_TO(build_options, colmap), "DIR", OPTION_WRITES(FILE_OTHER) | OPTION_FOLDER,
      "folder, new or empty, to write the start of an outside optimiser into: the context views, and the means and "
      "colours of the Gaussians, as a COLMAP model in text",
      0},
-    {"prune", KEY_PRUNE, "SCENE.ply", OPTION_READS,
+    {"prune", OPTION_TO(build_options, settings.points_of), "SCENE.ply", OPTION_READS,
      "scene, made elsewhere, to prune instead of building one: the recording gives its views, --context names those it "
      "was made of; percents are of its Gaussians",
      0},
@@ -48,9 +48,9 @@ static const struct argp_option options[] = {
      0},
     {"comments", KEY_COMMENTS, NULL, 0,
      "name bits epoch, scene frame and head in header comments (some readers choke on them)", 0},
-    {"profile", KEY_PROFILE, NULL, 0,
+    {"profile", OPTION_TO(build_options, profile), NULL, 0,
      "print the time of each stage: processor time of one thread, or with more of them elapsed time", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"json", OPTION_TO(build_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -65,12 +65,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case 'o':
         o->output = arg;
         return 0;
-    case KEY_COLMAP:
-        o->colmap = arg;
-        return 0;
-    case KEY_PRUNE:
-        o->settings.points_of = arg;
-        return 0;
     case KEY_LOCAL:
         o->flags |= SCENE_FILE_LOCAL;
         return 0;
@@ -79,12 +73,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_COMMENTS:
         o->flags |= SCENE_FILE_COMMENTS;
-        return 0;
-    case KEY_PROFILE:
-        o->profile = true;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
         return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, (const char **[]){&o->recording}, 1);
@@ -100,7 +88,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         }
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 

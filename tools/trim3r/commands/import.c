@@ -54,7 +54,7 @@ typedef struct totals {
     uint64_t bytes;
 } totals;
 
-enum { KEY_INTRINSICS = 0x100, KEY_POSES, KEY_POINTMAPS, KEY_CONFIDENCE, KEY_UNIT, KEY_JSON };
+enum { KEY_INTRINSICS = 0x100, KEY_POSES, KEY_CONFIDENCE, KEY_UNIT };
 
 static int parse_numbers(const char *text, double *numbers, uint32_t most, uint32_t *count)
 {
@@ -109,9 +109,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
             argp_error(state, "--poses does not know '%s'; there are %s", argument, POSES_NAMES);
         }
         return 0;
-    case KEY_POINTMAPS:
-        o->pointmaps.file = argument;
-        return 0;
     case KEY_CONFIDENCE:
         o->pointmaps.confidence_least = option_decimal(state, "min-confidence", argument, -1e30, 1e30);
         return 0;
@@ -121,9 +118,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case 'o':
         o->output = argument;
         return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         option_argument(state, argument, (const char **[]){&o->directory}, 1);
         return 0;
@@ -131,7 +125,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         check_options(state, o);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, argument, state);
     }
 }
 
@@ -154,7 +148,7 @@ static const struct argp_option argp_options[] = {
      "where two of them have it, or of all frames from pointmaps; estimate-colour, from colour alone, without "
      "pointmaps",
      0},
-    {"pointmaps", KEY_POINTMAPS, "FILE.npz", OPTION_READS,
+    {"pointmaps", OPTION_TO(options, pointmaps.file), "FILE.npz", OPTION_READS,
      "depth of all frames: one pointmap each, in the frames' order", 0},
     {"min-confidence", KEY_CONFIDENCE, "C", 0,
      "least confidence of a pointmap's point; points below it get no depth (all points are kept)", 0},
@@ -164,7 +158,7 @@ static const struct argp_option argp_options[] = {
      "pointmaps "
      "(integer_depth_scale of the folder, else a power of two with which the median has 4096 to 8192 steps)",
      0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"json", OPTION_TO(options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
