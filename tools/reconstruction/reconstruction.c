@@ -41,9 +41,9 @@ void reconstruction_warn_of_budget(const reconstruction_options *options, uint32
     }
 }
 
-reconstruction_account reconstruction_told(const reconstruction *r)
+reconstruction_account reconstruction_account_of(const reconstruction *r)
 {
-    reconstruction_account told = {
+    reconstruction_account account = {
         .width = r->config.width,
         .height = r->config.height,
         .context_count = r->context_count,
@@ -52,15 +52,15 @@ reconstruction_account reconstruction_told(const reconstruction *r)
         .arena_bytes = r->arena_bytes,
         .seconds = r->add_views_seconds + r->build_seconds,
     };
-    memcpy(told.head, r->head.name, sizeof told.head);
-    memcpy(told.bits, r->head.bits, sizeof told.bits);
-    memcpy(told.crc, r->head.crc, sizeof told.crc);
-    memcpy(told.context, r->context, sizeof told.context);
-    told.has_cameras = r->runtime != NULL && told.context_count > 0;
-    for (uint32_t v = 0; v < told.context_count && told.has_cameras; v++) {
-        told.has_cameras = t3r_view_camera(r->runtime, v, &told.camera[v]) == T3R_OK;
+    memcpy(account.head, r->head.name, sizeof account.head);
+    memcpy(account.bits, r->head.bits, sizeof account.bits);
+    memcpy(account.crc, r->head.crc, sizeof account.crc);
+    memcpy(account.context, r->context, sizeof account.context);
+    account.has_cameras = r->runtime != NULL && account.context_count > 0;
+    for (uint32_t v = 0; v < account.context_count && account.has_cameras; v++) {
+        account.has_cameras = t3r_view_camera(r->runtime, v, &account.camera[v]) == T3R_OK;
     }
-    return told;
+    return account;
 }
 
 uint32_t reconstruction_budget(uint32_t valid_points, double keep_percent)

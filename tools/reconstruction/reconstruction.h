@@ -102,7 +102,7 @@ typedef struct reconstruction_account {
     double seconds; /* from recorded frames to the scene */
 } reconstruction_account;
 
-reconstruction_account reconstruction_told(const reconstruction *r);
+reconstruction_account reconstruction_account_of(const reconstruction *r);
 /* Warns on stderr when more Gaussians were requested than the `count` that the views give. */
 void reconstruction_warn_of_budget(const reconstruction_options *options, uint32_t requested, uint32_t count);
 
