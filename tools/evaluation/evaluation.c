@@ -269,6 +269,7 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, evalua
     for (int i = 0; i < EVALUATION_VALUE_COUNT; i++) {
         row->value[i] = NAN;
     }
+    row->value[EVALUATION_BITS_EPOCH] = T3R_BITS_EPOCH;
     evaluation_name_case(row, what);
     row->allocate = row->wavelet = row->ablation = "";
     row->depth = what->planar                  ? "plane"

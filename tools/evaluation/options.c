@@ -248,6 +248,7 @@ const struct argp evaluation_argp = {
            "  render_ms     the target view\n"
            "  scene_bytes   the Gaussians as the arena holds them, 44 bytes each\n"
            "  picture       the name of the render within --images\n"
+           "  bits_epoch    of the program: results of other epochs have other bits\n"
            "The mask: the pixels that all points of the raw depth, drawn with the plain analytic head, leave a "
            "transmittance below 0.3.\n"
            "\n"

@@ -68,6 +68,7 @@ static const column columns[EVALUATION_COLUMNS] = {
     {"scene_bytes", EVALUATION_SCENE_BYTES, 0, 0, NEVER},
     {"planar_psnr", EVALUATION_PLANAR_PSNR, 4, 12, PLANAR},
     {"picture", PICTURE, 0, 0, NEVER},
+    {"bits_epoch", EVALUATION_BITS_EPOCH, 0, 0, NEVER},
 };
 
 const char *evaluation_column_name(uint32_t index)
