@@ -29,13 +29,13 @@ typedef struct scene_summary {
     double opacity;         /* mean */
 } scene_summary;
 
-typedef struct summary {
+typedef struct scene_summaries {
     scene_summary scene[SCENE_INFO_MOST];
     splat_scales scales[SCENE_INFO_MOST];
     double depth;  /* median depth of the first scene's means from the camera, world units; 0 = unknown */
     double pixels; /* size of a world unit at that depth; 0 = unknown */
     scale_bins bins;
-} summary;
+} scene_summaries;
 
 /* ---- numbers ---------------------------------------------------------------------------------------------------- */
 
@@ -89,7 +89,7 @@ static uint32_t depths_seen(const scene_file *scene, const t3r_capture_frame *fr
     return seen;
 }
 
-static int measure_pixels(const scene_info_request *request, const scene_file *scene, summary *summary)
+static int measure_pixels(const scene_info_request *request, const scene_file *scene, scene_summaries *summary)
 {
     char error[ERROR_BYTES] = "";
     t3r_capture_frame frame;
@@ -116,7 +116,7 @@ static int measure_pixels(const scene_info_request *request, const scene_file *s
     return code;
 }
 
-static int summarise_all(const scene_info_request *request, summary *summary)
+static int summarise_all(const scene_info_request *request, scene_summaries *summary)
 {
     char error[ERROR_BYTES] = "";
     int code = CLI_OK;
@@ -156,7 +156,7 @@ static void add_quantiles(cJSON *object, const char *key, const splat_scales *sc
     }
 }
 
-static void print_json(const scene_info_request *request, const summary *summary)
+static void print_json(const scene_info_request *request, const scene_summaries *summary)
 {
     cJSON *root = cJSON_CreateObject();
     if (summary->pixels > 0) {
@@ -199,7 +199,7 @@ static void print_quantiles(const char *title, const splat_scales *scales, doubl
     putchar('\n');
 }
 
-static void print_text(const scene_info_request *request, const summary *summary)
+static void print_text(const scene_info_request *request, const scene_summaries *summary)
 {
     for (uint32_t i = 0; i < request->scene_count; i++) {
         const scene_summary *s = &summary->scene[i];
@@ -218,7 +218,7 @@ static void print_text(const scene_info_request *request, const summary *summary
     }
 }
 
-static int write_svg(const scene_info_request *request, const summary *summary)
+static int write_svg(const scene_info_request *request, const scene_summaries *summary)
 {
     whole_file file;
     char error[ERROR_BYTES] = "";
@@ -238,7 +238,7 @@ static int write_svg(const scene_info_request *request, const summary *summary)
 
 int scene_info(const scene_info_request *request)
 {
-    summary summary = {0};
+    scene_summaries summary = {0};
     int code = summarise_all(request, &summary);
     if (code == CLI_OK && request->svg != NULL) {
         code = write_svg(request, &summary);
