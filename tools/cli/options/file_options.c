@@ -117,8 +117,7 @@ static struct option *long_options(const option_list *list)
 static const struct argp_option *option_of(const option_list *list, int got)
 {
     for (uint32_t i = 0; i < list->count; i++) {
-        if (got == LONG_OPTION + (int)i ||
-            (option_has_short(list->rows[i]) && list->rows[i]->key == got)) {
+        if (got == LONG_OPTION + (int)i || (option_has_short(list->rows[i]) && list->rows[i]->key == got)) {
             return list->rows[i];
         }
     }
