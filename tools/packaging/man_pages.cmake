@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Pages for man(1), of the texts that help prints: cmake -DPROGRAM=trim3r -DFOLDER=man1 -P man_pages.cmake
-cmake_minimum_required(VERSION 3.18)
+cmake_minimum_required(VERSION 3.25)
 
 function(said variable)
   execute_process(COMMAND ${PROGRAM} ${ARGN} OUTPUT_VARIABLE text OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
