@@ -2,7 +2,6 @@
 #include "capture/options.h"
 
 #include <argp.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/options/file_options.h"
@@ -132,21 +131,7 @@ static void parse_offset(struct argp_state *state, const char *text, capture_opt
 static void parse_intrinsics(struct argp_state *state, const char *text, capture_options *o)
 {
     double numbers[9] = {0};
-    uint32_t count = 0;
-    for (const char *at = text; count < 9; at++) {
-        char *end;
-        numbers[count] = strtod(at, &end);
-        if (end == at || !(numbers[count] > -1e6 && numbers[count] < 1e6)) {
-            count = 0;
-            break;
-        }
-        count++;
-        at = end;
-        if (*at != ',') {
-            count = *at == '\0' ? count : 0;
-            break;
-        }
-    }
+    const uint32_t count = numbers_of_text(text, numbers, 9);
     if (count != 4 && count != 8 && count != 9) {
         argp_error(state, "--intrinsics takes fx,fy,cx,cy, with k1,k2,p1,p2,k3 behind them or not, not '%s'", text);
     }

@@ -44,6 +44,23 @@ double option_decimal(struct argp_state *state, const char *option, const char *
     return value;
 }
 
+uint32_t numbers_of_text(const char *text, double *numbers, uint32_t most)
+{
+    for (uint32_t count = 0; count < most; text++) {
+        char *end;
+        numbers[count] = strtod(text, &end);
+        if (end == text || !(numbers[count] > -1e6 && numbers[count] < 1e6)) {
+            return 0;
+        }
+        count++;
+        text = end;
+        if (*text != ',') {
+            return *text == '\0' ? count : 0;
+        }
+    }
+    return 0;
+}
+
 bool bytes_of_text(const char *text, uint64_t *bytes)
 {
     char *end;

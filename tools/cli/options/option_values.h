@@ -22,6 +22,8 @@ error_t option_field(int key, char *argument, struct argp_state *state);
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high);
 /* Returns a decimal number in [low, high], with or without an exponent. */
 double option_decimal(struct argp_state *state, const char *option, const char *text, double low, double high);
+/* Parses 1 to `most` numbers of less than a million, separated by commas. Returns their count, or 0 for other texts. */
+uint32_t numbers_of_text(const char *text, double *numbers, uint32_t most);
 /* Parses a number of bytes, optionally followed by K (2^10), M (2^20) or G (2^30). False: the text is none. */
 bool bytes_of_text(const char *text, uint64_t *bytes);
 /* The same as an option's value; must be above 0. */

@@ -56,26 +56,6 @@ typedef struct totals {
 
 enum { KEY_INTRINSICS = 0x100, KEY_POSES, KEY_CONFIDENCE, KEY_UNIT };
 
-static int parse_numbers(const char *text, double *numbers, uint32_t most, uint32_t *count)
-{
-    *count = 0;
-    for (;;) {
-        char *end;
-        double value = strtod(text, &end);
-        if (end == text || *count == most || !(value > -1e6 && value < 1e6)) {
-            return -1;
-        }
-        numbers[(*count)++] = value;
-        if (*end == '\0') {
-            return 0;
-        }
-        if (*end != ',') {
-            return -1;
-        }
-        text = end + 1;
-    }
-}
-
 static void check_options(struct argp_state *state, const options *o)
 {
     if (o->directory == NULL) {
@@ -98,8 +78,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         option_size(state, "size", argument, T3R_MIN_SIDE, &o->width, &o->height);
         return 0;
     case KEY_INTRINSICS:
-        if (parse_numbers(argument, o->intrinsics, 9, &o->intrinsics_count) != 0 ||
-            (o->intrinsics_count != 4 && o->intrinsics_count != 9) || !(o->intrinsics[0] > 0) ||
+        o->intrinsics_count = numbers_of_text(argument, o->intrinsics, 9);
+        if ((o->intrinsics_count != 4 && o->intrinsics_count != 9) || !(o->intrinsics[0] > 0) ||
             !(o->intrinsics[1] > 0)) {
             argp_error(state, "--intrinsics %s: not fx,fy,cx,cy[,k1,k2,p1,p2,k3]", argument);
         }
