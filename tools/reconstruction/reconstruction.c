@@ -14,6 +14,7 @@
 #include "core/hash.h"
 #include "core/scene_frame.h"
 #include "host/cpu.h"
+#include "reconstruction/developed_frame.h"
 #include "reconstruction/importance_pictures.h"
 #include "reconstruction/reconstruction_error.h"
 #include "reconstruction/scene_append.h"
@@ -234,37 +235,19 @@ static int count_matched_points(const reconstruction *r, const t3r_capture_frame
 static int count_measured_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path,
                                  reconstruction_points *points)
 {
-    t3r_config config = t3r_default_config(r->config.width, r->config.height, 1, 1);
-    size_t pixels = (size_t)config.width * config.height;
-    t3r_plan_info plan;
-    t3r_status status = t3r_plan(&config, &plan);
-    if (status != T3R_OK) {
-        return reconstruction_error(status, "settings", &config, 0);
-    }
-    t3r_runtime *runtime;
-    void *arena = NULL;
+    const uint32_t width = r->config.width, height = r->config.height;
+    const size_t pixels = (size_t)width * height;
     uint8_t *rgb = malloc(pixels * 3);
     uint16_t *depth = malloc(pixels * 2);
-    int code = CLI_OK;
+    int code = rgb != NULL && depth != NULL ? CLI_OK : cli_error(CLI_BAD_INPUT, "out of memory");
     *points = (reconstruction_points){.valid = 0};
-    if (rgb == NULL || depth == NULL || posix_memalign(&arena, T3R_ARENA_ALIGN, plan.min_bytes) != 0) {
-        arena = NULL;
-        code = cli_error(CLI_BAD_INPUT, "out of memory");
-    } else if ((status = t3r_init(&runtime, arena, plan.min_bytes, &config)) != T3R_OK) {
-        code = reconstruction_error(status, "settings", &config, plan.min_bytes);
-    }
     for (uint32_t v = 0; v < r->context_count && code == CLI_OK; v++) {
         t3r_camera camera;
-        status = t3r_develop(runtime, &frames[v].frame, &frames[v].camera, rgb, depth, &camera);
-        if (status != T3R_OK) {
-            code = frame_error(path, r->context[v], status);
-            break;
-        }
-        for (size_t i = 0; i < pixels; i++) {
+        code = developed_capture(&frames[v], path, r->context[v], width, height, rgb, depth, &camera);
+        for (size_t i = 0; i < pixels && code == CLI_OK; i++) {
             points->valid += depth[i] != 0;
         }
     }
-    free(arena);
     free(depth);
     free(rgb);
     return code;
