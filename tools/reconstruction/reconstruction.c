@@ -122,8 +122,7 @@ t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *
 
 /* ---- the arena -------------------------------------------------------------------------------------------- */
 
-/* Allocates an arena of the requested size, initialises the runtime in it, and binds hooks. */
-static int open_arena(reconstruction *r, const reconstruction_options *options)
+int reconstruction_allocate(reconstruction *r, const reconstruction_options *options)
 {
     t3r_plan_info plan;
     r->config.workers = options->processor.threads;
@@ -142,15 +141,25 @@ static int open_arena(reconstruction *r, const reconstruction_options *options)
         return cli_error(CLI_BAD_INPUT, "no memory for an arena of %" PRIu64 " bytes", bytes);
     }
     r->arena_bytes = (size_t)bytes;
-    status = t3r_init(&r->runtime, r->arena, r->arena_bytes, &r->config);
-    if (status != T3R_OK) {
-        return reconstruction_error(status, "arena", &r->config, r->arena_bytes);
-    }
     if (options->processor.threads > 1) {
         r->threads = t3r_threads_start(options->processor.threads);
         if (r->threads == NULL) {
             return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", options->processor.threads);
         }
+    }
+    return CLI_OK;
+}
+
+/* Allocates an arena, initialises the runtime in it, and binds hooks. */
+static int open_arena(reconstruction *r, const reconstruction_options *options)
+{
+    int code = reconstruction_allocate(r, options);
+    if (code != CLI_OK) {
+        return code;
+    }
+    t3r_status status = t3r_init(&r->runtime, r->arena, r->arena_bytes, &r->config);
+    if (status != T3R_OK) {
+        return reconstruction_error(status, "arena", &r->config, r->arena_bytes);
     }
     t3r_hooks hooks = reconstruction_hooks(r, options);
     hooks.progress = show_progress;

@@ -123,6 +123,8 @@ int reconstruction_live_stream(reconstruction *r, uint32_t width, uint32_t heigh
 /* Configures a build without a recording (live_build.h): the options' configuration for the working size in r->config,
  * r->context_count views and r->head. The next function sets the budget. */
 void reconstruction_configure(reconstruction *r, const reconstruction_options *options);
+/* Allocates an arena of the size that the options request for r->config, and starts their threads. */
+int reconstruction_allocate(reconstruction *r, const reconstruction_options *options);
 /* Sets the budget that the options request, relative to r->valid_points. */
 void reconstruction_request(reconstruction *r, const reconstruction_options *options);
 /* Builds from the views added to r->scene; `planes` are the importance for the allocation `given`, else NULL. */
