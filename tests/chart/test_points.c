@@ -155,7 +155,7 @@ static void test_names_tell_what_differs(void **state)
         "trim3r \xC2\xB7 analytic",
         "pup",
         "pup+finetune",
-        "trim3r \xC2\xB7 head not told \xC2\xB7 bits not told \xC2\xB7 refine not told"};
+        "trim3r \xC2\xB7 head not given \xC2\xB7 bits not given \xC2\xB7 refine not given"};
     assert_int_equal(points.series_count, 6);
     for (uint32_t s = 0; s < 6; s++) {
         assert_string_equal(names.series[s].text, expected[s]);

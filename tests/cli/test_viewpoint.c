@@ -126,10 +126,10 @@ static void refuses_bad_trajectories(void **state)
         {"# nothing\n", "no pose"},
         {"0 1 2 3 0 0 0 1\n0 1 2 3 0 0 0\n", "line 2"},
         {"0 1 2 3 0 0 0 1 9\n", "more than eight"},
-        {"0 1 2 nan 0 0 0 1\n", "number 4"},
+        {"0 1 2 nan 0 0 0 1\n", "position"},
         {"0 1 2 3 0 0 0 0\n", "quaternion"},
         {"0 1 2 2e9 0 0 0 1\n", "position"},
-        {"a b c d e f g h\n", "number 1"},
+        {"a b c d e f g h\n", "not 'stamp"},
     };
     viewpoint lens;
     assert_int_equal(viewpoint_from_angle(60, 64, 64, &lens), 0);

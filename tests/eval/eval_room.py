@@ -17,7 +17,7 @@ trim3r = sys.argv[1]
 scorer = load_scorer(sys.argv[2])
 COLUMNS = ("scene context target method head bits refine allocate depth ablation wavelet levels clusters settings keep requested gaussians psnr "
            "ssim sharp holes psnr_all context_psnr perceptual build_ms render_ms arena_bytes scene_bytes planar_psnr "
-           "picture").split()
+           "picture bits_epoch").split()
 
 
 def read(path, grey=False):

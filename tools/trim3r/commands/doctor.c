@@ -33,11 +33,11 @@ typedef struct options {
     processor_options processor;
 } options;
 
-enum { KEY_EXPECT = 0x1000, KEY_JSON };
+enum { KEY_EXPECT = 0x1000 };
 
 static const struct argp_option option_table[] = {
     {"expect", KEY_EXPECT, "HASH", 0, "hash that the self-check must give (this version's)", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"json", OPTION_TO(options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -53,14 +53,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "--expect takes 16 hexadecimal digits, not '%s'", arg);
         }
         return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, NULL, 0);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 

@@ -49,11 +49,7 @@ enum {
     KEY_KEEP_ANALYSIS,
     KEY_ARENA,
     KEY_TIME,
-    KEY_MACHINE,
-    KEY_THREADS,
-    KEY_SVG,
-    KEY_MARKDOWN,
-    KEY_JSON
+    KEY_THREADS
 };
 
 static const struct argp_option options[] = {
@@ -64,7 +60,7 @@ static const struct argp_option options[] = {
     {"arena", KEY_ARENA, "BYTES[K|M|G]", 0,
      "bytes of an arena: list the settings that fit, those of the least expected loss first", 0},
     {"time", KEY_TIME, "TIME", 0, "most time of a build, as 100ms or 0.5s: list the settings that fit", 0},
-    {"machine", KEY_MACHINE, "MACHINE.json", OPTION_READS,
+    {"machine", OPTION_TO(plan_options, fitting.machine), "MACHINE.json", OPTION_READS,
      "machine, measured by trim3r bench --calibrate, whose times are predicted (with --time this one, measured now)",
      0},
     {"within", KEY_WITHIN, "BYTES[K|M|G]", 0,
@@ -77,9 +73,11 @@ static const struct argp_option options[] = {
      0},
     {"threads", KEY_THREADS, "N|all", 0,
      "number of threads that share the arena's work, 1..16, or all: one for each processor (1)", 0},
-    {"svg", KEY_SVG, "FILE", OPTION_WRITES(FILE_SVG), "picture of the arena to write: stages across, bytes upwards", 0},
-    {"markdown", KEY_MARKDOWN, NULL, 0, "print the table of the arena, or the list, in Markdown", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"svg", OPTION_TO(plan_options, svg), "FILE", OPTION_WRITES(FILE_SVG),
+     "picture of the arena to write: stages across, bytes upwards", 0},
+    {"markdown", OPTION_TO(plan_options, markdown), NULL, 0, "print the table of the arena, or the list, in Markdown",
+     0},
+    {"json", OPTION_TO(plan_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -156,9 +154,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_TIME:
         o->fitting.nanoseconds = option_time(state, "time", arg);
         return 0;
-    case KEY_MACHINE:
-        o->fitting.machine = arg;
-        return 0;
     case KEY_WITHIN:
         o->within = option_bytes(state, "within", arg);
         return 0;
@@ -177,15 +172,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_THREADS:
         c->workers = option_threads(state, arg);
         return 0;
-    case KEY_SVG:
-        o->svg = arg;
-        return 0;
-    case KEY_MARKDOWN:
-        o->markdown = true;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, NULL, 0);
         return 0;
@@ -193,7 +179,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         check_options(state, o);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 
