@@ -11,8 +11,8 @@
 
 #include <cmocka.h>
 
-#include "drawing.h"
-#include "oracle_analysis.h"
+#include "oracle/float64/drawing.h"
+#include "oracle/float64/oracle_analysis.h"
 #include "pointmap/pointmap.h"
 #include "superclusters/superclusters.h"
 #include "wavelet_planes.h"

@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-#include "drawing.h"
+#include "oracle/float64/drawing.h"
 #include "rgbd_frame.h"
 #include "sanitized_cpu.h"
 #include "weights_maker.h"

@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "core/config.h"
-#include "drawing.h"
+#include "oracle/float64/drawing.h"
 
 /* The embedded default: what a firmware declares. */
 _Static_assert(T3R_ARENA_BYTES(256, 256, 2, 13107) <= 4u << 20, "full arena over 4 MiB");

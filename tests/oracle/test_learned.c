@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "drawing.h"
 #include "head/head_views.h"
+#include "oracle/float64/drawing.h"
 #include "rgbd_frame.h"
 #include "sanitized.h"
 #include "stages.h"

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "drawing.h"
+#include "oracle/float64/drawing.h"
 
 static const uint64_t sizes[] = {128 << 10, 192 << 10, 256 << 10, 512 << 10, 1 << 20, 4 << 20};
 enum { SIZES = sizeof sizes / sizeof sizes[0] };

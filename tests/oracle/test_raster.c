@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "drawing.h"
-#include "oracle_raster.h"
+#include "oracle/float64/drawing.h"
+#include "oracle/float64/oracle_raster.h"
 #include "raster/raster_splat.h"
 
 #define LEAST_DB 50.0

@@ -12,8 +12,8 @@
 
 #include <cmocka.h>
 
-#include "drawing.h"
-#include "oracle_refine.h"
+#include "oracle/float64/drawing.h"
+#include "oracle/float64/oracle_refine.h"
 #include "rgbd_frame.h"
 #include "state/ablation.h"
 #include "state/state.h"

@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "drawing.h"
+#include "oracle/float64/drawing.h"
 #include "rgbd_frame.h"
 
 enum { W = 32, H = 24, FROM_W = 50, FROM_H = 38, DEPTH_W = 36, DEPTH_H = 27, MOST = FROM_W * FROM_H };

@@ -11,7 +11,7 @@
 
 #include <cmocka.h>
 
-#include "drawing.h"
+#include "oracle/float64/drawing.h"
 #include "raster/raster_tile.h"
 #include "state/state.h"
 

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "fuzz/memory_file.h"
 #include "import/folders/tum_rgbd.h"
-#include "memory_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -7,7 +7,7 @@
 #include "cli/cli.h"
 #include "evaluation/resume.h"
 #include "evaluation/table.h"
-#include "memory_file.h"
+#include "fuzz/memory_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

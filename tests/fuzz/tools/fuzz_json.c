@@ -5,8 +5,8 @@
 
 #include "cli/cli.h"
 #include "core/camera.h"
+#include "fuzz/memory_file.h"
 #include "import/viewpoint.h"
-#include "memory_file.h"
 #include "reconstruction/replay/replay_expectation.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

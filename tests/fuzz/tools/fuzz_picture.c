@@ -3,7 +3,7 @@
 #define _GNU_SOURCE /* memfd_create() */
 #include <string.h>
 
-#include "memory_file.h"
+#include "fuzz/memory_file.h"
 #include "pictures/picture.h"
 #include "trim3r.h"
 

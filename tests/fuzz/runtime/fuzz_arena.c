@@ -16,13 +16,11 @@
 #include "core/fixed.h"
 #include "core/map_record.h"
 #include "rgbd_frame.h"
+#include "scene/formats/ply/ply.h"
 #include "state/state.h"
 #include "state/views.h"
 #include "superclusters/superclusters.h"
 #include "weights_maker.h"
-#ifdef T3R_FUZZ_EXPORT
-#include "scene/formats/ply/ply.h"
-#endif
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
@@ -452,7 +450,6 @@ static void call_export(const t3r_runtime *rt)
     t3r_scene scene;
     const t3r_status status = t3r_get_scene(rt, &scene);
     check_scene(rt, status, &scene, rt->config.max_gaussians);
-#ifdef T3R_FUZZ_EXPORT
     if (status == T3R_OK) {
         char *text = NULL;
         size_t bytes = 0;
@@ -467,7 +464,6 @@ static void call_export(const t3r_runtime *rt)
         REQUIRE(fclose(file) == 0);
         free(text);
     }
-#endif
 }
 
 static void call_keyframe(t3r_runtime *rt, input *in)
