@@ -1,12 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Scene files: what is written reads back, and what is not a scene is refused with a reason. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +10,7 @@
 #include "scene/gaussian_shape.h"
 #include "scene/scene_file.h"
 #include "scratch.h"
+#include "test.h"
 
 #define COUNT 2000u
 #define ROW_FLOATS 17
@@ -125,9 +120,8 @@ static void round_trip(int flags, const double shift[3], int same_frame)
     free(gaussians);
 }
 
-static void reads_back_what_it_wrote(void **state)
+TEST(reads_back_what_it_wrote)
 {
-    (void)state;
     const double none[3] = {0}, origin[3] = {5 + 12345 / 4294967296.0, -1.5, 77 / 4294967296.0};
     round_trip(0, none, 0);
     round_trip(SCENE_FILE_COMMENTS, none, 1);
@@ -135,9 +129,8 @@ static void reads_back_what_it_wrote(void **state)
     round_trip(SCENE_FILE_LOCAL | SCENE_FILE_COMMENTS, none, 1);
 }
 
-static void decomposes_shapes(void **state)
+TEST(decomposes_shapes)
 {
-    (void)state;
     for (uint32_t i = 0; i < COUNT; i++) {
         t3r_gaussian g;
         make_gaussian(i, &g);
@@ -205,9 +198,8 @@ static int parse(const uint8_t *bytes, size_t count, char *error, size_t error_b
     return result;
 }
 
-static void writes_the_expected_header(void **state)
+TEST(writes_the_expected_header)
 {
-    (void)state;
     t3r_gaussian g;
     make_gaussian(3, &g);
     t3r_scene scene = {.gaussians = &g, .count = 1};
@@ -226,9 +218,8 @@ static void writes_the_expected_header(void **state)
     assert_non_null(strstr(error, "scene.obj: scenes are written as .ply"));
 }
 
-static void refuses_every_cut(void **state)
+TEST(refuses_every_cut)
 {
-    (void)state;
     uint8_t bytes[1024];
     char error[256];
     size_t count = make_ply(bytes, header, sound_row);
@@ -247,9 +238,8 @@ static void replaced(const char *from, const char *to, char *out, size_t out_byt
     assert_true(length > 0 && (size_t)length < out_bytes);
 }
 
-static void refuses_foreign_headers(void **state)
+TEST(refuses_foreign_headers)
 {
-    (void)state;
     static const struct {
         const char *from, *to, *reason;
     } bad[] = {
@@ -291,9 +281,8 @@ static void refuses_foreign_headers(void **state)
     }
 }
 
-static void refuses_bad_numbers(void **state)
+TEST(refuses_bad_numbers)
 {
-    (void)state;
     uint8_t bytes[1024];
     char error[256];
     for (int i = 0; i < ROW_FLOATS; i++) {
@@ -330,9 +319,8 @@ static void refuses_bad_numbers(void **state)
 }
 
 /* Other orders, types and company than ours. */
-static void reads_foreign_layouts(void **state)
+TEST(reads_foreign_layouts)
 {
-    (void)state;
     static const char text[] =
         "ply\r\nformat binary_little_endian 1.0\r\ncomment made elsewhere\r\nobj_info x\r\n"
         "element camera 2\r\nproperty uchar id\r\nproperty double f\r\n"
@@ -372,9 +360,8 @@ static void reads_foreign_layouts(void **state)
 }
 
 /* Half of the points at a size of 1, one far outside: it must fit, and the others keep their places. */
-static void fits_outliers(void **state)
+TEST(fits_outliers)
 {
-    (void)state;
     enum { POINTS = 100 };
     char text[1024];
     replaced("element vertex 1", "element vertex 100", text, sizeof text);
@@ -407,13 +394,4 @@ static void fits_outliers(void **state)
     free(bytes);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_back_what_it_wrote),   cmocka_unit_test(decomposes_shapes),
-        cmocka_unit_test(writes_the_expected_header), cmocka_unit_test(refuses_every_cut),
-        cmocka_unit_test(refuses_foreign_headers),    cmocka_unit_test(refuses_bad_numbers),
-        cmocka_unit_test(reads_foreign_layouts),      cmocka_unit_test(fits_outliers),
-    };
-    return cmocka_run_group_tests(tests, make_path, scratch_teardown);
-}
+ALL_TESTS_WITH(make_path, scratch_teardown)

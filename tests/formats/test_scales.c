@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Scales of Gaussians: order statistics, and the bins that several scenes share. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
-
-#include <cmocka.h>
 
 #include "scene/gaussian_shape.h"
 #include "scene/splat_scales.h"
+#include "test.h"
 
 #define COUNT 2000u
 
@@ -26,9 +21,8 @@ static void make_scene(scene_file *scene, const double *radius, uint32_t count, 
     }
 }
 
-static void test_quantiles(void **state)
+TEST(test_quantiles)
 {
-    (void)state;
     const double radius[] = {0.5, 0.125, 2, 0.25, 1};
     scene_file scene;
     splat_scales scales;
@@ -46,9 +40,8 @@ static void test_quantiles(void **state)
     scene_file_free(&scene);
 }
 
-static void test_bins(void **state)
+TEST(test_bins)
 {
-    (void)state;
     double radius[2][COUNT];
     scene_file scene;
     splat_scales list[2];
@@ -81,9 +74,8 @@ static void test_bins(void **state)
     splat_scales_free(&list[1]);
 }
 
-static void test_bins_end_somewhere(void **state)
+TEST(test_bins_end_somewhere)
 {
-    (void)state;
     double radius[COUNT];
     for (uint32_t i = 0; i < COUNT; i++) {
         radius[i] = i % 2 == 0 ? 0x1p-30 : 0x1p10;
@@ -100,14 +92,4 @@ static void test_bins_end_somewhere(void **state)
     assert_int_equal(counts[0], COUNT / 2);
     splat_scales_free(&scales);
     scene_file_free(&scene);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_quantiles),
-        cmocka_unit_test(test_bins),
-        cmocka_unit_test(test_bins_end_somewhere),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

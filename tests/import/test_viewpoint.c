@@ -1,11 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Pose files and trajectories. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +7,7 @@
 
 #include "import/viewpoint.h"
 #include "scratch.h"
+#include "test.h"
 
 #define ONE_Q30 (1 << 30)
 
@@ -35,9 +30,8 @@ static void write_text(const char *text)
 
 #define IDENTITY "[[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]"
 
-static void reads_a_pose(void **state)
+TEST(reads_a_pose)
 {
-    (void)state;
     viewpoint_list list;
     char error[256] = "";
     write_text("{\"fl_x\": 200, \"cx\": 100.5, \"w\": 256, \"h\": 128, \"transform_matrix\": " IDENTITY "}");
@@ -55,9 +49,8 @@ static void reads_a_pose(void **state)
     viewpoint_list_free(&list);
 }
 
-static void reads_all_frames_of_a_list(void **state)
+TEST(reads_all_frames_of_a_list)
 {
-    (void)state;
     viewpoint_list list;
     char error[256] = "";
     write_text(
@@ -68,9 +61,8 @@ static void reads_all_frames_of_a_list(void **state)
     viewpoint_list_free(&list);
 }
 
-static void refuses_bad_poses(void **state)
+TEST(refuses_bad_poses)
 {
-    (void)state;
     static const struct {
         const char *text, *reason;
     } bad[] = {
@@ -98,9 +90,8 @@ static void refuses_bad_poses(void **state)
     }
 }
 
-static void reads_a_trajectory(void **state)
+TEST(reads_a_trajectory)
 {
-    (void)state;
     viewpoint lens;
     viewpoint_list list;
     char error[256] = "";
@@ -116,9 +107,8 @@ static void reads_a_trajectory(void **state)
     viewpoint_list_free(&list);
 }
 
-static void refuses_bad_trajectories(void **state)
+TEST(refuses_bad_trajectories)
 {
-    (void)state;
     static const struct {
         const char *text, *reason;
     } bad[] = {
@@ -147,14 +137,4 @@ static void refuses_bad_trajectories(void **state)
     assert_int_equal(viewpoint_from_angle(179.9, 64, 64, &wide), -1);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_a_pose),
-        cmocka_unit_test(reads_all_frames_of_a_list),
-        cmocka_unit_test(refuses_bad_poses),
-        cmocka_unit_test(reads_a_trajectory),
-        cmocka_unit_test(refuses_bad_trajectories),
-    };
-    return cmocka_run_group_tests(tests, make_path, scratch_teardown);
-}
+ALL_TESTS_WITH(make_path, scratch_teardown)

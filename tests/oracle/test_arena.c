@@ -2,17 +2,12 @@
 /* The arena's guarantees: the macros and t3r_plan() agree, the minimum works and one byte less is refused, any size
  * gets an answer without an access beyond it, and buffers in use at the same time never share a byte. */
 #include <limits.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "core/config.h"
 #include "oracle/float64/drawing.h"
+#include "test.h"
 
 /* The embedded default: what a firmware declares. */
 _Static_assert(T3R_ARENA_BYTES(256, 256, 2, 13107) <= 4u << 20, "full arena over 4 MiB");
@@ -88,9 +83,8 @@ static void check_plan(const t3r_plan_info *plan)
     }
 }
 
-static void plan_equals_macros(void **state)
+TEST(plan_equals_macros)
 {
-    (void)state;
     dice d = {1};
     for (int i = 0; i < 20000; i++) {
         t3r_config c = random_config(&d, T3R_MAX_SIDE, T3R_MAX_GAUSSIANS);
@@ -139,9 +133,8 @@ static void plan_equals_macros(void **state)
 
 /* Settings unknown to the macros must not need more. */
 /* The most Gaussians that fit, and not one more; never more than were asked for. */
-static void plan_within_is_the_inverse(void **state)
+TEST(plan_within_is_the_inverse)
 {
-    (void)state;
     dice d = {11};
     uint32_t cut = 0, refused = 0;
     for (int i = 0; i < 20000; i++) {
@@ -201,9 +194,8 @@ static void plan_within_is_the_inverse(void **state)
     }
 }
 
-static void plan_depends_on_sizes_alone(void **state)
+TEST(plan_depends_on_sizes_alone)
 {
-    (void)state;
     t3r_config c = t3r_default_config(64, 48, 2, 500);
     c.clusters = 24;
     t3r_plan_info plan, other;
@@ -229,9 +221,8 @@ static void assert_untouched(const arena *a)
     }
 }
 
-static void minimum_works_one_less_is_refused(void **state)
+TEST(minimum_works_one_less_is_refused)
 {
-    (void)state;
     dice d = {2};
     for (int i = 0; i < 400; i++) {
         t3r_config c = random_config(&d, 64, 2000);
@@ -264,9 +255,8 @@ static void minimum_works_one_less_is_refused(void **state)
     }
 }
 
-static void every_size_up_to_the_minimum(void **state)
+TEST(every_size_up_to_the_minimum)
 {
-    (void)state;
     t3r_config configs[] = {t3r_default_config(8, 8, 1, 1), t3r_default_config(8, 8, 0, 1)};
     for (size_t k = 0; k < sizeof configs / sizeof configs[0]; k++) {
         configs[k].clusters = 1;
@@ -290,9 +280,8 @@ static void every_size_up_to_the_minimum(void **state)
     }
 }
 
-static void misaligned_is_refused(void **state)
+TEST(misaligned_is_refused)
 {
-    (void)state;
     t3r_config c = t3r_default_config(16, 16, 1, 10);
     t3r_plan_info plan;
     assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
@@ -312,9 +301,8 @@ static void misaligned_is_refused(void **state)
 }
 
 /* t3r_attach() accepts only the bytes of an initialised arena, without damage in a checked field or a cut. */
-static void attach_refuses_foreign_bytes(void **state)
+TEST(attach_refuses_foreign_bytes)
 {
-    (void)state;
     t3r_config c = t3r_default_config(16, 16, 1, 10);
     arena a = arena_of(&c, ARENA_AT_FULL);
     t3r_runtime *rt = (t3r_runtime *)(void *)&c;
@@ -339,22 +327,10 @@ static void attach_refuses_foreign_bytes(void **state)
     arena_free(&a);
 }
 
-static void a_static_array_is_enough(void **state)
+TEST(a_static_array_is_enough)
 {
-    (void)state;
     t3r_config c = t3r_default_config(96, 96, 2, 900);
     t3r_runtime *rt;
     assert_int_equal(t3r_init(&rt, firmware_arena, sizeof firmware_arena, &c), T3R_OK);
     assert_int_equal(t3r_reset(rt), T3R_OK);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plan_equals_macros),           cmocka_unit_test(plan_within_is_the_inverse),
-        cmocka_unit_test(plan_depends_on_sizes_alone),  cmocka_unit_test(minimum_works_one_less_is_refused),
-        cmocka_unit_test(every_size_up_to_the_minimum), cmocka_unit_test(misaligned_is_refused),
-        cmocka_unit_test(attach_refuses_foreign_bytes), cmocka_unit_test(a_static_array_is_enough),
-    };
-    return cmocka_run_group_tests_name("arena", tests, NULL, NULL);
 }

@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Presets for a size of RAM fit into it, and too little is refused; presets for an amount of work. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "oracle/float64/drawing.h"
+#include "test.h"
 
 static const uint64_t sizes[] = {128 << 10, 192 << 10, 256 << 10, 512 << 10, 1 << 20, 4 << 20};
 enum { SIZES = sizeof sizes / sizeof sizes[0] };
@@ -36,9 +31,8 @@ static void settings_fit(uint64_t bytes, uint64_t row)
     assert_memory_equal(&config, &again, sizeof config);
 }
 
-static void every_size_has_settings_that_fit(void **state)
+TEST(every_size_has_settings_that_fit)
 {
-    (void)state;
     for (int i = 0; i < SIZES; i++) {
         settings_fit(sizes[i], sizes[i]);
         settings_fit(sizes[i] + 1, sizes[i]);
@@ -50,9 +44,8 @@ static void every_size_has_settings_that_fit(void **state)
     settings_fit(UINT64_MAX, sizes[SIZES - 1]);
 }
 
-static void too_little_is_refused(void **state)
+TEST(too_little_is_refused)
 {
-    (void)state;
     t3r_config config, before;
     t3r_ram_info info, info_before;
     memset(&config, 0x5a, sizeof config);
@@ -67,9 +60,8 @@ static void too_little_is_refused(void **state)
     assert_memory_equal(&info, &info_before, sizeof info);
 }
 
-static void a_preset_chooses_head_and_refinement_alone(void **state)
+TEST(a_preset_chooses_head_and_refinement_alone)
 {
-    (void)state;
     uint32_t before = 0;
     for (t3r_preset preset = 0; preset < T3R_PRESET_COUNT; preset++) {
         const t3r_config given = t3r_default_config(48, 40, 3, 77);
@@ -93,9 +85,8 @@ static void a_preset_chooses_head_and_refinement_alone(void **state)
     }
 }
 
-static void an_unknown_preset_is_refused(void **state)
+TEST(an_unknown_preset_is_refused)
 {
-    (void)state;
     const t3r_config given = t3r_default_config(48, 40, 3, 77);
     t3r_config config = given;
     const char *const unset = "unset", *weights = unset;
@@ -104,15 +95,4 @@ static void an_unknown_preset_is_refused(void **state)
     assert_int_equal(t3r_set_preset_as(t3r_interface() + 1, T3R_PRESET_FAST, &config, &weights), T3R_ERR_INTERFACE);
     assert_memory_equal(&config, &given, sizeof given);
     assert_ptr_equal(weights, unset);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_size_has_settings_that_fit),
-        cmocka_unit_test(too_little_is_refused),
-        cmocka_unit_test(a_preset_chooses_head_and_refinement_alone),
-        cmocka_unit_test(an_unknown_preset_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

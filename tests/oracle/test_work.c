@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The work of builds and the settings that fit: counts follow the configuration, lists hold what they promise. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
+#include "test.h"
 #include "trim3r.h"
 #include "weights_maker.h"
 
@@ -34,9 +29,8 @@ static t3r_work_counts counted(const t3r_config *config, const void *weights, si
 
 /* ---- counts ------------------------------------------------------------------------------------------------------ */
 
-static void counts_follow_the_configuration(void **state)
+TEST(counts_follow_the_configuration)
 {
-    (void)state;
     t3r_config c = config_of(1000);
     c.align = 0;
     const t3r_work_counts before = counted(&c, NULL, 0);
@@ -63,9 +57,8 @@ static void counts_follow_the_configuration(void **state)
 }
 
 /* Half of at most 32 rounds compare 1,024 pixels of each view, and only if alignment has two views. */
-static void alignment_compares_pixels(void **state)
+TEST(alignment_compares_pixels)
 {
-    (void)state;
     t3r_config c = config_of(1000);
     const uint64_t both = counted(&c, NULL, 0).units[T3R_WORK_COMPARISON];
     c.align = 0;
@@ -80,9 +73,8 @@ static void alignment_compares_pixels(void **state)
 }
 
 /* Fitted widths look at the other views; structure, at the tiles once more and at all views' levels in two passes. */
-static void counts_what_is_asked_for_beyond(void **state)
+TEST(counts_what_is_asked_for_beyond)
 {
-    (void)state;
     t3r_config c = config_of(1000);
     c.fit_widths = 1;
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DISC_GAUSSIANS], 1000); /* refinement finds widths by itself */
@@ -106,9 +98,8 @@ static void counts_what_is_asked_for_beyond(void **state)
 }
 
 /* What does not fit at once is refined in slices, each of which draws the views. */
-static void small_arenas_draw_more_often(void **state)
+TEST(small_arenas_draw_more_often)
 {
-    (void)state;
     const t3r_config c = config_of(4000);
     t3r_work_counts least;
     const size_t bytes = bytes_of(&c, false);
@@ -118,9 +109,8 @@ static void small_arenas_draw_more_often(void **state)
     assert_int_equal(t3r_count_work(&c, bytes - 1, NULL, 0, &least), T3R_ERR_ARENA);
 }
 
-static void networks_count_by_their_layers(void **state)
+TEST(networks_count_by_their_layers)
 {
-    (void)state;
     size_t bytes;
     uint8_t *weights = make_weights(small_shape, small_layers, 8, 8, 1, &bytes);
     t3r_config c = config_of(96 * 64 * 2); /* every point, so that a pixel takes what the header says */
@@ -136,9 +126,8 @@ static void networks_count_by_their_layers(void **state)
 }
 
 /* Networks whose numbers or layers cannot be packed count as slower. */
-static void some_networks_cannot_be_packed(void **state)
+TEST(some_networks_cannot_be_packed)
 {
-    (void)state;
     static const made_layer deep[] = {
         {T3R_LAYER_CONV, 1, {0, T3R_SOURCE_NONE}, 4, 2, 1, 8},
         {T3R_LAYER_DEPTHWISE, 1, {1, T3R_SOURCE_NONE}, 3, 1, 1, 8},
@@ -163,9 +152,8 @@ static void some_networks_cannot_be_packed(void **state)
     }
 }
 
-static void refuses_what_has_no_count(void **state)
+TEST(refuses_what_has_no_count)
 {
-    (void)state;
     t3r_config c = config_of(100);
     t3r_work_counts work;
     assert_int_equal(t3r_count_work(NULL, 0, NULL, 0, &work), T3R_ERR_ARGUMENT);
@@ -178,9 +166,8 @@ static void refuses_what_has_no_count(void **state)
     assert_int_equal(t3r_count_work(&c, SIZE_MAX / 2, NULL, 0, &work), T3R_ERR_CONFIG);
 }
 
-static void prices_add_up_and_end_at_the_most(void **state)
+TEST(prices_add_up_and_end_at_the_most)
 {
-    (void)state;
     t3r_work_counts work = {{0}};
     t3r_prices prices = {{0}};
     work.units[T3R_WORK_IMAGE] = 1999;
@@ -232,9 +219,8 @@ static uint32_t listed(const t3r_config *c, const t3r_limits *limits, t3r_choice
     return count;
 }
 
-static void lists_what_fits_best_first(void **state)
+TEST(lists_what_fits_best_first)
 {
-    (void)state;
     const t3r_config c = config_of(1);
     t3r_choice all[T3R_MAX_CHOICES], some[T3R_MAX_CHOICES];
     t3r_limits limits = {.prices = &t3r_operations, .refine = T3R_ANY_REFINE};
@@ -261,9 +247,8 @@ static void lists_what_fits_best_first(void **state)
 }
 
 /* Shares of the smallest scene are at least one Gaussian; shares of the largest omit those that no runtime accepts. */
-static void shares_of_extreme_sizes(void **state)
+TEST(shares_of_extreme_sizes)
 {
-    (void)state;
     t3r_choice list[T3R_MAX_CHOICES];
     const t3r_limits limits = {.prices = &t3r_operations, .refine = 1};
     t3r_config c = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 1, 1);
@@ -280,9 +265,8 @@ static void shares_of_extreme_sizes(void **state)
     assert_in_range(most, T3R_MAX_GAUSSIANS / 2, T3R_MAX_GAUSSIANS);
 }
 
-static void heads_are_compared(void **state)
+TEST(heads_are_compared)
 {
-    (void)state;
     t3r_choice list[2 * T3R_MAX_CHOICES];
     uint32_t count = 0, learned = 0;
     const t3r_limits limits = {.prices = &t3r_operations, .refine = T3R_ANY_REFINE};
@@ -302,9 +286,8 @@ static void heads_are_compared(void **state)
 }
 
 /* A network is rated like the shipped one of about its size: one that computes more loses less at small budgets. */
-static void networks_are_rated_by_their_size(void **state)
+TEST(networks_are_rated_by_their_size)
 {
-    (void)state;
     static const made_layer least[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, T3R_HEAD_OUTPUTS}};
     static const made_layer two[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 48},
                                      {T3R_LAYER_POINT, 0, {1, T3R_SOURCE_NONE}, 1, 1, 1, T3R_HEAD_OUTPUTS}};
@@ -334,9 +317,8 @@ static void networks_are_rated_by_their_size(void **state)
     assert_true(loss[true] < loss[false]);
 }
 
-static void refuses_limits_out_of_range(void **state)
+TEST(refuses_limits_out_of_range)
 {
-    (void)state;
     t3r_config c = config_of(1);
     t3r_choice list[T3R_MAX_CHOICES];
     uint32_t count = 0;
@@ -358,24 +340,4 @@ static void refuses_limits_out_of_range(void **state)
     c.stream = 1; /* keyframes come as they come */
     assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, list, &count), T3R_ERR_CONFIG);
     assert_int_equal(count, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(counts_follow_the_configuration),
-        cmocka_unit_test(alignment_compares_pixels),
-        cmocka_unit_test(counts_what_is_asked_for_beyond),
-        cmocka_unit_test(small_arenas_draw_more_often),
-        cmocka_unit_test(networks_count_by_their_layers),
-        cmocka_unit_test(some_networks_cannot_be_packed),
-        cmocka_unit_test(refuses_what_has_no_count),
-        cmocka_unit_test(prices_add_up_and_end_at_the_most),
-        cmocka_unit_test(lists_what_fits_best_first),
-        cmocka_unit_test(shares_of_extreme_sizes),
-        cmocka_unit_test(heads_are_compared),
-        cmocka_unit_test(networks_are_rated_by_their_size),
-        cmocka_unit_test(refuses_limits_out_of_range),
-    };
-    return cmocka_run_group_tests_name("work", tests, NULL, NULL);
 }

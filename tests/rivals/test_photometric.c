@@ -54,9 +54,8 @@ static double loss_slowly(const uint8_t *target, const float *rgb, double simila
     return (1 - similarity) * difference + similarity * (1 - likeness);
 }
 
-static void against_definition(void **state)
+TEST(against_definition)
 {
-    (void)state;
     static const double shares[] = {0, 0.2, 1};
     uint8_t target[VALUES];
     float rgb[VALUES], gradient[VALUES];
@@ -74,9 +73,8 @@ static void against_definition(void **state)
     photometric_close(&p);
 }
 
-static void derivatives(void **state)
+TEST(derivatives)
 {
-    (void)state;
     static const double shares[] = {0, 0.2, 1};
     uint8_t target[VALUES];
     float rgb[VALUES], gradient[VALUES];
@@ -99,13 +97,4 @@ static void derivatives(void **state)
         }
     }
     photometric_close(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(against_definition),
-        cmocka_unit_test(derivatives),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The pool: every index exactly once, whatever the number of threads, job after job. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
 #include <stdatomic.h>
 #include <stdbool.h>
-#include <stdint.h>
 #include <string.h>
 
 #include "host/threads.h"
+#include "test.h"
 
 #define MOST 3000u
 
@@ -29,9 +24,8 @@ static void visit(void *context, uint32_t index, uint32_t worker)
     atomic_store(&j->busy[worker], false);
 }
 
-static void visits_every_index_once(void **state)
+TEST(visits_every_index_once)
 {
-    (void)state;
     static const uint32_t threads[] = {1, 2, 5, 16}, counts[] = {0, 1, 2, 7, MOST};
     for (size_t t = 0; t < sizeof threads / sizeof threads[0]; t++) {
         t3r_threads *pool = t3r_threads_start(threads[t]);
@@ -52,19 +46,9 @@ static void visits_every_index_once(void **state)
     }
 }
 
-static void refuses_impossible_counts(void **state)
+TEST(refuses_impossible_counts)
 {
-    (void)state;
     assert_null(t3r_threads_start(0));
     assert_null(t3r_threads_start(T3R_MAX_THREADS + 1));
     t3r_threads_stop(NULL);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(visits_every_index_once),
-        cmocka_unit_test(refuses_impossible_counts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }
