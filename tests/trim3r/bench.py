@@ -3,7 +3,6 @@
 """bench.py TRIM3R: every figure of `trim3r bench`, and K-means of points that are given."""
 import os
 import struct
-import sys
 
 from program import TRIM3R, check, expect, expect_json, in_scratch, write
 
@@ -100,4 +99,4 @@ def against_what_is_no_trim3r():
     expect(1, *line, script("other", helps + "echo '{}'"), err="it has none of the stages: kmeans_ms")
 
 
-sys.exit(in_scratch(points, stages, against, against_what_is_no_trim3r))
+in_scratch(points, stages, against, against_what_is_no_trim3r)

@@ -15,7 +15,8 @@ except ImportError as error:
     print(f"SKIPPED: {error}")
     sys.exit(77)
 
-from common import check, done, run  # noqa: E402
+from checks import check, done  # noqa: E402
+from program import expect, expect_json  # noqa: E402
 
 
 
@@ -95,8 +96,8 @@ def read_ply(path):
 def retained_pixels(recording, folder, sizes, context):
     """Unmoved points are the retained pixels: their observations are pixel centres, and have the pixels' colours."""
     model, ply = f"{folder}/pixels", f"{folder}/pixels.ply"
-    answer = json.loads(run("build", recording, "--context", context, "--keep", "20%", "--head", "none", "--refine", "0",
-                            "--exposure", "off", "--colmap", model, "-o", ply, "--json"))
+    answer = expect_json("build", recording, "--context", context, "--keep", "20%", "--head", "none", "--refine", "0",
+                            "--exposure", "off", "--colmap", model, "-o", ply)
     check(answer["colmap"] == model, "JSON tells the folder")
     images, points, apart = check_model(model, sizes, answer["gaussians"])
     check(max(apart) < 0.01, f"reprojected within a hundredth of a pixel: {max(apart)}")
@@ -135,7 +136,7 @@ def other_views(folder, images, points):
 
 def adapted(recording, folder, sizes):
     model = f"{folder}/adapted"
-    answer = json.loads(run("build", recording, "--context", "0,2", "--keep", "10%", "--colmap", model, "--json"))
+    answer = expect_json("build", recording, "--context", "0,2", "--keep", "10%", "--colmap", model)
     check("scene" not in answer, "no scene file was asked for")
     _, points, apart = check_model(model, sizes, answer["gaussians"])
     check(max(apart) < 0.01 and len(apart) > 0.9 * len(points), "reprojected")
@@ -144,7 +145,7 @@ def adapted(recording, folder, sizes):
 def local(recording, folder, sizes):
     """--local: the same, from the first camera's centre."""
     model = f"{folder}/local"
-    count = json.loads(run("build", recording, "--context", "0,1", "--gaussians", "500", "--local", "--colmap", model,
+    count = json.loads(expect(0, "build", recording, "--context", "0,1", "--gaussians", "500", "--local", "--colmap", model,
                            "--json"))["gaussians"]
     images, _, apart = check_model(model, sizes, count)
     check(max(apart) < 0.01, "reprojected")
@@ -154,12 +155,12 @@ def local(recording, folder, sizes):
 def elsewhere(recording, folder, sizes):
     """Gaussians made elsewhere have no source view."""
     ply, model = f"{folder}/theirs.ply", f"{folder}/pruned"
-    run("build", recording, "--context", "0,2", "--gaussians", "400", "-o", ply)
-    run("build", recording, "--context", "0,2", "--prune", ply, "--method", "eagles", "--gaussians", "100", "--colmap", model)
+    expect(0, "build", recording, "--context", "0,2", "--gaussians", "400", "-o", ply)
+    expect(0, "build", recording, "--context", "0,2", "--prune", ply, "--method", "eagles", "--gaussians", "100", "--colmap", model)
     _, points, apart = check_model(model, sizes, 100)
     check(not apart and len(points) == 100, "nothing is observed")
     model = f"{folder}/rival"
-    run("build", recording, "--context", "0,2", "--method", "random", "--gaussians", "100", "--colmap", model)
+    expect(0, "build", recording, "--context", "0,2", "--method", "random", "--gaussians", "100", "--colmap", model)
     _, _, apart = check_model(model, sizes, 100)
     check(len(apart) > 90, "a rival's points are observed")
 
@@ -181,7 +182,7 @@ def lens_recording(folder):
     with open(f"{made}/transforms.json", "w", encoding="utf-8") as file:
         json.dump({"fl_x": 60, "fl_y": 62, "cx": 31, "cy": 25, "w": 64, "h": 48, "k1": 0.1, "k2": -0.02,
                    "integer_depth_scale": 0.001, "frames": frames}, file)
-    run("import", made, "-o", f"{made}.mcap")
+    expect(0, "import", made, "-o", f"{made}.mcap")
     return f"{made}.mcap"
 
 
@@ -208,26 +209,26 @@ def moved_recording(folder):
     with open(f"{made}/transforms.json", "w", encoding="utf-8") as file:
         json.dump({"fl_x": 90, "fl_y": 90, "cx": 48, "cy": 32, "w": 96, "h": 64, "integer_depth_scale": 0.001,
                    "frames": frames}, file)
-    run("import", made, "-o", f"{made}.mcap")
+    expect(0, "import", made, "-o", f"{made}.mcap")
     return f"{made}.mcap"
 
 
 def aligned(recording, folder):
     """Checks that the model has the corrected poses where a build corrects them, and that the report says by how
     much."""
-    told = json.loads(run("build", recording, "--context", "0,1", "--keep", "5%", "-o", f"{folder}/a.ply", "--json"))["aligned"]
+    told = expect_json("build", recording, "--context", "0,1", "--keep", "5%", "-o", f"{folder}/a.ply")["aligned"]
     turned = sum(view["degrees"] for view in told)
     check(0.3 < turned < 0.7, f"corrected by {turned} of half a degree")
-    text = run("build", recording, "--context", "0,1", "--keep", "5%", "-o", f"{folder}/a.ply", "--force")
+    text = expect(0, "build", recording, "--context", "0,1", "--keep", "5%", "-o", f"{folder}/a.ply", "--force")
     check(f"pose of frame 1 corrected by {told[1]['degrees']:.2f} degrees" in text, "told")
-    still = json.loads(run("build", recording, "--context", "0,1", "--keep", "5%", "--align", "off", "-o", f"{folder}/b.ply",
+    still = json.loads(expect(0, "build", recording, "--context", "0,1", "--keep", "5%", "--align", "off", "-o", f"{folder}/b.ply",
                            "--json"))["aligned"]
     check(all(view["degrees"] == view["distance"] == 0 for view in still), "as given without --align")
 
 
 with tempfile.TemporaryDirectory() as folder:
     room, lens = f"{folder}/room.mcap", lens_recording(folder)
-    run("room", "--size", "96x64", "-o", room)
+    expect(0, "room", "--size", "96x64", "-o", room)
     os.mkdir(f"{folder}/a")
     other_views(f"{folder}/a", *retained_pixels(room, f"{folder}/a", (96, 64), "0,2"))
     os.mkdir(f"{folder}/b")
@@ -240,9 +241,9 @@ with tempfile.TemporaryDirectory() as folder:
     local(lens, folder, (64, 48))
     elsewhere(room, folder, (96, 64))
     budget = ("build", room, "--keep", "10%")
-    run(*budget, "--colmap", f"{folder}/a/pixels", expect=1, words="not empty")
-    run(*budget, "--colmap", room, expect=2, words=room)
-    run(*budget, "--colmap", lens, expect=1, words="not a folder")
-    run(*budget, "--colmap", f"{folder}/no/such", expect=1, words="no/such")
-    run(*budget, expect=2, words="-o SCENE.ply is missing")
+    expect(1, *budget, "--colmap", f"{folder}/a/pixels", err="not empty")
+    expect(2, *budget, "--colmap", room, err=room)
+    expect(1, *budget, "--colmap", lens, err="not a folder")
+    expect(1, *budget, "--colmap", f"{folder}/no/such", err="no/such")
+    expect(2, *budget, err="-o SCENE.ply is missing")
 done()

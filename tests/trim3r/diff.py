@@ -3,7 +3,6 @@
 """diff.py TRIM3R: scenes and pictures compared, and what differs."""
 import json
 import struct
-import sys
 
 from program import check, expect, expect_json, in_scratch, room, run, write
 
@@ -41,4 +40,4 @@ def diff():
     check(code == 1 and found["psnr"] > 0 and found["first_tile"][0] % 16 == 0, "diff of views is wrong")
 
 
-sys.exit(in_scratch(diff))
+in_scratch(diff)

@@ -5,7 +5,6 @@ a noun phrase what that value is: lower case first, no full stop, then range and
 import os
 import re
 import subprocess
-import sys
 
 from program import TRIM3R, check, expect, in_scratch
 
@@ -78,8 +77,7 @@ def every_help():
         for option, text in options:
             wrong += findings(f"{command} {option}", text)
         wrong += prose(command, wide)
-    for what in sorted(set(wrong)):
-        check(False, what)
+    check(not wrong, "\n".join(sorted(set(wrong))))
 
 
-sys.exit(in_scratch(every_help))
+in_scratch(every_help)

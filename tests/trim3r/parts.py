@@ -6,7 +6,6 @@ import os
 import shutil
 import signal
 import subprocess
-import sys
 import time
 
 from outputs import commands
@@ -181,4 +180,4 @@ def left_by_the_killed():
 
 
 if __name__ == "__main__":
-    sys.exit(in_scratch(prepare, on_a_full_disk, to_a_full_terminal, by_a_signal, an_older_table, left_by_the_killed))
+    in_scratch(prepare, on_a_full_disk, to_a_full_terminal, by_a_signal, an_older_table, left_by_the_killed)

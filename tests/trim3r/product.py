@@ -64,4 +64,4 @@ def nothing_of_it_is_linked():
     check(study & product == set(), f"linked into the product: {sorted(study & product)}")
 
 
-sys.exit(in_scratch(every_command, the_study_is_named, nothing_of_it_is_linked))
+in_scratch(every_command, the_study_is_named, nothing_of_it_is_linked)

@@ -7,7 +7,8 @@ import re
 import subprocess
 import tempfile
 
-from common import TRIM3R, check, done, run
+from checks import check, done
+from program import TRIM3R, expect
 from terminal import on_terminal
 
 CLEARED = "\r\x1b[K"
@@ -28,7 +29,7 @@ def told(text):
 
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    run("room", "--size", "64x64", "-o", "room.mcap")
+    expect(0, "room", "--size", "64x64", "-o", "room.mcap")
 
     text = shown("room", "--size", "320x240", "--frames", 24, "-o", "long.mcap")
     percents = [int(p) for p in re.findall(r"\rdrawing the room +(\d+) %", text)]

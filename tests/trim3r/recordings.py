@@ -3,20 +3,9 @@
 """recordings.py TRIM3R: files that are no recordings, cut ones, ones without depth."""
 import json
 import os
-import struct
-import sys
-import zlib
 
+from png import png
 from program import expect, in_scratch, room, write
-
-
-def png(width, height):
-    """A grey-brown RGB picture."""
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    rows = b"".join(b"\0" + bytes((120, 110, 100)) * width for _ in range(height))
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
-            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
 POSE = {"fl_x": 220, "w": 64, "h": 48, "transform_matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}
@@ -50,11 +39,11 @@ def recordings():
     expect(1, "build", "cut.mcap", "--keep", 10, "--context", "0,5", "-o", "s.ply", err="cut.mcap")
     # pictures without depth
     os.mkdir("flat")
-    write("flat/a.png", png(64, 48))
+    write("flat/a.png", png([bytes((120, 110, 100)) * 64] * 48))
     write("flat/transforms.json", json.dumps({"frames": [dict(POSE, file_path="a.png")]}))
     expect(1, "import", "absent", "-o", "flat.mcap", err="absent")
     expect(0, "import", "flat", "-o", "flat.mcap")
     expect(1, "build", "flat.mcap", "--keep", 10, "-o", "s.ply", err="no depth")
 
 
-sys.exit(in_scratch(recordings))
+in_scratch(recordings)

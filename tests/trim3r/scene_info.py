@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """scene_info.py TRIM3R: `info SCENE.ply` against NumPy on the same file: counts, bounds, quantiles and bins of scales, in
 world units and in pixels; the picture."""
-import json
 import re
 import sys
 import tempfile
@@ -14,7 +13,8 @@ except ImportError as error:
     print(f"SKIPPED: {error}")
     sys.exit(77)
 
-from common import check, done, run  # noqa: E402
+from checks import check, done  # noqa: E402
+from program import expect, expect_json  # noqa: E402
 
 SHARES = {"p5": 0.05, "p25": 0.25, "median": 0.5, "p75": 0.75, "p95": 0.95}
 
@@ -54,10 +54,10 @@ def check_scene(told, edges, path):
 
 def several(folder, room):
     paths = [f"{folder}/{name}.ply" for name in ("all", "pruned", "disc")]
-    run("build", room, "--context", "0,2", "--keep", "100%", "-o", paths[0])
-    run("build", room, "--context", "0,2", "--keep", "5%", "-o", paths[1])
-    run("build", room, "--context", "0,2", "--keep", "5%", "--head", "analytic", "--refine", "0", "-o", paths[2])
-    answer = json.loads(run("info", *paths, room, "--view", "1", "--svg", f"{folder}/s.svg", "--json"))
+    expect(0, "build", room, "--context", "0,2", "--keep", "100%", "-o", paths[0])
+    expect(0, "build", room, "--context", "0,2", "--keep", "5%", "-o", paths[1])
+    expect(0, "build", room, "--context", "0,2", "--keep", "5%", "--head", "analytic", "--refine", "0", "-o", paths[2])
+    answer = expect_json("info", *paths, room, "--view", "1", "--svg", f"{folder}/s.svg")
     edges = numpy.array(answer["scale_edges"])
     near(edges[1:] / edges[:-1], 2**0.25, "a quarter of an octave", 1e-9)
     scales = [check_scene(t, edges, p) for t, p in zip(answer["scenes"], paths, strict=True)]
@@ -71,7 +71,7 @@ def several(folder, room):
     for scene in answer["scenes"]:
         near([scene["scale_pixels"][n] for n in SHARES], [scene["scale"][n] * factor for n in SHARES], "in pixels", 1e-9)
     model = f"{folder}/camera"
-    run("build", room, "--context", "1", "--gaussians", "1", "--colmap", model)
+    expect(0, "build", room, "--context", "1", "--gaussians", "1", "--colmap", model)
     with open(f"{model}/sparse/0/cameras.txt", encoding="ascii") as file:
         fx, fy, cx, cy = map(float, file.read().split("\n")[1].split()[4:])
     with open(f"{model}/sparse/0/images.txt", encoding="ascii") as file:
@@ -93,24 +93,24 @@ def several(folder, room):
     bars = sum(sum(c > 0 for c in s["scale_counts"]) for s in answer["scenes"])
     check(len(picture.getElementsByTagName("rect")) == bars, "a bar a bin")
     check("prefers-color-scheme" in open(f"{folder}/s.svg", encoding="utf-8").read(), "light and dark")
-    text = run("info", paths[1])
+    text = expect(0, "info", paths[1])
     check(re.search(rf"scale: .*median {medians[1]:.4g}", text) and "pixels" not in text, f"as text: {text}")
     return paths
 
 
 with tempfile.TemporaryDirectory() as folder:
     room = f"{folder}/room.mcap"
-    run("room", "--size", "64x64", "-o", room)
+    expect(0, "room", "--size", "64x64", "-o", room)
     paths = several(folder, room)
-    run("info", paths[0], room, expect=2, words="--view belong together")
-    run("info", paths[0], "--view", "1", expect=2, words="--view belong together")
-    run("info", room, "--svg", f"{folder}/x.svg", expect=2, words="belong to scenes")
-    run("info", *[paths[1]] * 25, expect=2, words="at most 24")
-    run("info", f"{folder}/absent.ply", expect=1, words="absent.ply")
-    run("info", paths[0], room, "--view", "99", expect=1, words="no frame 99")
-    run("info", paths[0], "--svg", f"{folder}/no/x.svg", expect=1, words="no/x.svg")
+    expect(2, "info", paths[0], room, err="--view belong together")
+    expect(2, "info", paths[0], "--view", "1", err="--view belong together")
+    expect(2, "info", room, "--svg", f"{folder}/x.svg", err="belong to scenes")
+    expect(2, "info", *[paths[1]] * 25, err="at most 24")
+    expect(1, "info", f"{folder}/absent.ply", err="absent.ply")
+    expect(1, "info", paths[0], room, "--view", "99", err="no frame 99")
+    expect(1, "info", paths[0], "--svg", f"{folder}/no/x.svg", err="no/x.svg")
     with open(f"{folder}/empty.ply", "wb") as file, open(paths[0], "rb") as whole:
         head = whole.read().split(b"end_header\n")[0]
         file.write(re.sub(rb"element vertex \d+", b"element vertex 0", head) + b"end_header\n")
-    run("info", paths[1], f"{folder}/empty.ply", expect=1, words="empty.ply")
+    expect(1, "info", paths[1], f"{folder}/empty.ply", err="empty.ply")
 done()

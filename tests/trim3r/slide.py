@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """slide.py TRIM3R: `trim3r replay --slide`: a scene at every frame, warm or not; the same bits every time."""
 import json
-import sys
 
 from program import check, expect, expect_json, in_scratch, room, write
 
@@ -41,4 +40,4 @@ def large():
         expect(0, "render", f"{size}.ply", recording, "--view", 1, "-o", f"{size}.png", out="1 view")
 
 
-sys.exit(in_scratch(slide, large))
+in_scratch(slide, large)

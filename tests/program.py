@@ -3,30 +3,19 @@
 import json
 import os
 import resource
-import shutil
 import subprocess
 import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from checks import check, done
 
 TRIM3R = os.path.abspath(sys.argv[1])
-HEADS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "quant", "heads")
-failures = []
-checks = 0
+HEADS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "quant", "heads")
 
 
 def run(*arguments):
     done = subprocess.run([TRIM3R, *map(str, arguments)], capture_output=True, text=True, timeout=300)
     return done.returncode, done.stdout, done.stderr
-
-
-def check(condition, what):
-    global checks
-    checks += 1
-    if not condition:
-        failures.append(what)
-        print("FAILED:", what)
 
 
 def expect(code, *arguments, err=None, out=None):
@@ -87,14 +76,10 @@ def weight_file(path, bits="8"):
 
 
 def in_scratch(*tests):
-    """Runs each test, all in one empty folder; the exit status."""
-    folder = tempfile.mkdtemp(prefix="trim3r-cli-")
-    os.chdir(folder)
-    try:
+    """Runs each test, all in one empty folder."""
+    with tempfile.TemporaryDirectory(prefix="trim3r-cli-") as folder:
+        os.chdir(folder)
         for test in tests:
             test()
-    finally:
         os.chdir("/")
-        shutil.rmtree(folder)
-    print(f"{checks} checks, {len(failures)} failed")
-    return 1 if failures else 0
+    done()
