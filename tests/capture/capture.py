@@ -59,9 +59,9 @@ def builds():
     later = expect_json("build", "room.mcap", "-o", "later.ply", "--auto", "--max-loss", 3, "--refine",
                            1)
     check(few["hash"] == later["hash"] and few["gaussians"] == later["gaussians"] < 6144, "--auto, live")
-    capture("replay:room.mcap", "--build", "no.ply", "--context", "0,40", expect=1, words="nothing was built")
-    capture("replay:bare.mcap", "--build", "no.ply", expect=1, words="has no pose")
-    capture("replay:room.mcap", "--build", "no.ply", "--arena", 1000, expect=3, words="too small")
+    capture("replay:room.mcap", "--build", "no.ply", "--context", "0,40", code=1, words="nothing was built")
+    capture("replay:bare.mcap", "--build", "no.ply", code=1, words="has no pose")
+    capture("replay:room.mcap", "--build", "no.ply", "--arena", 1000, code=3, words="too small")
 
 
 def bare():
@@ -106,7 +106,7 @@ def rolls_over():
     check(len(names) > 4 and max(sizes) <= most and sum(sizes) == told["bytes"], f"{sizes}")
     frames = [expect_json("info", name)["frames"] for name in names]
     check(sum(frames) == 48, f"no frame is lost between files: {frames}")
-    capture("replay:room.mcap", "--max-bytes", "20k", "-o", "no.mcap", expect=1, words="does not hold one frame")
+    capture("replay:room.mcap", "--max-bytes", "20k", "-o", "no.mcap", code=1, words="does not hold one frame")
 
 
 def spares_what_it_reads():
@@ -115,11 +115,11 @@ def spares_what_it_reads():
         file.write(read("room.mcap"))
     os.symlink("spare-1.mcap", "link-2.mcap")
     for name in ("spare.mcap", "link.mcap"):
-        capture("replay:spare-1.mcap", "--repeat", 4, "--max-bytes", 40000, "-o", name, expect=1,
+        capture("replay:spare-1.mcap", "--repeat", 4, "--max-bytes", 40000, "-o", name, code=1,
                 words="is --source spare-1.mcap, too: it is not overwritten")
         check(read("spare-1.mcap") == read("room.mcap"), "the recording that is replayed is whole")
         check(expect_json("info", name)["note"] == "", "and the file before is")
-    capture("replay:room.mcap", "--poses", "spare-1.mcap", "-o", "spare-1.mcap", expect=2, words="are one file")
+    capture("replay:room.mcap", "--poses", "spare-1.mcap", "-o", "spare-1.mcap", code=2, words="are one file")
     check(read("spare-1.mcap") == read("room.mcap"), "the poses are whole")
 
 

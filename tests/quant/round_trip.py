@@ -124,7 +124,7 @@ def macs(description):
 
 
 def check_info(path, description, tensors, head):
-    info = json.loads(run(TRIM3R, "head-info", path, "--json"))
+    info = json.loads(run(TRIM3R, "head-info", path, "--json").stdout)
     parameters = sum(tensor.size for name, tensor in tensors.items() if not name.endswith("range"))
     check(info["macs_per_pixel"] == macs(description), f"{path}: macs {info['macs_per_pixel']}, not {macs(description)}")
     check(info["parameters"] == parameters, f"{path}: parameters {info['parameters']}, not {parameters}")

@@ -4,6 +4,7 @@
 
 #include "splat_scenes.h"
 #include "study/rivals/finetune.h"
+#include "test.h"
 
 enum { SIDE = 32, VALUES = SIDE * SIDE * 3, VIEWS = 2, COUNT = 60 };
 

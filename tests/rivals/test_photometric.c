@@ -2,6 +2,7 @@
 /* The loss of fine-tuning against its definition, the slow way, and its derivatives against differences. */
 #include "splat_scenes.h"
 #include "study/rivals/photometric.h"
+#include "test.h"
 
 enum { WIDTH = 19, HEIGHT = 14, VALUES = WIDTH * HEIGHT * 3 };
 

@@ -5,6 +5,7 @@
 #include "splat_scenes.h"
 #include "study/rivals/rival.h"
 #include "study/rivals/score.h"
+#include "test.h"
 
 enum { SIDE = 33 };
 

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "splat_scenes.h"
+#include "test.h"
 
 /* The cut at 1/255 has no derivative: here it lies where it cannot be seen. */
 #define UNSEEN 1e-6

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "splat_scenes.h"
+#include "test.h"
 
 #define LEAST_DB 50.0
 
