@@ -121,8 +121,7 @@ def run_test(folder, fault):
     """Whether the test passes in a fresh build, and its output; anything but a verdict of the test itself ends this one."""
     build(folder, fault.preset, fault.targets)
     ended = subprocess.run(["ctest", "--test-dir", folder / "build" / fault.preset, "-R", f"^{fault.test}$", "--no-tests=error",
-                            "--output-on-failure"],
-                           capture_output=True, text=True)
+                            "--output-on-failure"], capture_output=True, text=True)
     check("1 tests failed out of 1" in ended.stdout or "100% tests passed" in ended.stdout, f"{fault.test}: {ended.stdout}")
     check("Skipped" not in ended.stdout, f"{fault.test} is skipped: {ended.stdout}")
     return ended.returncode == 0, ended.stdout
@@ -144,12 +143,13 @@ def main():
         if shutil.which("ccache"):
             words += ["-DCMAKE_C_COMPILER_LAUNCHER=ccache"]
         run("cmake", "-S", folder, "--preset", preset, "-B", build_folder, *words)
-    missed = []
+    missed, sound = [], set()
     for fault in chosen:
         path = file_of(folder, fault)
         text = path.read_text()
         check(fault.was in text, f"{fault.kind}: {path} no longer has '{fault.was}': plant another fault in {__file__}")
-        check(run_test(folder, fault)[0], f"{fault.test} fails without the fault '{fault.kind}'")
+        check(fault.test in sound or run_test(folder, fault)[0], f"{fault.test} fails without the fault '{fault.kind}'")
+        sound.add(fault.test)
         try:
             path.write_text(text.replace(fault.was, fault.becomes) if fault.was else text + fault.becomes)
             passed, output = run_test(folder, fault)
