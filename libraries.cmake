@@ -43,6 +43,8 @@ if(T3R_TOOLS)
   if(NOT OPENEXR_FOUND)
     message(STATUS "No depth as .exr: it needs OpenEXR 3.1 (Debian: libopenexr-dev)")
   endif()
+else()
+  set(T3R_TESTS OFF) # they need the tools
 endif()
 if(T3R_TESTS)
   t3r_library(CMOCKA cmocka libcmocka-dev)

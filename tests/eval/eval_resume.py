@@ -8,7 +8,7 @@ import sys
 import tempfile
 import time
 
-from common import check, done, run
+from checks import check, done, run
 
 trim3r = sys.argv[1]
 TIMES = ("build_ms", "render_ms")

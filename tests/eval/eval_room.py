@@ -10,7 +10,8 @@ import shutil
 import sys
 import tempfile
 
-from common import check, done, load_scorer, near, need_numpy, run
+from checks import check, done, near, run
+from common import load_scorer, need_numpy
 
 numpy, cv2 = need_numpy()
 trim3r = sys.argv[1]

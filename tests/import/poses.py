@@ -16,8 +16,9 @@ except ImportError:
     print("skipped: numpy is not there")
     sys.exit(77)
 
-from common import check, done, run  # noqa: E402
-from frames import matrix, png, read
+from checks import check, done  # noqa: E402
+from frames import matrix, picture, read
+from program import run
 
 FRAMES = 4
 
@@ -37,11 +38,11 @@ def folder(name, room, depth=True, **top):
         k = room["camera_info"][i]
         frames.append({"file_path": f"{i}.png", "fl_x": k[0, 0], "fl_y": k[1, 1], "cx": k[0, 2] + 0.5, "cy": k[1, 2] + 0.5})
         with open(f"{path}/{i}.png", "wb") as file:
-            file.write(png(rgb))
+            file.write(picture(rgb))
         if depth:
             frames[-1]["depth_path"] = f"d{i}.png"
             with open(f"{path}/d{i}.png", "wb") as file:
-                file.write(png(room["depth"][i]))
+                file.write(picture(room["depth"][i]))
     with open(f"{path}/transforms.json", "w", encoding="utf-8") as file:
         json.dump({"frames": frames, "integer_depth_scale": 0.001, **top}, file)
     return path
@@ -95,7 +96,7 @@ def test_import(room):
     os.remove(f"{path}/transforms.json")
     for i, depth in enumerate(room["depth"]):
         with open(f"{path}/d{i}.png", "wb") as file:
-            file.write(png(depth * 5))
+            file.write(picture(depth * 5))
     for name, prefix in (("rgb", ""), ("depth", "d")):
         with open(f"{path}/{name}.txt", "w", encoding="utf-8") as file:
             file.writelines(f"{i}.0 {prefix}{i}.png\n" for i in range(FRAMES))

@@ -1,18 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Presets for an amount of work. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
+#include "oracle/float64/drawing.h"
+#include "test.h"
 
-#include "drawing.h"
-
-static void a_preset_chooses_head_and_refinement_alone(void **state)
+TEST(a_preset_chooses_head_and_refinement_alone)
 {
-    (void)state;
     uint32_t before = 0;
     for (t3r_preset preset = 0; preset < T3R_PRESET_COUNT; preset++) {
         const t3r_config given = t3r_default_config(48, 40, 3, 77);
@@ -36,9 +30,8 @@ static void a_preset_chooses_head_and_refinement_alone(void **state)
     }
 }
 
-static void an_unknown_preset_is_refused(void **state)
+TEST(an_unknown_preset_is_refused)
 {
-    (void)state;
     const t3r_config given = t3r_default_config(48, 40, 3, 77);
     t3r_config config = given;
     const char *const unset = "unset", *weights = unset;
@@ -47,13 +40,4 @@ static void an_unknown_preset_is_refused(void **state)
     assert_int_equal(t3r_set_preset_as(t3r_interface() + 1, T3R_PRESET_FAST, &config, &weights), T3R_ERR_INTERFACE);
     assert_memory_equal(&config, &given, sizeof given);
     assert_ptr_equal(weights, unset);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_preset_chooses_head_and_refinement_alone),
-        cmocka_unit_test(an_unknown_preset_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Settings that fit: lists hold what they promise. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 
-#include <cmocka.h>
-
 #include "planning/choices.h"
+#include "test.h"
 #include "weights_maker.h"
 
 static const chosen_head analytic = {.head = T3R_HEAD_ANALYTIC};
@@ -44,9 +39,8 @@ static uint32_t listed(const t3r_config *c, const choice_limits *limits, choice 
     return count;
 }
 
-static void lists_what_fits_best_first(void **state)
+TEST(lists_what_fits_best_first)
 {
-    (void)state;
     const t3r_config c = config_of(1);
     choice all[CHOICES_MOST], some[CHOICES_MOST];
     choice_limits limits = {.prices = &work_operations, .refine = CHOICES_ANY_REFINE};
@@ -78,9 +72,8 @@ static void lists_what_fits_best_first(void **state)
 }
 
 /* The smallest scene has choices. Shares of the largest that no runtime accepts are left out. */
-static void shares_of_extreme_sizes(void **state)
+TEST(shares_of_extreme_sizes)
 {
-    (void)state;
     choice list[CHOICES_MOST];
     const choice_limits limits = {.prices = &work_operations, .refine = 1};
     const t3r_config smallest = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 1, 1);
@@ -94,9 +87,8 @@ static void shares_of_extreme_sizes(void **state)
     assert_in_range(most, T3R_MAX_GAUSSIANS / 2, T3R_MAX_GAUSSIANS);
 }
 
-static void heads_are_compared(void **state)
+TEST(heads_are_compared)
 {
-    (void)state;
     choice list[2 * CHOICES_MOST];
     uint32_t count = 0, networks = 0;
     const choice_limits limits = {.prices = &work_operations, .refine = CHOICES_ANY_REFINE};
@@ -116,9 +108,8 @@ static void heads_are_compared(void **state)
 }
 
 /* A network is rated like the shipped one of about its size: one that computes more loses less at small budgets. */
-static void networks_are_rated_by_their_size(void **state)
+TEST(networks_are_rated_by_their_size)
 {
-    (void)state;
     static const made_layer least[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, T3R_HEAD_OUTPUTS}};
     static const made_layer two[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 48},
                                      {T3R_LAYER_POINT, 0, {1, T3R_SOURCE_NONE}, 1, 1, 1, T3R_HEAD_OUTPUTS}};
@@ -146,9 +137,8 @@ static void networks_are_rated_by_their_size(void **state)
     assert_true(loss[true] < loss[false]);
 }
 
-static void refuses_what_no_runtime_takes(void **state)
+TEST(refuses_what_no_runtime_takes)
 {
-    (void)state;
     t3r_config c = config_of(1);
     choice list[CHOICES_MOST];
     uint32_t count = 0;
@@ -156,16 +146,4 @@ static void refuses_what_no_runtime_takes(void **state)
     c.levels = 0;
     assert_int_equal(choices_add(&c, &analytic, &limits, list, &count), T3R_ERR_CONFIG);
     assert_int_equal(count, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lists_what_fits_best_first),
-        cmocka_unit_test(shares_of_extreme_sizes),
-        cmocka_unit_test(heads_are_compared),
-        cmocka_unit_test(networks_are_rated_by_their_size),
-        cmocka_unit_test(refuses_what_no_runtime_takes),
-    };
-    return cmocka_run_group_tests_name("choices", tests, NULL, NULL);
 }

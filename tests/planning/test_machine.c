@@ -1,10 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Machines of plans: files of prices, and how prices are fitted to times. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,6 +7,7 @@
 
 #include "planning/machine.h"
 #include "planning/price_fit.h"
+#include "test.h"
 
 static machine some_machine(void)
 {
@@ -23,9 +19,8 @@ static machine some_machine(void)
     return m;
 }
 
-static void files_come_back(void **state)
+TEST(files_come_back)
 {
-    (void)state;
     char path[64], error[256] = "";
     snprintf(path, sizeof path, "test_machine_%d.json", (int)getpid());
     const machine written = some_machine();
@@ -61,9 +56,8 @@ static void text_with(const char *instead, const char *by, char *text, size_t by
     }
 }
 
-static void refuses_foreign_files(void **state)
+TEST(refuses_foreign_files)
 {
-    (void)state;
     char text[4096], error[256];
     machine m;
     text_with(NULL, NULL, text, sizeof text);
@@ -97,9 +91,8 @@ static void refuses_foreign_files(void **state)
     }
 }
 
-static void fits_find_the_prices(void **state)
+TEST(fits_find_the_prices)
 {
-    (void)state;
     price_fit fit = {.kinds = 3, .times = 6};
     const double wanted[3] = {2e-9, 0, 3e-6};
     for (uint32_t i = 0; i < fit.times; i++) {
@@ -121,11 +114,4 @@ static void fits_find_the_prices(void **state)
     fit = (price_fit){.kinds = 2, .times = 2, .units = {{1, 1}, {1, 2}}, .seconds = {2, 1}};
     (void)price_fit_solve(&fit, found);
     assert_true(found[0] >= 0 && found[1] >= 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(files_come_back), cmocka_unit_test(refuses_foreign_files),
-                                       cmocka_unit_test(fits_find_the_prices)};
-    return cmocka_run_group_tests_name("machine", tests, NULL, NULL);
 }

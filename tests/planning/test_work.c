@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The work of builds: counts follow the configuration, prices add up. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "planning/work.h"
+#include "test.h"
 #include "weights_maker.h"
 
 static t3r_config config_of(uint32_t gaussians)
@@ -35,9 +30,8 @@ static work_counts counted(const t3r_config *config, const void *weights)
 
 /* ---- counts ------------------------------------------------------------------------------------------------------ */
 
-static void counts_follow_the_configuration(void **state)
+TEST(counts_follow_the_configuration)
 {
-    (void)state;
     t3r_config c = config_of(1000);
     c.align = 0;
     const work_counts before = counted(&c, NULL);
@@ -63,9 +57,8 @@ static void counts_follow_the_configuration(void **state)
 }
 
 /* Half of at most 32 rounds compare 1,024 pixels of each view, and only if alignment has two views. */
-static void alignment_compares_pixels(void **state)
+TEST(alignment_compares_pixels)
 {
-    (void)state;
     t3r_config c = config_of(1000);
     const uint64_t both = counted(&c, NULL).units[WORK_COMPARISON];
     c.align = 0;
@@ -80,9 +73,8 @@ static void alignment_compares_pixels(void **state)
 }
 
 /* Fitted widths look at the other views; structure, at the tiles once more and at all views' levels in two passes. */
-static void counts_what_is_asked_for_beyond(void **state)
+TEST(counts_what_is_asked_for_beyond)
 {
-    (void)state;
     t3r_config c = config_of(1000);
     c.fit_widths = 1;
     assert_int_equal(counted(&c, NULL).units[WORK_DISC_GAUSSIANS], 1000); /* refinement finds widths by itself */
@@ -106,9 +98,8 @@ static void counts_what_is_asked_for_beyond(void **state)
 }
 
 /* What does not fit at once is refined in slices, each of which draws the views. */
-static void small_arenas_draw_more_often(void **state)
+TEST(small_arenas_draw_more_often)
 {
-    (void)state;
     const t3r_config c = config_of(4000);
     work_counts least;
     const size_t bytes = bytes_of(&c, false);
@@ -118,9 +109,8 @@ static void small_arenas_draw_more_often(void **state)
     assert_int_equal(work_count(&c, bytes - 1, NULL, &least), T3R_ERR_ARENA);
 }
 
-static void networks_count_by_their_layers(void **state)
+TEST(networks_count_by_their_layers)
 {
-    (void)state;
     size_t bytes;
     uint8_t *weights = make_weights(small_shape, small_layers, 8, 8, 1, &bytes);
     t3r_config c = config_of(96 * 64 * 2); /* every point, so that a pixel takes what the header says */
@@ -133,9 +123,8 @@ static void networks_count_by_their_layers(void **state)
 }
 
 /* Networks whose numbers or layers cannot be packed count as slower. */
-static void some_networks_cannot_be_packed(void **state)
+TEST(some_networks_cannot_be_packed)
 {
-    (void)state;
     static const made_layer deep[] = {
         {T3R_LAYER_CONV, 1, {0, T3R_SOURCE_NONE}, 4, 2, 1, 8},
         {T3R_LAYER_DEPTHWISE, 1, {1, T3R_SOURCE_NONE}, 3, 1, 1, 8},
@@ -160,9 +149,8 @@ static void some_networks_cannot_be_packed(void **state)
     }
 }
 
-static void refuses_what_no_runtime_takes(void **state)
+TEST(refuses_what_no_runtime_takes)
 {
-    (void)state;
     t3r_config c = config_of(100);
     work_counts work;
     assert_int_equal(work_count(&c, 0, NULL, &work), T3R_ERR_ARENA);
@@ -170,9 +158,8 @@ static void refuses_what_no_runtime_takes(void **state)
     assert_int_equal(work_count(&c, SIZE_MAX / 2, NULL, &work), T3R_ERR_CONFIG);
 }
 
-static void prices_add_up_by_stage(void **state)
+TEST(prices_add_up_by_stage)
 {
-    (void)state;
     work_counts work = {{0}};
     work_prices prices = {{0}};
     work.units[WORK_IMAGE] = 2000;
@@ -191,9 +178,8 @@ static void prices_add_up_by_stage(void **state)
     assert_true(fabs(work_price_of_build(&work, &prices) / (3000 + head) - 1) < 1e-15);
 }
 
-static void kinds_have_names_and_stages(void **state)
+TEST(kinds_have_names_and_stages)
 {
-    (void)state;
     for (int kind = 0; kind < WORK_KIND_COUNT; kind++) {
         assert_in_range(work_stage((work_kind)kind), 0, T3R_STAGE_COUNT - 1);
         for (int other = 0; other < kind; other++) {
@@ -202,16 +188,4 @@ static void kinds_have_names_and_stages(void **state)
     }
     assert_string_equal(work_name(WORK_MACS), "macs");
     assert_int_equal(work_stage(WORK_MACS), T3R_STAGE_HEAD);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(counts_follow_the_configuration), cmocka_unit_test(alignment_compares_pixels),
-        cmocka_unit_test(counts_what_is_asked_for_beyond), cmocka_unit_test(small_arenas_draw_more_often),
-        cmocka_unit_test(networks_count_by_their_layers),  cmocka_unit_test(some_networks_cannot_be_packed),
-        cmocka_unit_test(refuses_what_no_runtime_takes),   cmocka_unit_test(prices_add_up_by_stage),
-        cmocka_unit_test(kinds_have_names_and_stages),
-    };
-    return cmocka_run_group_tests_name("work", tests, NULL, NULL);
 }

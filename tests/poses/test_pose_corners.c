@@ -1,19 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Corners, what they look like, and the pyramid: integers, so exact; turned with the picture. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "core/hash.h"
 #include "posing/corners.h"
 #include "posing/pyramid.h"
 #include "room/room.h"
+#include "test.h"
 
 #define SIDE 256u
 
@@ -29,9 +24,8 @@ static void draw(uint32_t frame)
     }
 }
 
-static void test_same_numbers_everywhere(void **state)
+TEST(test_same_numbers_everywhere)
 {
-    (void)state;
     uint32_t count;
     draw(0);
     assert_int_equal(corners_find(grey, SIDE, SIDE, corners, &count), 0);
@@ -47,9 +41,8 @@ static void test_same_numbers_everywhere(void **state)
     }
 }
 
-static void test_places(void **state)
+TEST(test_places)
 {
-    (void)state;
     uint32_t count, levels[CORNER_LEVELS] = {0}, quarters[4] = {0};
     draw(0);
     assert_int_equal(corners_find(grey, SIDE, SIDE, corners, &count), 0);
@@ -69,9 +62,8 @@ static void test_places(void **state)
 }
 
 /* A square's corner to a fraction of a pixel. */
-static void test_fraction_of_a_pixel(void **state)
+TEST(test_fraction_of_a_pixel)
 {
-    (void)state;
     uint32_t count;
     memset(grey, 40, sizeof grey);
     for (uint32_t y = 100; y < 160; y++) {
@@ -90,9 +82,8 @@ static void test_fraction_of_a_pixel(void **state)
 }
 
 /* The picture turned by a quarter has the same corners, turned, that look alike. */
-static void test_turned_picture(void **state)
+TEST(test_turned_picture)
 {
-    (void)state;
     uint32_t count, other_count, found = 0, alike = 0;
     draw(3);
     for (uint32_t y = 0; y < SIDE; y++) {
@@ -116,9 +107,8 @@ static void test_turned_picture(void **state)
     assert_true(alike * 100 > found * 90);
 }
 
-static void test_small_and_blank_pictures_have_none(void **state)
+TEST(test_small_and_blank_pictures_have_none)
 {
-    (void)state;
     uint32_t count;
     memset(grey, 77, sizeof grey);
     assert_int_equal(corners_find(grey, SIDE, SIDE, corners, &count), 0);
@@ -130,9 +120,8 @@ static void test_small_and_blank_pictures_have_none(void **state)
     assert_int_equal(count, 0);
 }
 
-static void test_pyramid_is_an_average(void **state)
+TEST(test_pyramid_is_an_average)
 {
-    (void)state;
     const uint8_t row[5] = {10, 20, 30, 40, 50};
     uint8_t in[25], out[16];
     for (int i = 0; i < 25; i++) {
@@ -145,17 +134,4 @@ static void test_pyramid_is_an_average(void **state)
         assert_int_equal(out[i], expected[i % 4]);
     }
     assert_int_equal(pyramid_side(1024), 819);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_same_numbers_everywhere),
-        cmocka_unit_test(test_places),
-        cmocka_unit_test(test_fraction_of_a_pixel),
-        cmocka_unit_test(test_turned_picture),
-        cmocka_unit_test(test_small_and_blank_pictures_have_none),
-        cmocka_unit_test(test_pyramid_is_an_average),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,20 +2,15 @@
 /* Poses estimated on the built-in room against those that it was drawn from, and pairs of which nothing can be known.
  */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "core/camera.h"
 #include "core/little_endian.h"
 #include "posing/estimate.h"
 #include "room/room.h"
+#include "test.h"
 
 #define SIDE 256u
 #define DEGREE (3.14159265358979323846 / 180)
@@ -130,18 +125,16 @@ static void check_pair(uint32_t a, uint32_t b, bool depth, double turn_most, dou
     discard(&shots[1]);
 }
 
-static void test_pairs_with_depth(void **state)
+TEST(test_pairs_with_depth)
 {
-    (void)state;
     check_pair(0, 1, true, 0.3, 3);
     check_pair(0, 2, true, 0.3, 2);
     check_pair(5, 1, true, 0.3, 2);
     check_pair(0, 5, true, 0.3, 2);
 }
 
-static void test_pairs_from_colour(void **state)
+TEST(test_pairs_from_colour)
 {
-    (void)state;
     check_pair(0, 1, false, 0.5, 4);
     check_pair(0, 2, false, 0.5, 4);
     check_pair(5, 2, false, 0.7, 4);
@@ -149,9 +142,8 @@ static void test_pairs_from_colour(void **state)
 }
 
 /* Small pictures are enlarged: too few corners would be told apart otherwise. */
-static void test_small_pictures(void **state)
+TEST(test_small_pictures)
 {
-    (void)state;
     shot shots[2] = {photograph_sized(0, SIDE / 2, false), photograph_sized(3, SIDE / 2, false)};
     pose_view view = view_of(&shots[0]);
     assert_true(view.enlarged == 4 && view.count > 500);
@@ -171,9 +163,8 @@ static void test_small_pictures(void **state)
 }
 
 /* Lengths of colour alone agree among views, by corners that a third one shares. */
-static void test_chain(void **state)
+TEST(test_chain)
 {
-    (void)state;
     enum { COUNT = 5 };
     for (int depth = 0; depth < 2; depth++) {
         shot shots[COUNT];
@@ -207,9 +198,8 @@ static void test_chain(void **state)
 }
 
 /* From colour, depth only sets the scale. */
-static void test_depth_for_scale(void **state)
+TEST(test_depth_for_scale)
 {
-    (void)state;
     shot with[2] = {photograph(0, true), photograph(3, true)},
          without[2] = {photograph(0, false), photograph(3, false)};
     motion a[2], b[2];
@@ -229,9 +219,8 @@ static void test_depth_for_scale(void **state)
 }
 
 /* A camera held upright: its picture turned by a quarter. */
-static void test_turned_camera(void **state)
+TEST(test_turned_camera)
 {
-    (void)state;
     shot shots[2] = {photograph(0, false), photograph(3, false)};
     motion known = between(&shots[0].camera, &shots[1].camera), poses[2];
     uint8_t *turned = malloc(SIDE * SIDE * 3);
@@ -295,9 +284,8 @@ static void turn_picture(shot *s, const double r[9])
     s->rgb = out;
 }
 
-static void test_turning_alone_is_refused(void **state)
+TEST(test_turning_alone_is_refused)
 {
-    (void)state;
     shot shots[2] = {photograph(0, false), photograph(0, false)};
     refuse(shots, POSES_ESTIMATE, "no parallax");
     double r[9];
@@ -309,9 +297,8 @@ static void test_turning_alone_is_refused(void **state)
 }
 
 /* With depth a turn is a pose like any other. */
-static void test_standing_still_with_depth(void **state)
+TEST(test_standing_still_with_depth)
 {
-    (void)state;
     shot shots[2] = {photograph(0, true), photograph(0, true)};
     motion poses[2];
     pose_account accounts[2];
@@ -322,9 +309,8 @@ static void test_standing_still_with_depth(void **state)
     discard(&shots[1]);
 }
 
-static void test_other_places_are_refused(void **state)
+TEST(test_other_places_are_refused)
 {
-    (void)state;
     shot shots[2] = {photograph(0, true), photograph(1, true)};
     uint32_t noise = 1;
     for (size_t i = 0; i < SIDE * SIDE * 3; i++) {
@@ -340,9 +326,8 @@ static void test_other_places_are_refused(void **state)
 }
 
 /* A depth camera that gives nothing in one view leaves colour and the other's scale; false depth is not believed. */
-static void test_missing_and_false_depth(void **state)
+TEST(test_missing_and_false_depth)
 {
-    (void)state;
     shot shots[2] = {photograph(0, true), photograph(2, true)};
     motion poses[2], known = between(&shots[0].camera, &shots[1].camera);
     pose_account accounts[2];
@@ -357,16 +342,4 @@ static void test_missing_and_false_depth(void **state)
     refuse(shots, POSES_ESTIMATE, "agree on a motion");
     discard(&shots[0]);
     discard(&shots[1]);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pairs_with_depth),         cmocka_unit_test(test_pairs_from_colour),
-        cmocka_unit_test(test_small_pictures),           cmocka_unit_test(test_chain),
-        cmocka_unit_test(test_depth_for_scale),          cmocka_unit_test(test_turned_camera),
-        cmocka_unit_test(test_turning_alone_is_refused), cmocka_unit_test(test_standing_still_with_depth),
-        cmocka_unit_test(test_other_places_are_refused), cmocka_unit_test(test_missing_and_false_depth),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,28 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The geometry under pose estimation, on exact numbers: five points, resection, triangulation, rounding. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "core/camera.h"
 #include "posing/estimate.h"
 #include "posing/five_point.h"
 #include "posing/relative.h"
 #include "posing/resection.h"
+#include "test.h"
 
-static uint32_t state = 1;
+static uint32_t seed = 1;
 
 /* -1 .. 1 */
 static double uniform(void)
 {
-    state = state * 1664525u + 1013904223u;
-    return (double)(state >> 8) / 0x800000 - 1;
+    seed = seed * 1664525u + 1013904223u;
+    return (double)(seed >> 8) / 0x800000 - 1;
 }
 
 static motion some_motion(double turn, double far)
@@ -52,9 +47,8 @@ static void some_point(const motion *m, double point[3], double ray_a[2], double
     }
 }
 
-static void test_rotations(void **unused)
+TEST(test_rotations)
 {
-    (void)unused;
     for (int trial = 0; trial < 500; trial++) {
         motion m = some_motion(trial % 2 == 0 ? 1.7 : 1e-6, 1), back = motion_inverse(&m),
                none = motion_after(&back, &m);
@@ -67,9 +61,8 @@ static void test_rotations(void **unused)
 }
 
 /* One of the solutions is the motion that the rays come from; all satisfy their equations. */
-static void test_five_points(void **unused)
+TEST(test_five_points)
 {
-    (void)unused;
     int missed = 0;
     for (int trial = 0; trial < 300; trial++) {
         motion m = some_motion(0.4, 1);
@@ -98,17 +91,15 @@ static void test_five_points(void **unused)
     assert_true(missed <= 3); /* near degenerate fives */
 }
 
-static void test_five_points_on_a_line_have_none(void **unused)
+TEST(test_five_points_on_a_line_have_none)
 {
-    (void)unused;
     double rays[5][2], essentials[FIVE_POINT_MOST][9];
     memset(rays, 0, sizeof rays);
     assert_int_equal(five_point(rays, rays, essentials), 0);
 }
 
-static void test_triangulation(void **unused)
+TEST(test_triangulation)
 {
-    (void)unused;
     for (int trial = 0; trial < 500; trial++) {
         motion m = some_motion(0.3, 1);
         double point[3], ray_a[2], ray_b[2], depth_a, depth_b, p[3];
@@ -123,9 +114,8 @@ static void test_triangulation(void **unused)
     }
 }
 
-static void test_resection(void **unused)
+TEST(test_resection)
 {
-    (void)unused;
     enum { COUNT = 300 };
     static double points[COUNT][3], rays[COUNT][2];
     for (int trial = 0; trial < 30; trial++) {
@@ -152,9 +142,8 @@ static void test_resection(void **unused)
 }
 
 /* What is stored is the pose to a rounding, behind the first camera's own. */
-static void test_storing(void **unused)
+TEST(test_storing)
 {
-    (void)unused;
     for (int trial = 0; trial < 200; trial++) {
         motion first = some_motion(2, 1000), pose = some_motion(2, 10), world = motion_after(&first, &pose);
         t3r_camera origin = {.rotation_q30 = {1 << 30}}, base, out;
@@ -175,17 +164,4 @@ static void test_storing(void **unused)
     assert_int_equal(pose_store(&far, &origin, &out), -1);
     far.t[1] = NAN;
     assert_int_equal(pose_store(&far, &origin, &out), -1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rotations),
-        cmocka_unit_test(test_five_points),
-        cmocka_unit_test(test_five_points_on_a_line_have_none),
-        cmocka_unit_test(test_triangulation),
-        cmocka_unit_test(test_resection),
-        cmocka_unit_test(test_storing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

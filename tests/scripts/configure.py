@@ -7,7 +7,7 @@ import subprocess
 import sys
 import tempfile
 
-from common import check, done
+from checks import check, done
 
 CMAKE = sys.argv[1]
 ROOT = pathlib.Path(__file__).resolve().parents[2]

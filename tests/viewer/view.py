@@ -8,7 +8,8 @@ import subprocess
 import sys
 import tempfile
 
-from common import check, done, need_page, run
+from checks import check, done, run
+from common import need_page
 
 TRIM3R = sys.argv[1]
 
