@@ -5,7 +5,7 @@
 
 #include <opencv2/calib3d.hpp>
 
-#include "relate.h"
+#include "relate.hpp"
 
 namespace
 {

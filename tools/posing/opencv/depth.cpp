@@ -2,7 +2,7 @@
 // Depth in either view: perspective from its points, then least squares over both views.
 #include <opencv2/calib3d.hpp>
 
-#include "relate.h"
+#include "relate.hpp"
 
 Motion relate_by_depth(const Pair &pair)
 {

@@ -9,8 +9,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/quaternion.hpp>
 
-#include "features.h"
-#include "relate.h"
+#include "features.hpp"
+#include "relate.hpp"
 
 namespace
 {

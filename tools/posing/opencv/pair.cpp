@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "pair.h"
+#include "pair.hpp"
 
 #include <algorithm>
 #include <cmath>

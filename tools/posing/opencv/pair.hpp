@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 // Matches of two views, how far a motion misses them, and the motion that misses them least.
-#ifndef TRIM3R_TOOLS_POSING_OPENCV_PAIR_H
-#define TRIM3R_TOOLS_POSING_OPENCV_PAIR_H
+#ifndef TRIM3R_TOOLS_POSING_OPENCV_PAIR_HPP
+#define TRIM3R_TOOLS_POSING_OPENCV_PAIR_HPP
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 // SIFT features of a picture, and those of two pictures that look alike.
-#ifndef TRIM3R_TOOLS_POSING_OPENCV_FEATURES_H
-#define TRIM3R_TOOLS_POSING_OPENCV_FEATURES_H
+#ifndef TRIM3R_TOOLS_POSING_OPENCV_FEATURES_HPP
+#define TRIM3R_TOOLS_POSING_OPENCV_FEATURES_HPP
 
 #include "posing/opencv_module.h"
 

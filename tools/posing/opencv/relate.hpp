@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 // The motion that a pair's matches show; what cannot be known is refused.
-#ifndef TRIM3R_TOOLS_POSING_OPENCV_RELATE_H
-#define TRIM3R_TOOLS_POSING_OPENCV_RELATE_H
+#ifndef TRIM3R_TOOLS_POSING_OPENCV_RELATE_HPP
+#define TRIM3R_TOOLS_POSING_OPENCV_RELATE_HPP
 
 #include <string>
 
