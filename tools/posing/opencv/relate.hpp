@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "pair.h"
+#include "pair.hpp"
 
 constexpr unsigned MATCHES_LEAST = 20; // that agree with a motion
 
