@@ -13,7 +13,7 @@ extern "C" {
 
 #include "geometry/rigid.h"
 
-#define FEATURES_MOST 2000u
+#define FEATURES_MOST 4000u
 #define DESCRIPTOR_BYTES 128
 
 /* Features of a picture, at most FEATURES_MOST. */
