@@ -170,13 +170,13 @@ def test_refusals(room):
     check(status == 2 and "estimate-colour" in error, f"usage: {error}")
     other = dict(room, image=list(room["image"]))
     other["image"][2] = np.random.default_rng(1).integers(0, 255, room["image"][2].shape).astype(np.uint8)
-    kept = kept_without_pose("another place", folder("other", other), room, 2, "corners")
+    kept = kept_without_pose("another place", folder("other", other), room, 2, "features")
     status, _, error = run("build", kept, "--context", "2,1", "--keep", "5%", "-o", f"{work}/s.ply")
     check(status == 1 and "frame 2 has no pose" in error, f"another place: build: {error}")
     other = dict(room, image=[np.full_like(room["image"][0], 90), *room["image"][1:]])
-    kept = kept_without_pose("blank at the start", folder("blank_start", other), room, 0, "only 0 corners match")
+    kept = kept_without_pose("blank at the start", folder("blank_start", other), room, 0, "only 0 features match")
     os.rename(kept, f"{work}/blank.mcap")
-    kept_without_pose("a recording", f"{work}/blank.mcap", room, 0, "only 0 corners match")
+    kept_without_pose("a recording", f"{work}/blank.mcap", room, 0, "only 0 features match")
     given = dict(room, image=room["image"][:2] + [other["image"][0]])
     for name in ("depth", "camera_info", "pose"):
         given[name] = room[name][:3]
@@ -184,7 +184,7 @@ def test_refusals(room):
     check(status == 0 and "without a pose: 1 frames" in out and "frame 2 cannot be posed from frame" in out, f"as text: {out}")
     status, _, error = run("build", f"{work}/short.mcap", "--context", "0,2", "--keep", "5%", "--poses", "estimate", "-o",
                            f"{work}/s.ply")
-    check(status == 1 and "frame 2 cannot be posed from frame 0: only 0 corners" in error, f"build needs all: {error}")
+    check(status == 1 and "frame 2 cannot be posed from frame 0: only 0 features" in error, f"build needs all: {error}")
     still = dict(room, image=[room["image"][0]] * FRAMES)
     status, out, error = run("import", folder("still", still, depth=False), "--poses", "estimate", "-o", f"{work}/no.mcap")
     check(status == 1 and "no parallax" in error, f"a camera that stands still: {error}")

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """doctor.py TRIM3R: what a machine has is listed, and a self-check that gives other bits is an error."""
+import os
+import shutil
+import subprocess
 
-from program import check, expect, expect_json, in_scratch
+from program import TRIM3R, check, expect, expect_json, in_scratch, room
 
 
 def lists():
@@ -17,12 +20,26 @@ def lists():
     check({"replay", "v4l2", "libcamera", "opencv"} == set(found["sources"]) and found["sources"]["replay"] is True,
           f"sources: {found['sources']}")
     check(found["formats"].split()[0] == "YUYV" and isinstance(found["cameras"], list), "formats and cameras")
+    check(found["poses"] is None or found["poses"].startswith("OpenCV "), f"poses: {found['poses']}")
     listed = expect(0, "capture", "--list")
     check(found["formats"] in listed, f"formats: {found['formats']} and {listed}")
     shown = expect(0, "doctor")
-    for word in ("trim3r ", "processor", "features", "kernels", "threads", "memory", "sources", "formats", "cameras"):
+    for word in ("trim3r ", "processor", "features", "kernels", "threads", "memory", "sources", "formats", "cameras",
+                 "poses"):
         check(any(line.startswith(word) for line in shown.splitlines()), f"no {word} in {shown}")
     check(f"{found['hash']}, as on every machine" in shown, shown)
+
+
+def away_from_its_modules():
+    """A copy of the program has no modules next to it, like a build without OpenCV."""
+    shutil.copy(TRIM3R, "alone")
+    recording, hint = room(), "tools/setup --poses"
+    ended = subprocess.run([os.path.abspath("alone"), "doctor"], capture_output=True, text=True)
+    check(ended.returncode == 0 and hint in ended.stdout, f"doctor without modules: {ended}")
+    ended = subprocess.run([os.path.abspath("alone"), "import", recording, "--poses", "estimate", "-o", "posed.mcap"],
+                           capture_output=True, text=True)
+    check(ended.returncode == 1 and hint in ended.stderr and not os.path.exists("posed.mcap"),
+          f"poses without modules: {ended}")
 
 
 def the_same_bits_whatever_is_used():
@@ -44,4 +61,4 @@ def other_bits_are_an_error():
     expect(2, "doctor", "--cpu-mask", "avx9", err="--cpu-mask")
 
 
-in_scratch(lists, the_same_bits_whatever_is_used, other_bits_are_an_error)
+in_scratch(lists, away_from_its_modules, the_same_bits_whatever_is_used, other_bits_are_an_error)

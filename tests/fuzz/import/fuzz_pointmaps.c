@@ -14,8 +14,8 @@ static void check_cameras(const pointmaps *maps)
         if (maps->intrinsics != NULL && !(maps->intrinsics[v][0] > 0)) {
             abort();
         }
-        for (int i = 0; maps->poses != NULL && i < 9; i++) {
-            if (!isfinite(maps->poses[v].r[i])) {
+        for (int i = 0; maps->poses != NULL && i < 4; i++) {
+            if (!isfinite(maps->poses[v].rotation[i])) {
                 abort();
             }
         }

@@ -116,7 +116,7 @@ const struct argp build_argp = {
            "--poses estimate: the first context view keeps its recorded pose, or is the origin. Each other view is "
            "joined to the best of those before it. With depth in both views, lengths are those of the depth; from "
            "colour alone, the first two cameras are 1 apart, unless some depth gives their distance. Frames too "
-           "unlike, a camera that only turned, and corners on one plane are refused. `trim3r import --poses estimate` "
+           "unlike, a camera that only turned, and features on one plane are refused. `trim3r import --poses estimate` "
            "keeps the poses in the recording.\n"
            "\n"
            "--colmap: DIR/images/ holds the context views at the working size, undistorted. DIR/sparse/0/ holds "

@@ -22,6 +22,7 @@
 #include "host/cpu.h"
 #include "host/text.h"
 #include "kernels/kernels.h"
+#include "posing/opencv_module.h"
 
 #define CAMERAS_FOLDER "/sys/class/video4linux"
 #define CAMERAS_MOST 64
@@ -133,6 +134,8 @@ typedef struct machine {
     long processors;
     int64_t memory, available;
     camera_list cameras;
+    const pose_module *poses; /* NULL: no_poses says why */
+    char no_poses[512];
     uint64_t hash, plain_hash; /* of the self-check; the second where the first is wrong */
 } machine;
 
@@ -147,6 +150,7 @@ static void look_around(machine *m, const options *o)
     m->memory = memory_bytes(_SC_PHYS_PAGES);
     m->available = memory_bytes(_SC_AVPHYS_PAGES);
     find_cameras(&m->cameras);
+    m->poses = pose_module_load(m->no_poses, sizeof m->no_poses);
 }
 
 /* ---- what is printed -----------------------------------------------------------------------------------------------
@@ -176,6 +180,7 @@ static void print_json(const machine *m, const options *o)
     for (uint32_t i = 0; i < m->cameras.count; i++) {
         cJSON_AddItemToArray(cameras, cJSON_CreateString(m->cameras.name[i]));
     }
+    cJSON_AddItemToObject(root, "poses", m->poses != NULL ? cJSON_CreateString(m->poses->version) : cJSON_CreateNull());
     json_add_hash(root, "hash", m->hash);
     json_add_hash(root, "expected", o->expected);
     cJSON_AddBoolToObject(root, "passed", m->hash == o->expected);
@@ -202,6 +207,7 @@ static void print_text(const machine *m, const options *o)
     if (m->cameras.count == 0) {
         printf("%-12s none\n", "cameras");
     }
+    printf("%-12s %s\n", "poses", m->poses != NULL ? m->poses->version : m->no_poses);
     char text[HASH_TEXT_BYTES];
     hash_text(m->hash, text);
     printf("%-12s %s, %s\n", "self-check", text, m->hash == o->expected ? "as on every machine" : "wrong");

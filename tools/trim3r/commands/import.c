@@ -124,7 +124,7 @@ static const struct argp_option argp_options[] = {
      "it)",
      0},
     {"poses", KEY_POSES, "SOURCE", 0,
-     "source of the poses: given (default), those of the folder; estimate, from corners that frames share, with depth "
+     "source of the poses: given (default), those of the folder; estimate, from features that frames share, with depth "
      "where two of them have it, or of all frames from pointmaps; estimate-colour, from colour alone, without "
      "pointmaps",
      0},

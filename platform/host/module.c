@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "capture_module.h"
+#include "host/module.h"
 
 #include <dlfcn.h>
 #include <stdio.h>
@@ -25,7 +25,7 @@ static void *load(const char *file)
     return dlopen(file, RTLD_NOW | RTLD_LOCAL);
 }
 
-const void *t3r_capture_module(const char *name, char *error, size_t error_bytes)
+const void *t3r_module_table(const char *name, char *error, size_t error_bytes)
 {
     char file[64];
     snprintf(file, sizeof file, "libtrim3r_%s.so", name);
