@@ -43,9 +43,8 @@ static void some_point(const rigid *m, double point[3], double ray[2])
     }
 }
 
-static void test_inverse(void **unused)
+TEST(test_inverse)
 {
-    (void)unused;
     for (int trial = 0; trial < 500; trial++) {
         rigid m = some_motion(trial % 2 == 0 ? 1.7 : 1e-6, 1), back = rigid_inverse(&m),
               none = rigid_compose(&back, &m);
@@ -53,9 +52,8 @@ static void test_inverse(void **unused)
     }
 }
 
-static void test_resection(void **unused)
+TEST(test_resection)
 {
-    (void)unused;
     enum { COUNT = 300 };
     static double points[COUNT][3], rays[COUNT][2];
     char error[512] = "";
@@ -93,9 +91,8 @@ static void test_resection(void **unused)
 }
 
 /* What is stored is the pose to a rounding, in the world of the first camera's own. */
-static void test_storing(void **unused)
+TEST(test_storing)
 {
-    (void)unused;
     for (int trial = 0; trial < 200; trial++) {
         rigid first = some_motion(2, 1000), pose = some_motion(2, 10), world = rigid_compose(&first, &pose);
         t3r_camera origin = {.rotation_q30 = {1 << 30}}, base, out;
