@@ -9,13 +9,13 @@
 #include "rigid_errors.h"
 #include "test.h"
 
-static uint32_t state = 1;
+static uint32_t seed = 1;
 
 /* -1 .. 1 */
 static double uniform(void)
 {
-    state = state * 1664525u + 1013904223u;
-    return (double)(state >> 8) / 0x800000 - 1;
+    seed = seed * 1664525u + 1013904223u;
+    return (double)(seed >> 8) / 0x800000 - 1;
 }
 
 static rigid some_motion(double turn, double far)
