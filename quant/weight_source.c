@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "weight_source.h"
 
-#define BYTES_A_LINE 24
+#define COLUMNS 120
 
 void weight_source_write(FILE *to, const char *name, const char *note, const uint8_t *bytes, size_t count)
 {
@@ -15,8 +15,11 @@ void weight_source_write(FILE *to, const char *name, const char *note, const uin
             "/* clang-format off */\n"
             "_Alignas(16) const uint8_t t3r_head_%s[] = {",
             name, note, name, name, name);
-    for (size_t i = 0; i < count; i++) {
-        fprintf(to, "%s%u,", i % BYTES_A_LINE == 0 ? "\n" : "", (unsigned)bytes[i]);
+    for (size_t i = 0, column = COLUMNS; i < count; i++) {
+        const size_t wide = bytes[i] < 10 ? 2 : bytes[i] < 100 ? 3 : 4;
+        column = column + wide > COLUMNS ? 0 : column;
+        fprintf(to, "%s%u,", column == 0 ? "\n" : "", (unsigned)bytes[i]);
+        column += wide;
     }
     fprintf(to,
             "\n};\n"

@@ -10,7 +10,6 @@
 
 #include "core/hash.h"
 #include "frames.h"
-#include "layout/ram_rows.h"
 #include "marks.h"
 #include "options.h"
 #include "ram.h"
@@ -22,6 +21,8 @@
 #ifdef HEAD
 #include "trim3r_heads.h"
 #endif
+
+#define STRIP_ROWS 8u /* rows of a frame that are in memory at once */
 
 /* The hash of each stage; the reports of a stage that reports several times are chained. */
 typedef struct hashes {
@@ -126,8 +127,8 @@ static void add_view(t3r_runtime *rt, uint32_t height)
     t3r_frame frame;
     t3r_camera camera;
     frames_next(&frame, &camera);
-    for (uint32_t row = 0; row < height; row += T3R_RAM_STRIP_ROWS) {
-        const uint32_t rows = height - row < T3R_RAM_STRIP_ROWS ? height - row : T3R_RAM_STRIP_ROWS;
+    for (uint32_t row = 0; row < height; row += STRIP_ROWS) {
+        const uint32_t rows = height - row < STRIP_ROWS ? height - row : STRIP_ROWS;
         mark_other();
         frames_rows(&frame, row, rows);
         mark_stage(T3R_STAGE_IMAGE);
@@ -142,9 +143,9 @@ int main(void)
     options_read(&o);
     const size_t pixels = (size_t)o.width * o.height;
     uint8_t *picture = deal(&left, pixels * 3);
-    const size_t strip_pixels = (size_t)T3R_RAM_STRIP_ROWS * o.width;
+    const size_t strip_pixels = (size_t)STRIP_ROWS * o.width;
     uint8_t *strip_room = deal(&left, strip_pixels * 5);
-    const frames_strip strip = {strip_room, strip_room + strip_pixels * 3, T3R_RAM_STRIP_ROWS};
+    const frames_strip strip = {strip_room, strip_room + strip_pixels * 3, STRIP_ROWS};
     frames_open(o.frames, o.width, o.height, &strip);
 
     const t3r_config config = configure(&o);

@@ -47,7 +47,7 @@ const char *t3r_capture_settings_fill(const t3r_capture_settings *settings, t3r_
 typedef struct t3r_capture_source {
     const char *name;     /* before the colon: "replay" */
     const char *argument; /* after the colon, as messages name it: "FILE" */
-    const char *module;   /* the module that it needs (capture_module.h), or NULL */
+    const char *module;   /* the module that it needs (host/module.h), or NULL */
     const char *says;     /* what it reads */
     /* Opens the source with filled settings. Returns NULL with a reason in error[] on failure. */
     t3r_capture *(*open)(const char *what, const t3r_capture_settings *settings, char *error, size_t error_bytes);

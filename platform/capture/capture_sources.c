@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "capture_adapter.h"
-#include "capture_module.h"
+#include "host/module.h"
 #include "host/reason.h"
 #include "host/text.h"
 
@@ -47,7 +47,7 @@ t3r_capture_adapter t3r_capture_adapter_of(uint32_t index)
 {
     const t3r_capture_source *source = sources[index];
     t3r_capture_adapter adapter = {.name = source->name, .available = source->open != NULL};
-    if (source->module != NULL && t3r_capture_module(source->module, adapter.says, sizeof adapter.says) == NULL) {
+    if (source->module != NULL && t3r_module_table(source->module, adapter.says, sizeof adapter.says) == NULL) {
         adapter.available = false;
     } else {
         snprintf(adapter.says, sizeof adapter.says, "%s", source->says);

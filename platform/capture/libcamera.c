@@ -8,7 +8,7 @@
 #include <time.h>
 
 #include "capture_adapter.h"
-#include "capture_module.h"
+#include "host/module.h"
 #include "host/reason.h"
 #include "messages/pixel_layout.h"
 
@@ -281,14 +281,14 @@ t3r_capture *t3r_libcamera_open_on(const t3r_libcamera_shim *shim, const char *c
 static t3r_capture *open_source(const char *camera, const t3r_capture_settings *settings, char *error,
                                 size_t error_bytes)
 {
-    const t3r_libcamera_shim *shim = t3r_capture_module("libcamera", error, error_bytes);
+    const t3r_libcamera_shim *shim = t3r_module_table("libcamera", error, error_bytes);
     return shim != NULL ? t3r_libcamera_open_on(shim, camera, settings, error, error_bytes) : NULL;
 }
 
 static void list_devices(void (*say)(void *user, const char *line), void *user)
 {
     char why[256];
-    const t3r_libcamera_shim *shim = t3r_capture_module("libcamera", why, sizeof why);
+    const t3r_libcamera_shim *shim = t3r_module_table("libcamera", why, sizeof why);
     if (shim != NULL) {
         shim->list(say, user);
     }

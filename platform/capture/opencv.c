@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "capture_adapter.h"
-#include "capture_module.h"
+#include "host/module.h"
 #include "host/reason.h"
 #include "opencv_shim.h"
 #include "source_name.h"
@@ -198,7 +198,7 @@ static void close_capture(t3r_capture *capture)
 static t3r_capture *open_source(const char *url, const t3r_capture_settings *settings, char *error, size_t error_bytes)
 {
     static const t3r_capture_operations operations = {next, reopen, close_capture};
-    const t3r_opencv_shim *shim = t3r_capture_module("opencv", error, error_bytes);
+    const t3r_opencv_shim *shim = t3r_module_table("opencv", error, error_bytes);
     if (shim == NULL) {
         return NULL;
     }

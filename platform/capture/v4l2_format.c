@@ -33,16 +33,6 @@ int t3r_v4l2_ioctl(const t3r_v4l2_system *system, int fd, unsigned long request,
     return result;
 }
 
-const char *t3r_v4l2_fourcc_text(uint32_t fourcc, char text[5])
-{
-    for (int i = 0; i < 4; i++) {
-        char c = (char)(fourcc >> (8 * i) & 127);
-        text[i] = c > ' ' && c < 127 ? c : ' ';
-    }
-    text[4] = '\0';
-    return text;
-}
-
 static bool offers(const t3r_v4l2_system *system, int fd, uint32_t fourcc)
 {
     for (uint32_t i = 0; i < MOST_LISTED; i++) {

@@ -41,7 +41,4 @@ typedef struct t3r_v4l2_choice {
  * Returns NULL, or why there is none. */
 const char *t3r_v4l2_choose(const t3r_v4l2_system *system, int fd, const t3r_v4l2_wish *wish, t3r_v4l2_choice *choice);
 
-/* Writes a FourCC as text, such as "YUYV". */
-const char *t3r_v4l2_fourcc_text(uint32_t fourcc, char text[5]);
-
 #endif

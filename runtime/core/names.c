@@ -29,15 +29,6 @@ const char *t3r_stage_name(t3r_stage stage)
     return pick(names, T3R_STAGE_COUNT, (uint32_t)stage);
 }
 
-#define WORK_NAME(NAME, name, stage) [T3R_WORK_##NAME] = (name),
-
-const char *t3r_work_name(t3r_work work)
-{
-    static const char *const names[] = {T3R_WORKS(WORK_NAME)};
-    EVERY_NAME(names, T3R_WORK_COUNT);
-    return pick(names, T3R_WORK_COUNT, (uint32_t)work);
-}
-
 #define ALLOCATION_NAME(NAME, name) [T3R_ALLOCATE_##NAME] = #name,
 
 const char *t3r_allocation_name(t3r_allocation allocation)

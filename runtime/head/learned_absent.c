@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What stands for learned heads where they are left out: no build is allowed to ask for one (api/checks.c). */
+/* Stub for builds without learned heads: no build is allowed to ask for one (api/checks.c). */
 #include "head.h"
-#include "weights.h"
 
 #if !T3R_FEATURE_LEARNED
 
@@ -12,33 +11,6 @@ uint32_t t3r_head_learned(const t3r_head_input *input, uint32_t begin, uint32_t 
     (void)end;
     (void)out;
     return 0;
-}
-
-size_t t3r_head_learned_packed_bytes(const void *weights, uint32_t width)
-{
-    (void)weights;
-    (void)width;
-    return SIZE_MAX;
-}
-
-t3r_status t3r_weights_check(const void *weights, size_t bytes)
-{
-    (void)weights;
-    (void)bytes;
-    return T3R_ERR_UNSUPPORTED;
-}
-
-t3r_weights_header t3r_weights_header_of(const void *weights)
-{
-    (void)weights;
-    return (t3r_weights_header){.layers = 0};
-}
-
-t3r_layer t3r_weights_layer(const void *weights, uint32_t index)
-{
-    (void)weights;
-    (void)index;
-    return (t3r_layer){.outputs = 0};
 }
 
 #endif

@@ -344,111 +344,6 @@ typedef struct t3r_plan_info {
     t3r_plan_buffer buffers[T3R_BUFFER_COUNT];
 } t3r_plan_info;
 
-/* X(NAME, name, stage), a row a kind of work. A kind is counted in units that cost much the same whatever the
- * configuration is (SPEC, "Work"). */
-#define T3R_WORKS(X)                                                                                                   \
-    X(IMAGE, "image", IMAGE)                                                                                           \
-    X(DEPTH, "depth", DEPTH)                                                                                           \
-    X(STEREO, "stereo", DEPTH)                                                                                         \
-    X(POINTMAP, "pointmap", POINTMAP)                                                                                  \
-    X(COMPARISON, "comparison", POINTMAP)                                                                              \
-    X(WAVELET, "wavelet", WAVELET)                                                                                     \
-    X(SEEDING, "seeding", SUPERCLUSTERS)                                                                               \
-    X(BATCHES, "batches", SUPERCLUSTERS)                                                                               \
-    X(LABELS, "labels", SUPERCLUSTERS)                                                                                 \
-    X(CENTRES, "centres", SUPERCLUSTERS)                                                                               \
-    X(NEIGHBOURS, "neighbours", SUPERCLUSTERS)                                                                         \
-    X(BUDGET, "budget", BUDGET)                                                                                        \
-    X(DISC_PIXELS, "disc_pixels", HEAD)                                                                                \
-    X(DISC_GAUSSIANS, "disc_gaussians", HEAD)                                                                          \
-    X(FEATURES, "features", HEAD)                                                                                      \
-    X(LIFTS, "lifts", HEAD)                                                                                            \
-    X(ACTIVATIONS, "activations", HEAD)                                                                                \
-    X(MACS, "macs", HEAD)                                                                                              \
-    X(UNPACKED_MACS, "unpacked_macs", HEAD)                                                                            \
-    X(REFINE_PIXELS, "refine_pixels", REFINE)                                                                          \
-    X(REFINE_GAUSSIANS, "refine_gaussians", REFINE)                                                                    \
-    X(CORRECTIONS, "corrections", REFINE)                                                                              \
-    X(REMADE_PIXELS, "remade_pixels", REFINE)                                                                          \
-    X(RASTER_PIXELS, "raster_pixels", RASTER)                                                                          \
-    X(RASTER_GAUSSIANS, "raster_gaussians", RASTER)
-
-#define T3R_WORK_NAME_(NAME, name, stage) T3R_WORK_##NAME,
-typedef uint32_t t3r_work;
-enum { T3R_WORKS(T3R_WORK_NAME_) T3R_WORK_COUNT };
-
-/* How much work a build from its views to its scene is, and one view drawn of it at the largest target. */
-typedef struct t3r_work_counts {
-    /* The units of each kind. */
-    uint64_t units[T3R_WORK_COUNT];
-} t3r_work_counts;
-
-/* What a unit of each kind takes, in 1/1000: of a nanosecond where a machine was measured (trim3r bench --calibrate),
- * of an operation in t3r_operations. */
-typedef struct t3r_prices {
-    /* The price of a unit of each kind. */
-    uint32_t milli[T3R_WORK_COUNT];
-} t3r_prices;
-
-/* Operations: instructions of plain C on x86-64, as gcc 12 -O2 makes them. They are the same on every run, and no
- * machine's time. */
-extern const t3r_prices t3r_operations;
-
-/* What a build may take, and what is given. */
-typedef struct t3r_limits {
-    /* The bytes of the arena; 0 = any. */
-    size_t bytes;
-    /* The most that a build may take at these prices; 0 = any. */
-    uint64_t most;
-    /* The prices. NULL = not known, and then `most` is 0. */
-    const t3r_prices *prices;
-    /* The budget in Gaussians, 1..T3R_MAX_GAUSSIANS; 0 = each of some shares of the points. */
-    uint32_t gaussians;
-    /* The number of refinement passes, 0..T3R_MAX_REFINE; T3R_ANY_REFINE = each of some. */
-    uint32_t refine;
-} t3r_limits;
-
-#define T3R_ANY_REFINE UINT32_MAX
-#define T3R_MAX_CHOICES 48u
-
-/* Settings that fit. */
-typedef struct t3r_choice {
-    /* The fields of the configuration that are chosen; max_gaussians is gaussians. */
-    uint32_t gaussians, refine;
-    /* The configuration's head. */
-    t3r_head head;
-    /* The weights that came with it. */
-    const void *weights;
-    /* The bytes of its arena: the least, and those for full speed. */
-    size_t min_bytes, full_bytes;
-    /* What a build takes at the prices of the limits, in an arena of their bytes; 0 without prices. */
-    uint64_t price;
-    /* What a new view is expected to lose against the best settings known, in 1/16 dB of PSNR: a mean over training
-     * scenes (docs/study/plan.md), which orders settings and predicts no scene. */
-    uint32_t loss_q4;
-} t3r_choice;
-
-/* The RAM of a device, shared out: t3r_ram_config(). The parts of a build and of a view add up to at most the bytes
- * asked for. */
-typedef struct t3r_ram_info {
-    /* The RAM that the settings were chosen for, at most the bytes asked for. */
-    uint64_t ram_bytes;
-    /* The arena: what is left for it, at most the bytes for full speed; a multiple of T3R_ARENA_ALIGN. */
-    size_t arena_bytes;
-    /* The rows of a frame that lie in memory at once, for t3r_add_rows(). */
-    uint32_t strip_rows;
-    /* The bytes of their colour and depth, 5 a pixel of the working size. */
-    size_t strip_bytes;
-    /* The picture that is drawn: R G B of the working size. */
-    size_t target_bytes;
-    /* The bound of the library's stack (docs/firmware.md). */
-    size_t stack_bytes;
-    /* What is left for the program's own variables. */
-    size_t program_bytes;
-    /* The weights in quant/heads for t3r_bind_head(): "tiny" or "small". NULL = the head `analytic`. */
-    const char *weights;
-} t3r_ram_info;
-
 /* What a keyframe did to the map of a stream. */
 typedef struct t3r_stream_report {
     /* The number of keyframes taken so far, this one too. */
@@ -534,18 +429,6 @@ static inline t3r_status t3r_plan_within(size_t bytes, t3r_config *config)
     return t3r_plan_within_as(t3r_header_interface(), bytes, config);
 }
 
-/* The settings that serve so many bytes of RAM best: the row for the largest size that is not above them, of 128, 192,
- * 256 and 512 KiB, 1 and 4 MiB. They were chosen by the quality of new views on training scenes (docs/ram.md). All
- * of RAM counts: arena, camera rows, picture and stack. `info` may be NULL.
- *
- * T3R_ERR_ARENA: fewer bytes than the smallest row takes. T3R_ERR_UNSUPPORTED: this library was built without what the
- * row asks for. T3R_ERR_INTERFACE. After an error both are as before. */
-t3r_status t3r_ram_config_as(uint64_t digest, uint64_t bytes, t3r_config *config, t3r_ram_info *info);
-static inline t3r_status t3r_ram_config(uint64_t bytes, t3r_config *config, t3r_ram_info *info)
-{
-    return t3r_ram_config_as(t3r_header_interface(), bytes, config, info);
-}
-
 /* The settings that make the most of so much work, whatever the size and the budget: head, refine, fit_passes and
  * structural of `config`, which keeps its other fields. They were chosen on training scenes (docs/budgets.md, "How much
  * work"). *weights gets the name of the head's weights in quant/heads, for t3r_bind_head(); `weights` may be NULL.
@@ -557,32 +440,6 @@ static inline t3r_status t3r_set_preset(t3r_preset preset, t3r_config *config, c
 {
     return t3r_set_preset_as(t3r_header_interface(), preset, config, weights);
 }
-
-/* Counts the work of a build by this configuration in an arena of `bytes`, with a depth or a match for every pixel, and
- * of one view. weights: those of the head T3R_HEAD_LEARNED, as t3r_bind_head() takes them; else NULL and 0. Frames have
- * the working size. A stream has no count, and with `warm` it is that of a build that begins anew.
- *
- * T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: as t3r_plan(), or a stream. T3R_ERR_ARENA: t3r_init() refuses the arena.
- * T3R_ERR_WEIGHTS: the head is learned and these are no weights. */
-t3r_status t3r_count_work(const t3r_config *config, size_t bytes, const void *weights, size_t weight_bytes,
-                          t3r_work_counts *counts);
-
-/* Returns the cost of a stage's work at these prices: whole nanoseconds, or operations. UINT64_MAX where it is more; 0
- * without counts or prices. */
-uint64_t t3r_price_of(const t3r_work_counts *counts, const t3r_prices *prices, t3r_stage stage);
-/* Returns the cost of a build at these prices: all stages but the raster, which belongs to a view. */
-uint64_t t3r_price_of_build(const t3r_work_counts *counts, const t3r_prices *prices);
-
-/* Adds the settings that fit the limits to a list, which begins with *count = 0 and has room for T3R_MAX_CHOICES more.
- * Those of the least expected loss come first, and of equal loss those of the lowest price. Settings that others in the
- * list match or beat in loss, bytes and price are left out or dropped. All but budget and passes is the
- * configuration's, whose own two are ignored; a call for each of several heads compares these. Weights are as in
- * t3r_count_work().
- *
- * T3R_ERR_ARGUMENT: a limit is out of its range. Others are as in t3r_count_work(). After an error the list is as
- * before. */
-t3r_status t3r_plan_choices(const t3r_config *config, const void *weights, size_t weight_bytes,
-                            const t3r_limits *limits, t3r_choice *choices, uint32_t *count);
 
 /* Returns the first field of the configuration that is out of range, or asks for what this library was built without,
  * as text; NULL when there is none. */
@@ -792,7 +649,6 @@ const char *t3r_error_text(t3r_status status);
 /* Return stable lower-case names, as the command line and the tables print them. NULL = out of range, or one of the
  * values ..._CONFIGURED. */
 const char *t3r_stage_name(t3r_stage stage);
-const char *t3r_work_name(t3r_work work);
 const char *t3r_allocation_name(t3r_allocation allocation);
 const char *t3r_head_name(t3r_head head);
 const char *t3r_depth_name(t3r_depth depth);

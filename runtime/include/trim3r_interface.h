@@ -30,11 +30,6 @@
     X(t3r_hooks)                                                                                                       \
     X(t3r_plan_buffer)                                                                                                 \
     X(t3r_plan_info)                                                                                                   \
-    X(t3r_work_counts)                                                                                                 \
-    X(t3r_prices)                                                                                                      \
-    X(t3r_limits)                                                                                                      \
-    X(t3r_choice)                                                                                                      \
-    X(t3r_ram_info)                                                                                                    \
     X(t3r_stream_report)
 
 /* X(type, field), a row a field; T3R_SETTINGS has those of t3r_config. */
@@ -99,29 +94,6 @@
     X(t3r_plan_info, most_blends)                                                                                      \
     X(t3r_plan_info, buffer_count)                                                                                     \
     X(t3r_plan_info, buffers)                                                                                          \
-    X(t3r_work_counts, units)                                                                                          \
-    X(t3r_prices, milli)                                                                                               \
-    X(t3r_limits, bytes)                                                                                               \
-    X(t3r_limits, most)                                                                                                \
-    X(t3r_limits, prices)                                                                                              \
-    X(t3r_limits, gaussians)                                                                                           \
-    X(t3r_limits, refine)                                                                                              \
-    X(t3r_choice, gaussians)                                                                                           \
-    X(t3r_choice, refine)                                                                                              \
-    X(t3r_choice, head)                                                                                                \
-    X(t3r_choice, weights)                                                                                             \
-    X(t3r_choice, min_bytes)                                                                                           \
-    X(t3r_choice, full_bytes)                                                                                          \
-    X(t3r_choice, price)                                                                                               \
-    X(t3r_choice, loss_q4)                                                                                             \
-    X(t3r_ram_info, ram_bytes)                                                                                         \
-    X(t3r_ram_info, arena_bytes)                                                                                       \
-    X(t3r_ram_info, strip_rows)                                                                                        \
-    X(t3r_ram_info, strip_bytes)                                                                                       \
-    X(t3r_ram_info, target_bytes)                                                                                      \
-    X(t3r_ram_info, stack_bytes)                                                                                       \
-    X(t3r_ram_info, program_bytes)                                                                                     \
-    X(t3r_ram_info, weights)                                                                                           \
     X(t3r_stream_report, keyframes)                                                                                    \
     X(t3r_stream_report, gaussians)                                                                                    \
     X(t3r_stream_report, added)                                                                                        \

@@ -197,34 +197,44 @@ typedef struct view_job {
     const t3r_view *view;
 } view_job;
 
+static void set_depth(const t3r_view *view, size_t at, const distance *s, uint32_t steps)
+{
+    const int64_t depth = t3r_round_div64(s->numerator_q24 * steps * 64, s->denominator_q30); /* 2^22 x 2^25 x 2^6 */
+    const bool known = depth <= UINT16_MAX && s->disparity_q16 >= NO_PARALLAX_Q16;
+    view->depth[at] = (uint16_t)t3r_clamp64(depth, 1, UINT16_MAX);
+    view->match_confidence[at] = known ? s->confidence : T3R_STEREO_FILLED;
+}
+
+/* Sets the depth of a part of row v, whose first pixel is `at`. */
+static void view_part(const view_job *job, const t3r_view_columns *columns, size_t at, uint32_t v)
+{
+    const t3r_view view = *job->view; /* a copy: writing its bytes changes none of what it holds */
+    const uint32_t side = job->side, steps = job->planes->steps;
+    const bool polar = job->planes->rect->polar;
+    sight seen;
+    look_at(job->kernels, job->planes, side, columns, v, &seen);
+    for (uint32_t i = 0; i < columns->count; i++, at++) {
+        distance s;
+        const bool shown = (view.colour[0][at] | view.colour[1][at] | view.colour[2][at]) != 0;
+        if (shown && see(polar, side, &seen, i, &s)) {
+            set_depth(&view, at, &s, steps);
+        } else {
+            view.depth[at] = 0;
+            view.match_confidence[at] = T3R_STEREO_NONE;
+        }
+    }
+}
+
 static void view_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     (void)worker;
-    /* copies: writing bytes of the view changes none of what they hold */
-    const view_job all = *(const view_job *)context, *job = &all;
-    const t3r_view its = *job->view, *view = &its;
-    const t3r_stereo_planes parts = *job->planes, *planes = &parts;
-    const bool polar = planes->rect->polar;
-    for (uint32_t first = 0; first < view->width; first += T3R_RAYS) {
+    const view_job *job = context;
+    const uint32_t width = job->view->width;
+    for (uint32_t first = 0; first < width; first += T3R_RAYS) {
         t3r_view_columns columns;
-        sight seen;
-        t3r_view_columns_of(planes->rect, job->side, first, 1, T3R_MIN(view->width - first, T3R_RAYS), &columns);
+        t3r_view_columns_of(job->planes->rect, job->side, first, 1, T3R_MIN(width - first, T3R_RAYS), &columns);
         for (uint32_t v = begin; v < end; v++) {
-            look_at(job->kernels, planes, job->side, &columns, v, &seen);
-            for (uint32_t i = 0; i < columns.count; i++) {
-                const size_t at = (size_t)v * view->width + first + i;
-                distance s;
-                view->depth[at] = 0;
-                view->match_confidence[at] = T3R_STEREO_NONE;
-                const bool shown = (view->colour[0][at] | view->colour[1][at] | view->colour[2][at]) != 0;
-                if (shown && see(polar, job->side, &seen, i, &s)) {
-                    /* 2^22 x 2^25 x 2^6 */
-                    int64_t depth = t3r_round_div64(s.numerator_q24 * planes->steps * 64, s.denominator_q30);
-                    view->depth[at] = (uint16_t)t3r_clamp64(depth, 1, UINT16_MAX);
-                    const bool known = depth <= UINT16_MAX && s.disparity_q16 >= NO_PARALLAX_Q16;
-                    view->match_confidence[at] = known ? s.confidence : T3R_STEREO_FILLED;
-                }
-            }
+            view_part(job, &columns, (size_t)v * width + first, v);
         }
     }
 }

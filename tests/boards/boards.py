@@ -8,12 +8,10 @@ import re
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
-sys.path.insert(0, str(ROOT / "tools" / "study" / "boards"))
+from checks import check, done, near, skip
+from firmware import BOARDS, STAGES
 
-from checks import check, done, near, skip  # noqa: E402
-from firmware import BOARDS, STAGES  # noqa: E402
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 PROGRAM, FOLDER, OWN = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sorted(sys.argv[3:])
 PAGE = (ROOT / "docs" / "study" / "boards.md").read_text()

@@ -10,11 +10,10 @@ import pathlib
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
-TOOL = ROOT / "tools" / "everywhere"
+from checks import check, done, skip
 
-from checks import check, done, skip  # noqa: E402
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+TOOL = ROOT / "tools" / "everywhere"
 
 PROGRAM, FOLDER, PROCESSORS = sys.argv[1], sys.argv[2], sys.argv[3:]
 PAGE = (ROOT / "docs" / "study" / "everywhere.md").read_text()

@@ -8,10 +8,9 @@ import re
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
+from checks import check, done, near, skip
 
-from checks import check, done, near, skip  # noqa: E402
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 PROGRAM, FOLDER = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 SECTION = (ROOT / "docs" / "study" / "boards.md").read_text().split("\n## Flash\n")[1]

@@ -9,12 +9,11 @@ import shutil
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tools" / "study" / "boards")]
+from checks import check, done, run, skip
+from cortex_m import CLANG, COMPILER
+from firmware import BOARDS, RUNTIME
 
-from checks import check, done, run, skip  # noqa: E402
-from cortex_m import CLANG, COMPILER  # noqa: E402
-from firmware import BOARDS, RUNTIME  # noqa: E402
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 PROGRAM, FOLDER, BOARD = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), "mps3-an547"
 COMPILERS = ((*CLANG, "-ffreestanding", "-std=c11"), (COMPILER, "-ffreestanding", "-std=c11"))

@@ -9,14 +9,12 @@ import shutil
 import sys
 from types import SimpleNamespace
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
-sys.path.insert(0, str(ROOT / "tools" / "study" / "boards"))
+import cortex_m
+from checks import check, done, near, skip
+from firmware import FEATURES, run, words
+from reference import host, recording
 
-import cortex_m  # noqa: E402
-from checks import check, done, near, skip  # noqa: E402
-from firmware import FEATURES, run, words  # noqa: E402
-from reference import host, recording  # noqa: E402
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 PAGE = (ROOT / "docs" / "study" / "boards.md").read_text()
 BOARD, SIZE, RAM = "mps2-an385", "128K", 128 << 10

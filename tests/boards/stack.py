@@ -7,10 +7,9 @@ import re
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
+from checks import check, done, skip
 
-from checks import check, done, skip  # noqa: E402
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 PAGE = (ROOT / "docs" / "study" / "boards.md").read_text()
 TARGETS = {"Cortex-M3": "cortex-m3", "Cortex-M7": "cortex-m7", "Cortex-M55": "cortex-m55"}

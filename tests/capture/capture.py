@@ -10,12 +10,13 @@ import tempfile
 import time
 
 import mcap_read
-from common import TRIM3R, check, done, run
+from checks import check, done
+from program import TRIM3R, expect, expect_json
 
 
-def capture(source, *options, expect=0, words=""):
-    out = run("capture", "--source", source, "--json", *options, expect=expect, words=words)
-    return json.loads(out) if expect == 0 else None
+def capture(source, *options, code=0, words=""):
+    out = expect(code, "capture", "--source", source, "--json", *options, err=words)
+    return json.loads(out) if code == 0 else None
 
 
 def read(path):
@@ -34,8 +35,8 @@ def copies():
     check(room["frames"] == again["frames"] == 12 and room["paired"] == 12, "all frames")
     check(room["frames_hash"] == again["frames_hash"], "the frames' hash")
     check(room["bytes"] == os.path.getsize("copy.mcap"), "bytes told are those on the disk")
-    room = json.loads(run("replay", "room.mcap", "--json", "--refine", 0))
-    copy = json.loads(run("replay", "copy.mcap", "--json", "--refine", 0))
+    room = expect_json("replay", "room.mcap", "--refine", 0)
+    copy = expect_json("replay", "copy.mcap", "--refine", 0)
     check(room["hash"] == copy["hash"], "every stage")
     thrice = capture("replay:room.mcap", "--repeat", 3, "-o", "thrice.mcap")
     stamps = [mcap_read.stamp(mcap_read.Cdr(m)) for m in of_topic("thrice.mcap", "/camera/image")]
@@ -45,22 +46,22 @@ def copies():
 
 def builds():
     live = capture("replay:room.mcap", "--build", "live.ply", "--context", "1,4", "--gaussians", 700, "--refine", 1)
-    later = json.loads(run("build", "room.mcap", "-o", "later.ply", "--context", "1,4", "--gaussians", 700, "--refine",
-                           1, "--json"))
+    later = expect_json("build", "room.mcap", "-o", "later.ply", "--context", "1,4", "--gaussians", 700, "--refine",
+                           1)
     check(live["hash"] == later["hash"] and live["context"] == [1, 4], "live is what build makes")
     check(read("live.ply") == read("later.ply"), "the scenes' files")
     often = capture("replay:room.mcap", "--build", "often.ply", "--every", 4, "--keep", "5%", "--refine", 0)
     check(often["builds"] == 2 and often["context"] == [4, 8], "builds of every fourth frame")
-    later = json.loads(run("build", "room.mcap", "-o", "later.ply", "--context", "4,8", "--keep", "5%", "--refine", 0,
+    later = json.loads(expect(0, "build", "room.mcap", "-o", "later.ply", "--context", "4,8", "--keep", "5%", "--refine", 0,
                            "--json"))
     check(often["hash"] == later["hash"] and read("often.ply") == read("later.ply"), "the last of them")
     few = capture("replay:room.mcap", "--build", "auto.ply", "--auto", "--max-loss", 3, "--refine", 1)
-    later = json.loads(run("build", "room.mcap", "-o", "later.ply", "--auto", "--max-loss", 3, "--refine",
-                           1, "--json"))
+    later = expect_json("build", "room.mcap", "-o", "later.ply", "--auto", "--max-loss", 3, "--refine",
+                           1)
     check(few["hash"] == later["hash"] and few["gaussians"] == later["gaussians"] < 6144, "--auto, live")
-    capture("replay:room.mcap", "--build", "no.ply", "--context", "0,40", expect=1, words="nothing was built")
-    capture("replay:bare.mcap", "--build", "no.ply", expect=1, words="has no pose")
-    capture("replay:room.mcap", "--build", "no.ply", "--arena", 1000, expect=3, words="too small")
+    capture("replay:room.mcap", "--build", "no.ply", "--context", "0,40", code=1, words="nothing was built")
+    capture("replay:bare.mcap", "--build", "no.ply", code=1, words="has no pose")
+    capture("replay:room.mcap", "--build", "no.ply", "--arena", 1000, code=3, words="too small")
 
 
 def bare():
@@ -88,16 +89,13 @@ def poses():
               for i, b in enumerate(b_[:3])), "positions in the middle")
     lens = capture("replay:bare.mcap", "--intrinsics", "70,71,31.5,23.5,0.1,-0.2,0.001,0.002,0.05", "-o", "lens.mcap")
     check(lens["frames"] == 12, "intrinsics")
-    check(json.loads(run("info", "lens.mcap", "--json"))["distortion"] == "radtan", "a lens with distortion")
-    run("capture", "--source", "replay:bare.mcap", "--poses", "tum.txt", "--clock-offset", "estimate", "--hash",
-        expect=1, words="offset is not")
+    check(expect_json("info", "lens.mcap")["distortion"] == "radtan", "a lens with distortion")
+    expect(1, "capture", "--source", "replay:bare.mcap", "--poses", "tum.txt", "--clock-offset", "estimate", "--hash", err="offset is not")
     for far in ("4000000000", "79999999999", "-18446744073", "99999999999999999999", "estimate:4000000000"):
-        run("capture", "--source", "replay:bare.mcap", "--poses", "tum.txt", "--clock-offset", far, "--hash",
-            expect=2, words="--clock-offset takes")
+        expect(2, "capture", "--source", "replay:bare.mcap", "--poses", "tum.txt", "--clock-offset", far, "--hash", err="--clock-offset takes")
     told = capture("replay:bare.mcap", *asked, "tum.txt", "--clock-offset", "-3999999999.999999999")
     check(told["unposed"] == 12, "the farthest offset there is")
-    run("capture", "--source", "v4l2:/dev/video0", "--poses", "tum.txt", "--clock-offset", "estimate", "--hash",
-        expect=2, words="record, then")
+    expect(2, "capture", "--source", "v4l2:/dev/video0", "--poses", "tum.txt", "--clock-offset", "estimate", "--hash", err="record, then")
 
 
 def rolls_over():
@@ -106,9 +104,9 @@ def rolls_over():
     names = ["roll.mcap"] + [f"roll-{i}.mcap" for i in range(1, told["files"])]
     sizes = [os.path.getsize(name) for name in names]
     check(len(names) > 4 and max(sizes) <= most and sum(sizes) == told["bytes"], f"{sizes}")
-    frames = [json.loads(run("info", name, "--json"))["frames"] for name in names]
+    frames = [expect_json("info", name)["frames"] for name in names]
     check(sum(frames) == 48, f"no frame is lost between files: {frames}")
-    capture("replay:room.mcap", "--max-bytes", "20k", "-o", "no.mcap", expect=1, words="does not hold one frame")
+    capture("replay:room.mcap", "--max-bytes", "20k", "-o", "no.mcap", code=1, words="does not hold one frame")
 
 
 def spares_what_it_reads():
@@ -117,11 +115,11 @@ def spares_what_it_reads():
         file.write(read("room.mcap"))
     os.symlink("spare-1.mcap", "link-2.mcap")
     for name in ("spare.mcap", "link.mcap"):
-        capture("replay:spare-1.mcap", "--repeat", 4, "--max-bytes", 40000, "-o", name, expect=1,
+        capture("replay:spare-1.mcap", "--repeat", 4, "--max-bytes", 40000, "-o", name, code=1,
                 words="is --source spare-1.mcap, too: it is not overwritten")
         check(read("spare-1.mcap") == read("room.mcap"), "the recording that is replayed is whole")
-        check(json.loads(run("info", name, "--json"))["note"] == "", "and the file before is")
-    capture("replay:room.mcap", "--poses", "spare-1.mcap", "-o", "spare-1.mcap", expect=2, words="are one file")
+        check(expect_json("info", name)["note"] == "", "and the file before is")
+    capture("replay:room.mcap", "--poses", "spare-1.mcap", "-o", "spare-1.mcap", code=2, words="are one file")
     check(read("spare-1.mcap") == read("room.mcap"), "the poses are whole")
 
 
@@ -137,7 +135,7 @@ def stops(number):
         process.send_signal(number)
         out, err = process.communicate(timeout=60)
     check(process.returncode == 0, f"signal {number}: {process.returncode} {err}")
-    told, info = json.loads(out), json.loads(run("info", "signal.mcap", "--json"))
+    told, info = json.loads(out), expect_json("info", "signal.mcap")
     check(info["frames"] == told["frames"] and info["note"] == "", f"a whole recording: {info['note']}")
     os.remove("signal.mcap")
 
@@ -176,7 +174,7 @@ def stops_before_it_begins():
     """Ctrl-C while the clocks' offset is looked for: what there is under the output's name stays."""
     with open("kept.mcap", "wb") as file:
         file.write(b"\x89MCAP0\r\nof before")
-    run("room", "--size", "640x480", "--frames", 2, "-o", "large.mcap")  # so that it takes long
+    expect(0, "room", "--size", "640x480", "--frames", 2, "-o", "large.mcap")  # so that it takes long
     leader, follower = pty.openpty()
     process = subprocess.Popen([TRIM3R, "capture", "--source", "replay:large.mcap", "--repeat", "4000000000", "--poses",
                                 "tum.txt", "--clock-offset", "estimate", "-o", "kept.mcap"],
@@ -204,30 +202,30 @@ def killed():
             check(time.monotonic() < until, "it records")
             time.sleep(0.005)
         process.kill()
-    info = json.loads(run("info", "kill.mcap", "--json"))
+    info = expect_json("info", "kill.mcap")
     check(info["frames"] > 5 and "cut off" in info["note"], "what was whole is there")
     os.remove("kill.mcap")
 
 
 def refusals():
-    run("capture", expect=2, words="--source is missing")
-    run("capture", "--source", "replay:room.mcap", expect=2, words="what is to become")
-    run("capture", "--source", "nothing:at-all", "--hash", expect=1, words="is none of")
-    run("capture", "--source", "replay:missing.mcap", "--hash", expect=1, words="No such file")
-    run("capture", "--source", "v4l2:/dev/null", "--hash", expect=1, words="is not a video device")
-    run("capture", "--source", "v4l2:missing", "--hash", expect=1, words="No such file")
-    run("capture", "--source", "replay:room.mcap", "--build", "a.ply", "--context", "2,1", expect=2,
-        words="must ascend")
-    run("capture", "--source", "replay:room.mcap", "--build", "a.ply", "--context", "1,2", "--every", 2, expect=2,
-        words="exclude")
-    run("capture", "--source", "replay:room.mcap", "--build", "a.ply", "--depth", "stereo", expect=2,
-        words="--depth stereo needs a recording")
-    run("capture", "--source", "replay:room.mcap", "--hash", "--max-bytes", "10X", expect=2, words="--max-bytes")
-    run("capture", "--source", "replay:room.mcap", "-o", "/dev/full", expect=1, words="cannot be written")
-    run("capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "1,2", expect=2, words="--intrinsics")
-    run("capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "5,5,5,5", expect=1, words="focal length")
-    run("capture", "--source", "replay:room.mcap", "-o", "../" + os.path.basename(os.getcwd()) + "/room.mcap", expect=2,
-        words="are one file")
+    expect(2, "capture", err="--source is missing")
+    expect(2, "capture", "--source", "replay:room.mcap", err="what is to become")
+    expect(1, "capture", "--source", "nothing:at-all", "--hash", err="is none of")
+    expect(1, "capture", "--source", "replay:missing.mcap", "--hash", err="No such file")
+    expect(1, "capture", "--source", "v4l2:/dev/null", "--hash", err="is not a video device")
+    expect(1, "capture", "--source", "v4l2:missing", "--hash", err="No such file")
+    expect(2, "capture", "--source", "replay:room.mcap", "--build", "a.ply", "--context", "2,1",
+        err="must ascend")
+    expect(2, "capture", "--source", "replay:room.mcap", "--build", "a.ply", "--context", "1,2", "--every", 2,
+        err="exclude")
+    expect(2, "capture", "--source", "replay:room.mcap", "--build", "a.ply", "--depth", "stereo",
+        err="--depth stereo needs a recording")
+    expect(2, "capture", "--source", "replay:room.mcap", "--hash", "--max-bytes", "10X", err="--max-bytes")
+    expect(1, "capture", "--source", "replay:room.mcap", "-o", "/dev/full", err="cannot be written")
+    expect(2, "capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "1,2", err="--intrinsics")
+    expect(1, "capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", "5,5,5,5", err="focal length")
+    expect(2, "capture", "--source", "replay:room.mcap", "-o", "../" + os.path.basename(os.getcwd()) + "/room.mcap",
+        err="are one file")
     for source, options, words in (
             ("replay:room.mcap", ("--size", "64x48"), "--size is of no use to replay: it belongs to v4l2 libcamera"),
             ("replay:room.mcap", ("--rate", "30"), "--rate is of no use"),
@@ -243,11 +241,11 @@ def refusals():
             ("v4l2:/dev/null", ("--depth-unit", "0.001"), "--depth-unit belongs to"),
             ("v4l2:/dev/null", ("--pair", "5"), "--pair belongs to"),
             ("v4l2:/dev/null", ("--sync",), "belong to -o")):
-        run("capture", "--source", source, "--hash", *options, expect=2, words=words)
-    run("capture", "--source", "v4l2:/dev/null", "--hash", "--depth-source", "/dev/null", "--pair", 5, "--depth-size",
+        expect(2, "capture", "--source", source, "--hash", *options, err=words)
+    expect(1, "capture", "--source", "v4l2:/dev/null", "--hash", "--depth-source", "/dev/null", "--pair", 5, "--depth-size",
         "64x48", "--depth-unit", 0.001, "--size", "64x48", "--rate", 30, "--format", "GREY", "--buffers", 3, "--stall",
-        100, "--reconnect", 0, expect=1, words="is not a video device")
-    listed = run("capture", "--list")
+        100, "--reconnect", 0, err="is not a video device")
+    listed = expect(0, "capture", "--list")
     check(all(name in listed for name in ("replay", "v4l2", "libcamera", "opencv")), "--list names every adapter")
     for name in ("v4l2", "libcamera", "opencv"):
         line = next(line for line in listed.splitlines() if line.startswith(name))
@@ -256,14 +254,14 @@ def refusals():
 
 def events():
     """What is counted stands in the recording, too, level and all."""
-    run("capture", "--source", "replay:room.mcap", "-o", "quiet.mcap", "--quiet")
+    expect(0, "capture", "--source", "replay:room.mcap", "-o", "quiet.mcap", "--quiet")
     schemas = [content for opcode, content in mcap_read.records(read("quiet.mcap")) if opcode == 0x03]
     check(any(b"rcl_interfaces/msg/Log" in content for content in schemas), "the topic of events")
 
 
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    run("room", "--size", "64x48", "--frames", 12, "-o", "room.mcap")
+    expect(0, "room", "--size", "64x48", "--frames", 12, "-o", "room.mcap")
     copies()
     bare()
     builds()

@@ -18,7 +18,8 @@ except ImportError as error:
     sys.exit(77)
 
 import mcap_read  # noqa: E402
-from common import check, done, run, skip  # noqa: E402
+from checks import check, done, skip  # noqa: E402
+from program import expect, expect_json  # noqa: E402
 
 
 def images(path, topic, dtype, channels):
@@ -42,7 +43,7 @@ def keeps_secrets(film):
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Server, directory=os.getcwd())) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         place = f"127.0.0.1:{server.server_port}/{film}"
-        out = run("capture", "--source", f"opencv:http://me:hidden@{place}?token=hidden", "-o", "stream.mcap", "--json")
+        out = expect(0, "capture", "--source", f"opencv:http://me:hidden@{place}?token=hidden", "-o", "stream.mcap", "--json")
         server.shutdown()
     check(json.loads(out)["source"] == f"opencv:http://{place}" and "hidden" not in out, out)
     with open("stream.mcap", "rb") as file:
@@ -51,16 +52,16 @@ def keeps_secrets(film):
 
 
 def capture(source, name, *options):
-    return json.loads(run("capture", "--source", source, "-o", name, "--json", *options))
+    return expect_json("capture", "--source", source, "-o", name, *options)
 
 
-listed = run("capture", "--list")
+listed = expect(0, "capture", "--list")
 if " yes " not in next(line for line in listed.splitlines() if line.startswith("opencv")):
     skip("the adapter is not there")
 
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
-    run("room", "--size", "64x48", "--frames", 5, "-o", "room.mcap")
+    expect(0, "room", "--size", "64x48", "--frames", 5, "-o", "room.mcap")
     colour = [a for _, a in images("room.mcap", "/camera/image", numpy.uint8, 3)]
     depth = [a for _, a in images("room.mcap", "/camera/depth", "<u2", 1)]
     poses = [mcap_read.pose(m) for t, _, m in mcap_read.messages(open("room.mcap", "rb").read()) if t == "/camera/pose"]
@@ -93,8 +94,8 @@ with tempfile.TemporaryDirectory() as folder:
         check(encoding == "bgr8" and (got[..., ::-1] == want).all(), "colour, sample by sample")
     for (encoding, got), want in zip(images("pictures.mcap", "/camera/depth", "<u2", 1), depth):
         check(encoding == "16UC1" and (got == want).all(), "depth, sample by sample")
-    ours = json.loads(run("replay", "room.mcap", "--json", "--refine", 0))
-    theirs = json.loads(run("replay", "pictures.mcap", "--json", "--refine", 0))
+    ours = expect_json("replay", "room.mcap", "--refine", 0)
+    theirs = expect_json("replay", "pictures.mcap", "--refine", 0)
     check(ours["hash"] == theirs["hash"], "the same Gaussians and the same view as without OpenCV")
 
     told = capture("opencv:film.avi", "film.mcap", "--backend", "FFMPEG")
@@ -110,7 +111,7 @@ with tempfile.TemporaryDirectory() as folder:
     os.rename("100%.avi", "100%3d.avi")
     check("CV_IMAGES" not in capture("opencv:file://" + os.path.abspath("100%3d.avi"), "film.mcap")["note"],
           "the % of a URL is no number of pictures")
-    run("capture", "--source", "opencv:missing.avi", "--hash", expect=1, words="cannot open")
-    run("capture", "--source", "opencv:c%03d.png", "--backend", "NONE", "--hash", expect=1, words="not a back end")
-    run("capture", "--source", "opencv:d%03d.png", "--depth-source", "c%03d.png", "--hash", expect=1)
+    expect(1, "capture", "--source", "opencv:missing.avi", "--hash", err="cannot open")
+    expect(1, "capture", "--source", "opencv:c%03d.png", "--backend", "NONE", "--hash", err="not a back end")
+    expect(1, "capture", "--source", "opencv:d%03d.png", "--depth-source", "c%03d.png", "--hash")
 done()

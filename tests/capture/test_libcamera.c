@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Capture by libcamera over a library that lives in this process: agreement, frames without a copy, gaps, failures,
  * unplugging, standing still. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "capture/capture_adapter.h"
 #include "capture/libcamera.h"
+#include "test.h"
 
 enum { WIDTH = 16, HEIGHT = 8, STRIDE = 24, BUFFERS = 3, NEVER = 1000000 };
 
@@ -123,9 +118,8 @@ static void check_next(t3r_capture *capture, uint32_t sequence)
                 frame.frame.planes[0] < library.memory[0] + sizeof library.memory);
 }
 
-static void frames_come_without_a_copy(void **state)
+TEST(frames_come_without_a_copy)
 {
-    (void)state;
     char error[256] = "";
     start();
     library.skip_at = 4;
@@ -146,9 +140,8 @@ static void frames_come_without_a_copy(void **state)
     assert_int_equal(library.opened, 0);
 }
 
-static void what_cannot_be_read_is_refused(void **state)
+TEST(what_cannot_be_read_is_refused)
 {
-    (void)state;
     char error[256] = "";
     start();
     library.refuses = "another program captures from it";
@@ -173,9 +166,8 @@ static void what_cannot_be_read_is_refused(void **state)
     assert_non_null(strstr(error, "no depth"));
 }
 
-static void lost_cameras_are_told_and_come_back(void **state)
+TEST(lost_cameras_are_told_and_come_back)
 {
-    (void)state;
     static const char *const words[] = {"unplugged", "takes no buffers", "takes no buffers", "no image for"};
     uint32_t *const at[] = {&library.gone_at, &library.refuse_queue_at, &library.cancel_at, &library.still_at};
     for (int i = 0; i < 4; i++) {
@@ -205,14 +197,4 @@ static void lost_cameras_are_told_and_come_back(void **state)
         t3r_capture_close(capture);
         assert_int_equal(library.opened, 0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_come_without_a_copy),
-        cmocka_unit_test(what_cannot_be_read_is_refused),
-        cmocka_unit_test(lost_cameras_are_told_and_come_back),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

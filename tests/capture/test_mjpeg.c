@@ -1,22 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Motion JPEG: pictures that a camera compressed, with and without Huffman tables, and damaged ones. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <jpeglib.h>
 
-#include <cmocka.h>
-
 #include "capture/capture_adapter.h"
 #include "capture/mjpeg.h"
 #include "capture/v4l2.h"
 #include "fake_v4l2.h"
 #include "mcap/reader_limits.h"
+#include "test.h"
 
 enum { WIDTH = 32, HEIGHT = 16 };
 
@@ -86,9 +81,8 @@ static void check(const uint8_t *rgb, uint32_t number)
     }
 }
 
-static void pictures_are_decoded_with_and_without_tables(void **state)
+TEST(pictures_are_decoded_with_and_without_tables)
 {
-    (void)state;
     uint8_t jpeg[4096], rgb[WIDTH * HEIGHT * 3], again[WIDTH * HEIGHT * 3];
     t3r_mjpeg *decoder = t3r_mjpeg_open();
     assert_non_null(decoder);
@@ -111,9 +105,8 @@ static void pictures_are_decoded_with_and_without_tables(void **state)
 
 /* Progressive, in as many scans as asked: after the means one coefficient of one colour each, by a bit more each time.
  */
-static void many_scans_are_refused_early(void **state)
+TEST(many_scans_are_refused_early)
 {
-    (void)state;
     uint8_t rgb[WIDTH * HEIGHT * 3];
     t3r_mjpeg *decoder = t3r_mjpeg_open();
     assert_non_null(decoder);
@@ -170,9 +163,8 @@ static uint32_t fill(void *user, const fake_node *node, uint32_t number, uint8_t
     return bytes;
 }
 
-static void a_camera_of_motion_jpeg_is_captured(void **state)
+TEST(a_camera_of_motion_jpeg_is_captured)
 {
-    (void)state;
     fake_v4l2 fake;
     fake_start(&fake);
     fake.node[0].formats[0] = V4L2_PIX_FMT_MJPEG;
@@ -205,14 +197,4 @@ static void a_camera_of_motion_jpeg_is_captured(void **state)
     assert_int_equal(t3r_capture_counts_of(capture).corrupted, 1);
     t3r_capture_close(capture);
     assert_true(fake_clean(&fake));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pictures_are_decoded_with_and_without_tables),
-        cmocka_unit_test(many_scans_are_refused_early),
-        cmocka_unit_test(a_camera_of_motion_jpeg_is_captured),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Trajectories: parsing, interpolation between poses, and the offset of two clocks found from moving pictures. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "capture/clock_offset.h"
 #include "import/poses/trajectory.h"
+#include "test.h"
 
 /* ---- reading ---- */
 
@@ -36,9 +31,8 @@ static void refused(const char *text, const char *words)
     }
 }
 
-static void lines_are_read_to_the_nanosecond(void **state)
+TEST(lines_are_read_to_the_nanosecond)
 {
-    (void)state;
     trajectory t;
     parsed("# comment\n1305031102.175304001 1 2 3 0 0 0 1\n\n1305031102.1 -1 -2 -3 0.5 0.5 0.5 0.5 \r\n", &t);
     assert_string_equal(t.kind, "TUM");
@@ -73,9 +67,8 @@ static void lines_are_read_to_the_nanosecond(void **state)
     refused("39999999999999999999,1,2,3,1,0,0,0\n", "nanoseconds");
 }
 
-static void poses_are_interpolated_within_a_bracket(void **state)
+TEST(poses_are_interpolated_within_a_bracket)
 {
-    (void)state;
     trajectory t;
     parsed("1.0 0 0 0 0 0 0 1\n1.1 1 2 -4 0 0 0 -1\n2.0 5 5 5 0 0 0 1\n", &t);
     rigid pose;
@@ -90,9 +83,8 @@ static void poses_are_interpolated_within_a_bracket(void **state)
     trajectory_free(&t);
 }
 
-static void times_that_no_integer_holds_have_no_pose(void **state)
+TEST(times_that_no_integer_holds_have_no_pose)
 {
-    (void)state;
     trajectory_pose ends[2] = {{.stamp_ns = -(INT64_C(1) << 62), .pose = {{0}, {1}}},
                                {.stamp_ns = INT64_C(1) << 62, .pose = {{0}, {1}}}};
     const trajectory t = {.poses = ends, .count = 2, .kind = "bag"};
@@ -197,9 +189,8 @@ static int estimate(motion (*path)(double), double ahead_s, double around_s, clo
     return status;
 }
 
-static void the_offset_of_clocks_is_found(void **state)
+TEST(the_offset_of_clocks_is_found)
 {
-    (void)state;
     static const double ahead[] = {0, 0.037, -0.25, 0.6, 1234.5};
     for (size_t i = 0; i < sizeof ahead / sizeof ahead[0]; i++) {
         clock_offset found;
@@ -216,9 +207,8 @@ static void the_offset_of_clocks_is_found(void **state)
     }
 }
 
-static void an_offset_that_cannot_be_told_is_not(void **state)
+TEST(an_offset_that_cannot_be_told_is_not)
 {
-    (void)state;
     clock_offset found;
     char error[256] = "";
     assert_int_equal(estimate(still, 0, 0, &found, error), -1);
@@ -227,16 +217,4 @@ static void an_offset_that_cannot_be_told_is_not(void **state)
     assert_non_null(strstr(error, "not clear"));
     assert_int_equal(estimate(hand_held, 0, 50, &found, error), -1);
     assert_non_null(strstr(error, "outside the trajectory"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(lines_are_read_to_the_nanosecond),
-        cmocka_unit_test(poses_are_interpolated_within_a_bracket),
-        cmocka_unit_test(times_that_no_integer_holds_have_no_pose),
-        cmocka_unit_test(the_offset_of_clocks_is_found),
-        cmocka_unit_test(an_offset_that_cannot_be_told_is_not),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,11 +2,7 @@
 /* A recording whose process is killed, 200 times at random moments, with every way of storing messages: every
  * complete frame is there, and the frames read equal those written. Files that roll over stay within their size
  * limit. */
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,11 +12,10 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "capture/record.h"
 #include "rgbd_frame.h"
 #include "scratch.h"
+#include "test.h"
 
 enum { WIDTH = 48, HEIGHT = 32, KILLS = 200, MOST_FRAMES = 4000 };
 
@@ -95,7 +90,7 @@ static void check_frame(const t3r_recording *recording, uint32_t number)
     assert_memory_equal(&got.camera, &expected.camera, sizeof got.camera);
 }
 
-static void a_killed_process_loses_at_most_the_message_it_was_writing(void **state)
+TEST_WITH(a_killed_process_loses_at_most_the_message_it_was_writing, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     volatile uint32_t *whole = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -144,7 +139,7 @@ static void a_killed_process_loses_at_most_the_message_it_was_writing(void **sta
     munmap((void *)whole, 4096);
 }
 
-static void files_roll_over_within_their_bytes(void **state)
+TEST_WITH(files_roll_over_within_their_bytes, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     static capture_record record;
@@ -188,9 +183,8 @@ static void files_roll_over_within_their_bytes(void **state)
     assert_int_equal(capture_record_end(&record), 0);
 }
 
-static void names_are_numbered_before_their_ending(void **state)
+TEST(names_are_numbered_before_their_ending)
 {
-    (void)state;
     static const char *const cases[][2] = {{"a.mcap", "a-7.mcap"},
                                            {"d.x/a", "d.x/a-7"},
                                            {"d.x/a.b.mcap", "d.x/a.b-7.mcap"},
@@ -205,9 +199,8 @@ static void names_are_numbered_before_their_ending(void **state)
     }
 }
 
-static void a_full_disk_is_told(void **state)
+TEST(a_full_disk_is_told)
 {
-    (void)state;
     static capture_record record;
     int begun = capture_record_begin(&record, "/dev/full", 0, false, "test", "monotonic", 1099511628, &stored);
     assert_int_equal(begun, -1);
@@ -215,16 +208,4 @@ static void a_full_disk_is_told(void **state)
     capture_record_end(&record);
     assert_int_equal(capture_record_begin(&record, "/nowhere/a.mcap", 0, false, "test", "m", 1099511628, &stored), -1);
     assert_non_null(strstr(record.error, "No such file"));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_killed_process_loses_at_most_the_message_it_was_writing, scratch_setup,
-                                        scratch_teardown),
-        cmocka_unit_test_setup_teardown(files_roll_over_within_their_bytes, scratch_setup, scratch_teardown),
-        cmocka_unit_test(names_are_numbered_before_their_ending),
-        cmocka_unit_test(a_full_disk_is_told),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,18 +2,12 @@
 /* A frame's whole path, from a driver to a recording and to Gaussians, allocates no memory once it runs: this
  * program's allocator counts. And the live results equal those of the recording's replay, bit for bit. */
 #include <errno.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <time.h>
 #include <unistd.h>
-
-#include <cmocka.h>
 
 #include "capture/capture_adapter.h"
 #include "capture/run.h"
@@ -22,6 +16,7 @@
 #include "fake_v4l2.h"
 #include "room/room.h"
 #include "scratch.h"
+#include "test.h"
 
 /* ---- the allocator: glibc's own, counted; it stands in for the whole process's, the C library included ---- */
 
@@ -74,11 +69,13 @@ enum { WIDTH = 64, HEIGHT = 48, VIEWS = 4 };
 static uint8_t rgb[VIEWS][HEIGHT][WIDTH][3];
 static uint16_t depth_mm[VIEWS][HEIGHT][WIDTH];
 
-static void draw_room(void)
+static int draw_room(void **state)
 {
+    (void)state;
     for (uint32_t i = 0; i < VIEWS; i++) {
         room_frame(i, WIDTH, HEIGHT, 1, &rgb[i][0][0][0], &depth_mm[i][0][0]);
     }
+    return 0;
 }
 
 /* Each format's own samples of the picture; what they mean does not matter here. */
@@ -171,7 +168,7 @@ static int counted_next(t3r_capture *capture, t3r_capture_frame *frame)
     return got;
 }
 
-static void nothing_is_allocated_once_it_runs(void **state)
+TEST_WITH(nothing_is_allocated_once_it_runs, scratch_setup, scratch_teardown)
 {
     if (!COUNTS) {
         skip();
@@ -220,7 +217,7 @@ static void nothing_is_allocated_once_it_runs(void **state)
     trajectory_free(&poses);
 }
 
-static void memory_stays_the_same_over_ten_thousand_frames(void **state)
+TEST(memory_stays_the_same_over_ten_thousand_frames)
 {
     if (!COUNTS) {
         skip();
@@ -241,7 +238,7 @@ static void memory_stays_the_same_over_ten_thousand_frames(void **state)
     t3r_capture_close(capture);
 }
 
-static void a_recording_replays_what_was_live(void **state)
+TEST_WITH(a_recording_replays_what_was_live, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     static const uint32_t fourccs[] = {V4L2_PIX_FMT_YUYV,  V4L2_PIX_FMT_UYVY,  V4L2_PIX_FMT_NV12,
@@ -310,9 +307,8 @@ static void a_recording_replays_what_was_live(void **state)
 }
 
 /* The first image has no depth: the first frame that is kept sets the room for kept frames. */
-static void a_build_begins_with_the_first_frame_that_it_uses(void **state)
+TEST(a_build_begins_with_the_first_frame_that_it_uses)
 {
-    (void)state;
     for (uint32_t every = 0; every < 2; every++) {
         fake_v4l2 fake;
         start_camera(&fake, V4L2_PIX_FMT_YUYV);
@@ -347,9 +343,8 @@ static void a_build_begins_with_the_first_frame_that_it_uses(void **state)
 }
 
 /* Only the rows of a frame are read: memory after the last row's samples faults. */
-static void kept_frames_are_read_by_their_rows(void **state)
+TEST(kept_frames_are_read_by_their_rows)
 {
-    (void)state;
     enum { STRIDE = WIDTH * 3 + 32, BYTES = STRIDE * (HEIGHT - 1) + WIDTH * 3 };
     size_t page = (size_t)sysconf(_SC_PAGESIZE), whole = (BYTES + page - 1) / page * page;
     uint8_t *memory = mmap(NULL, whole + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -386,7 +381,7 @@ static void kept_frames_are_read_by_their_rows(void **state)
 }
 
 /* No latency is added between a frame's stamp and its replay, however recently it was recorded. */
-static void a_replay_has_no_latency(void **state)
+TEST_WITH(a_replay_has_no_latency, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     char recording[600], error[256] = "";
@@ -413,7 +408,7 @@ static void a_replay_has_no_latency(void **state)
 }
 
 /* Repeated until its clock is full a recording ends with a reason; no stamp goes back. */
-static void a_repeated_recording_ends_with_its_clock(void **state)
+TEST_WITH(a_repeated_recording_ends_with_its_clock, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     char recording[600], error[256] = "";
@@ -447,7 +442,7 @@ static void a_repeated_recording_ends_with_its_clock(void **state)
 
 /* A camera that never gives a frame, although it is reopened again and again, is given up in the end, and the
  * recording is complete. */
-static void a_camera_that_stands_still_for_good_is_given_up(void **state)
+TEST_WITH(a_camera_that_stands_still_for_good_is_given_up, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     char recording[600], error[256] = "", message[256] = "";
@@ -472,19 +467,4 @@ static void a_camera_that_stands_still_for_good_is_given_up(void **state)
     t3r_recording_close(bag);
 }
 
-int main(void)
-{
-    draw_room();
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(nothing_is_allocated_once_it_runs, scratch_setup, scratch_teardown),
-        cmocka_unit_test(memory_stays_the_same_over_ten_thousand_frames),
-        cmocka_unit_test_setup_teardown(a_recording_replays_what_was_live, scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(a_replay_has_no_latency, scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(a_repeated_recording_ends_with_its_clock, scratch_setup, scratch_teardown),
-        cmocka_unit_test(kept_frames_are_read_by_their_rows),
-        cmocka_unit_test(a_build_begins_with_the_first_frame_that_it_uses),
-        cmocka_unit_test_setup_teardown(a_camera_that_stands_still_for_good_is_given_up, scratch_setup,
-                                        scratch_teardown),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+ALL_TESTS_WITH(draw_room, NULL)

@@ -1,17 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A source's name never contains a password, a token or a folder. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "capture/source_name.h"
+#include "test.h"
 
-static void names_hold_no_credentials_and_no_folders(void **state)
+TEST(names_hold_no_credentials_and_no_folders)
 {
-    (void)state;
     static const char *const pairs[][2] = {
         {"replay:/home/me/rec.mcap", "replay:rec.mcap"},
         {"replay:rec.mcap", "replay:rec.mcap"},
@@ -38,10 +31,4 @@ static void names_hold_no_credentials_and_no_folders(void **state)
     char cut[8];
     t3r_source_name("opencv:rtsp://camera", cut, sizeof cut);
     assert_string_equal(cut, "opencv:");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(names_hold_no_credentials_and_no_folders)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,19 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* V4L2 capture over a driver in this process: negotiation, delivery, and every way to fail. */
 #include <errno.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "capture/capture_adapter.h"
 #include "capture/v4l2.h"
 #include "fake_v4l2.h"
+#include "test.h"
 
 enum { MOST_EVENTS = 512 };
 
@@ -119,9 +114,8 @@ static void take_number(const fake_v4l2 *fake, t3r_capture *capture, uint32_t nu
 
 /* ---- formats ---- */
 
-static void every_format_comes_as_it_is_and_without_a_copy(void **state)
+TEST(every_format_comes_as_it_is_and_without_a_copy)
 {
-    (void)state;
     static const struct {
         uint32_t fourcc;
         t3r_pixel_format format;
@@ -155,9 +149,8 @@ static void every_format_comes_as_it_is_and_without_a_copy(void **state)
     }
 }
 
-static void sizes_rates_and_wishes_choose_the_format(void **state)
+TEST(sizes_rates_and_wishes_choose_the_format)
 {
-    (void)state;
     fake_v4l2 fake;
     fake_start(&fake);
     fake_node *node = &fake.node[0];
@@ -213,9 +206,8 @@ static void sizes_rates_and_wishes_choose_the_format(void **state)
     refused(&fake, &settings, "no streaming");
 }
 
-static void a_call_that_fails_while_opening_is_told_and_leaves_nothing(void **state)
+TEST(a_call_that_fails_while_opening_is_told_and_leaves_nothing)
 {
-    (void)state;
     static const struct {
         unsigned long call;
         int error;
@@ -263,9 +255,8 @@ static void a_call_that_fails_while_opening_is_told_and_leaves_nothing(void **st
 
 /* ---- what goes wrong while it streams ---- */
 
-static void damaged_images_are_left_out_counted_and_named(void **state)
+TEST(damaged_images_are_left_out_counted_and_named)
 {
-    (void)state;
     fake_v4l2 fake;
     fake_start(&fake);
     fake.node[0].flag_error_at = 3;
@@ -286,9 +277,8 @@ static void damaged_images_are_left_out_counted_and_named(void **state)
     finish(&fake, capture);
 }
 
-static void gaps_are_the_drivers_or_the_callers(void **state)
+TEST(gaps_are_the_drivers_or_the_callers)
 {
-    (void)state;
     fake_v4l2 fake;
     fake_start(&fake);
     fake.node[0].first_sequence = UINT32_MAX - 5; /* the count goes over its end */
@@ -318,9 +308,8 @@ static void gaps_are_the_drivers_or_the_callers(void **state)
     finish(&fake, capture);
 }
 
-static void every_wait_ends(void **state)
+TEST(every_wait_ends)
 {
-    (void)state;
     fake_v4l2 fake;
     fake_start(&fake);
     fake.node[0].stall_at = 2;
@@ -369,9 +358,8 @@ static void every_wait_ends(void **state)
     finish(&fake, capture);
 }
 
-static void lost_devices_are_told_and_come_back(void **state)
+TEST(lost_devices_are_told_and_come_back)
 {
-    (void)state;
     static const char *const words[] = {"No such device", "Input/output", "its format changed", "did not hold"};
     for (int i = 0; i < 4; i++) {
         fake_v4l2 fake;
@@ -405,9 +393,8 @@ static void lost_devices_are_told_and_come_back(void **state)
     }
 }
 
-static void passing_errors_cost_no_frame_but_are_told(void **state)
+TEST(passing_errors_cost_no_frame_but_are_told)
 {
-    (void)state;
     fake_v4l2 fake;
     fake_start(&fake);
     t3r_capture *capture = open_small(&fake);
@@ -443,9 +430,8 @@ static void passing_errors_cost_no_frame_but_are_told(void **state)
     finish(&fake, capture);
 }
 
-static void stamps_without_a_clock_are_taken_on_arrival(void **state)
+TEST(stamps_without_a_clock_are_taken_on_arrival)
 {
-    (void)state;
     fake_v4l2 fake;
     fake_start(&fake);
     fake.node[0].timestamp_flags = V4L2_BUF_FLAG_TIMESTAMP_COPY;
@@ -475,9 +461,8 @@ static void check_pair(const t3r_capture_frame *frame, uint32_t colour, uint32_t
     assert_int_equal(frame->frame.depth_unit_q40, T3R_DEFAULT_DEPTH_UNIT_Q40);
 }
 
-static void images_of_one_instant_are_paired(void **state)
+TEST(images_of_one_instant_are_paired)
 {
-    (void)state;
     static const int64_t offsets_ms[] = {0, 4, -4, 12, -12};
     for (size_t k = 0; k < sizeof offsets_ms / sizeof offsets_ms[0]; k++) {
         fake_v4l2 fake;
@@ -499,9 +484,8 @@ static void images_of_one_instant_are_paired(void **state)
     }
 }
 
-static void images_without_companions_are_told(void **state)
+TEST(images_without_companions_are_told)
 {
-    (void)state;
     fake_v4l2 fake;
     fake_start(&fake);
     fake_add_depth(&fake);
@@ -538,9 +522,8 @@ static void images_without_companions_are_told(void **state)
     finish(&fake, capture);
 }
 
-static void a_still_depth_camera_does_not_hold_colour_up(void **state)
+TEST(a_still_depth_camera_does_not_hold_colour_up)
 {
-    (void)state;
     fake_v4l2 fake;
     fake_start(&fake);
     fake_add_depth(&fake);
@@ -592,9 +575,8 @@ static void a_still_depth_camera_does_not_hold_colour_up(void **state)
 
 /* ---- every call fails once ---- */
 
-static void no_failed_call_hangs_leaks_or_loses_a_frame_untold(void **state)
+TEST(no_failed_call_hangs_leaks_or_loses_a_frame_untold)
 {
-    (void)state;
     static const int errors[] = {EIO, ENODEV, EINVAL, EAGAIN, ENOMEM, EINTR};
     uint32_t opened = 0;
     for (size_t e = 0; e < sizeof errors / sizeof errors[0]; e++) {
@@ -640,24 +622,4 @@ static void no_failed_call_hangs_leaks_or_loses_a_frame_untold(void **state)
         }
     }
     assert_true(opened > 600);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_format_comes_as_it_is_and_without_a_copy),
-        cmocka_unit_test(sizes_rates_and_wishes_choose_the_format),
-        cmocka_unit_test(a_call_that_fails_while_opening_is_told_and_leaves_nothing),
-        cmocka_unit_test(damaged_images_are_left_out_counted_and_named),
-        cmocka_unit_test(gaps_are_the_drivers_or_the_callers),
-        cmocka_unit_test(every_wait_ends),
-        cmocka_unit_test(lost_devices_are_told_and_come_back),
-        cmocka_unit_test(passing_errors_cost_no_frame_but_are_told),
-        cmocka_unit_test(stamps_without_a_clock_are_taken_on_arrival),
-        cmocka_unit_test(images_of_one_instant_are_paired),
-        cmocka_unit_test(images_without_companions_are_told),
-        cmocka_unit_test(a_still_depth_camera_does_not_hold_colour_up),
-        cmocka_unit_test(no_failed_call_hangs_leaks_or_loses_a_frame_untold),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,7 +11,9 @@ import tempfile
 import xml.dom.minidom
 import zlib
 
-from common import built_in, check, done, made_up, run
+from checks import check, done, run
+from common import built_in, made_up
+from png import png
 
 trim3r = sys.argv[1]
 INPUT, USAGE = 1, 2
@@ -95,13 +97,9 @@ def reports(folder):
 
 def noise(path, side, seed):
     """A PNG that does not pack."""
-    def chunk(kind, body):
-        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
     dice = random.Random(seed)
-    rows = b"".join(b"\0" + dice.randbytes(3 * side) for _ in range(side))
     with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 8, 2, 0, 0, 0)) +
-                   chunk(b"IDAT", zlib.compress(rows, 0)) + chunk(b"IEND", b""))
+        file.write(png([dice.randbytes(3 * side) for _ in range(side)], level=0))
 
 
 def small_reports(folder):

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the scripts of this folder share."""
 import os
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-import browser  # noqa: E402, F401
-from checks import check, done, run, skip  # noqa: E402, F401
+import browser  # noqa: F401
+from checks import check, done, run, skip  # noqa: F401
 
 HEADING = ("scene,context,target,method,head,bits,refine,wavelet,keep,gaussians,psnr,ssim,build_ms,render_ms,arena_bytes,"
            "scene_bytes,unknown\n")

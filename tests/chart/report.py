@@ -5,7 +5,9 @@ light and dark, a phone; no errors, no requests. With FOLDER, what it looks like
 import sys
 import tempfile
 
-from common import browser, built_in, check, done, made_up, run, skip
+import browser
+from checks import check, done, run, skip
+from common import built_in, made_up
 
 trim3r = sys.argv[1]
 looks = sys.argv[2] if len(sys.argv) > 2 else None

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Ticks of every kind of axis: few, round, ascending, within the range, each with a name of its own. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "study/chart/axis.h"
+#include "test.h"
 
 /* Names may repeat where 15 digits end. */
 static void check(chart_measure measure, double least, double most, bool named)
@@ -30,9 +26,8 @@ static void check(chart_measure measure, double least, double most, bool named)
     assert_true(fabs(low) < 1e-9 && fabs(high - 1) < 1e-9);
 }
 
-static void test_every_range(void **state)
+TEST(test_every_range)
 {
-    (void)state;
     static const double values[] = {0,  1e-15, 1e-9, 0.003, 0.02, 0.5, 0.51, 1,   1.0001, 4.9, 5.1, 31.2,   31.25,
                                     99, 100,   1023, 1024,  1025, 5e3, 65e3, 1e6, 3.9e6,  4e7, 1e9, 1.1e12, 1e15};
     for (int m = 0; m < CHART_COSTS_END; m++) {
@@ -57,9 +52,8 @@ static void expect(chart_measure measure, double least, double most, const char 
     assert_string_equal(text, labels);
 }
 
-static void test_names(void **state)
+TEST(test_names)
 {
-    (void)state;
     expect(CHART_PSNR, 12, 31, "15 dB|20 dB|25 dB|30 dB");
     expect(CHART_PSNR, 30.1, 30.9, "30.2 dB|30.4 dB|30.6 dB|30.8 dB");
     expect(CHART_SSIM, 0.71, 0.95, "0.7|0.75|0.8|0.85|0.9|0.95");
@@ -70,9 +64,8 @@ static void test_names(void **state)
     expect(CHART_SCENE_BYTES, 1048576, 3 * 1048576, "1 MiB|1.5 MiB|2 MiB|2.5 MiB|3 MiB");
 }
 
-static void test_kinds(void **state)
+TEST(test_kinds)
 {
-    (void)state;
     assert_true(chart_axis_make(CHART_BUILD_MS, 1, 10).logarithmic);
     assert_false(chart_axis_make(CHART_BUILD_MS, 1, 4).logarithmic);
     assert_false(chart_axis_make(CHART_BUILD_MS, 0, 1000).logarithmic);
@@ -85,9 +78,8 @@ static void test_kinds(void **state)
     assert_true(fabs(chart_axis_place(&axis, 100) - 0.5) < 1e-9);
 }
 
-static void test_values(void **state)
+TEST(test_values)
 {
-    (void)state;
     static const struct {
         chart_measure measure;
         double value;
@@ -103,15 +95,4 @@ static void test_values(void **state)
         chart_value_text(of[i].measure, of[i].value, text, sizeof text);
         assert_string_equal(text, of[i].text);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_range),
-        cmocka_unit_test(test_names),
-        cmocka_unit_test(test_kinds),
-        cmocka_unit_test(test_values),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The Pareto front against its definition. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "core/fixed.h"
 #include "study/chart/front.h"
+#include "test.h"
 
 enum { MOST = 40 };
 
@@ -23,9 +19,8 @@ static bool takes_part(const chart_place *it)
     return !isnan(it->cost) && !isnan(it->quality);
 }
 
-static void test_agrees_with_the_definition(void **state)
+TEST(test_agrees_with_the_definition)
 {
-    (void)state;
     for (uint32_t trial = 0; trial < 2000; trial++) {
         chart_place all[MOST] = {{0}}, sorted[MOST];
         uint32_t count = t3r_mix32(trial) % MOST, expected = 0;
@@ -54,9 +49,8 @@ static void test_agrees_with_the_definition(void **state)
     }
 }
 
-static void test_small_fronts(void **state)
+TEST(test_small_fronts)
 {
-    (void)state;
     chart_place none[1], one[] = {{3, 4, 7}}, out[] = {{NAN, 4, 0}, {3, NAN, 1}};
     assert_int_equal(chart_front(none, 0), 0);
     assert_int_equal(chart_front(one, 1), 1);
@@ -65,13 +59,4 @@ static void test_small_fronts(void **state)
     chart_place endless[] = {{INFINITY, 9, 0}, {1, 8, 1}};
     assert_int_equal(chart_front(endless, 2), 2);
     assert_int_equal(endless[0].index, 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_agrees_with_the_definition),
-        cmocka_unit_test(test_small_fronts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

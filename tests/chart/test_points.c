@@ -1,19 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Tables to points: grouping, means over scenes, quartiles, what is on the front, names. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "study/chart/names.h"
 #include "study/chart/points.h"
 #include "study/chart/table.h"
 #include "study/chart/view.h"
+#include "test.h"
 
 #define HEADING "scene,context,target,method,head,bits,refine,keep,psnr,build_ms\n"
 
@@ -38,9 +34,8 @@ static const char *text_of(const chart_points *points, uint32_t point, chart_set
     return points->table->texts.text[points->points[point].setting[setting]];
 }
 
-static void test_each_scene_counts_once(void **state)
+TEST(test_each_scene_counts_once)
 {
-    (void)state;
     chart_table table = {0};
     chart_points points;
     read_text(&table, HEADING "a,\"0,2\",1,trim3r,small,8,4,10,20,100\n"
@@ -67,9 +62,8 @@ static void test_each_scene_counts_once(void **state)
     chart_table_free(&table);
 }
 
-static void test_a_measurement_made_again_is_one(void **state)
+TEST(test_a_measurement_made_again_is_one)
 {
-    (void)state;
     chart_table table = {0};
     chart_points points;
     read_text(&table, HEADING "a,0,1,trim3r,,,,10,20,100\na,0,1,trim3r,,,,10,,400\na,0,2,trim3r,,,,10,40,100\n");
@@ -84,18 +78,16 @@ static void test_a_measurement_made_again_is_one(void **state)
     chart_table_free(&table);
 }
 
-static void test_quartiles(void **state)
+TEST(test_quartiles)
 {
-    (void)state;
     const double five[] = {1, 2, 4, 8, 16}, two[] = {1, 3};
     assert_true(chart_quantile(five, 5, 0) == 1 && chart_quantile(five, 5, 0.25) == 2);
     assert_true(chart_quantile(five, 5, 0.5) == 4 && chart_quantile(five, 5, 1) == 16);
     assert_true(chart_quantile(two, 2, 0.25) == 1.5 && chart_quantile(two, 1, 0.75) == 1);
 }
 
-static void test_front_is_among_the_complete(void **state)
+TEST(test_front_is_among_the_complete)
 {
-    (void)state;
     chart_table table = {0};
     chart_points points;
     chart_view view;
@@ -121,9 +113,8 @@ static void test_front_is_among_the_complete(void **state)
     chart_table_free(&table);
 }
 
-static void test_less_difference_is_better(void **state)
+TEST(test_less_difference_is_better)
 {
-    (void)state;
     chart_table table = {0};
     chart_points points;
     chart_view view;
@@ -137,9 +128,8 @@ static void test_less_difference_is_better(void **state)
     chart_table_free(&table);
 }
 
-static void test_names_tell_what_differs(void **state)
+TEST(test_names_tell_what_differs)
 {
-    (void)state;
     chart_table table = {0};
     chart_points points;
     chart_names names;
@@ -155,7 +145,7 @@ static void test_names_tell_what_differs(void **state)
         "trim3r \xC2\xB7 analytic",
         "pup",
         "pup+finetune",
-        "trim3r \xC2\xB7 head not told \xC2\xB7 bits not told \xC2\xB7 refine not told"};
+        "trim3r \xC2\xB7 head not given \xC2\xB7 bits not given \xC2\xB7 refine not given"};
     assert_int_equal(points.series_count, 6);
     for (uint32_t s = 0; s < 6; s++) {
         assert_string_equal(names.series[s].text, expected[s]);
@@ -172,9 +162,8 @@ static void test_names_tell_what_differs(void **state)
     chart_table_free(&table);
 }
 
-static void test_refusals(void **state)
+TEST(test_refusals)
 {
-    (void)state;
     static const struct {
         const char *text, *why;
     } of[] = {
@@ -209,9 +198,8 @@ static void test_refusals(void **state)
     chart_table_free(&fine);
 }
 
-static void test_no_more_points_than_a_chart_takes(void **state)
+TEST(test_no_more_points_than_a_chart_takes)
 {
-    (void)state;
     char *text = NULL, error[256] = "";
     size_t bytes = 0;
     FILE *out = open_memstream(&text, &bytes);
@@ -228,19 +216,4 @@ static void test_no_more_points_than_a_chart_takes(void **state)
     assert_string_equal(error, "the tables have 2001 points, a chart takes at most 2000");
     chart_table_free(&table);
     free(text);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_each_scene_counts_once),
-        cmocka_unit_test(test_a_measurement_made_again_is_one),
-        cmocka_unit_test(test_quartiles),
-        cmocka_unit_test(test_front_is_among_the_complete),
-        cmocka_unit_test(test_less_difference_is_better),
-        cmocka_unit_test(test_names_tell_what_differs),
-        cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_no_more_points_than_a_chart_takes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,9 +11,9 @@ import subprocess
 import sys
 import tempfile
 
+from checks import check, done, run
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
-from checks import check, done, run  # noqa: E402
 
 FOLDER, DATA = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 HERE = pathlib.Path(__file__).resolve().parent

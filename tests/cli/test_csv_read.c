@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Tables of anyone's making: what is read, and what is refused with its line. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "cli/tables/csv_read.h"
+#include "test.h"
 
 static csv_reader reader;
 
@@ -36,9 +32,8 @@ static void open_text(const char *text)
     csv_reader_open(&reader, "t.csv", text, strlen(text));
 }
 
-static void test_cells(void **state)
+TEST(test_cells)
 {
-    (void)state;
     open_text("\xEF\xBB\xBF"
               "a,b,\r\n\n\"x,\"\"y\"\"\",\"two\nlines\",\xC3\xA9\n,,\n\"\"\nlast");
     expect_row(1, 3, (const char *const[]){"a", "b", ""});
@@ -67,9 +62,8 @@ static void refuse(const char *text, size_t bytes, const char *why)
     assert_string_equal(error, why);
 }
 
-static void test_refusals(void **state)
+TEST(test_refusals)
 {
-    (void)state;
     refuse("a\n\"b", 4, "t.csv:2: a quote that is not closed");
     refuse("a\n\n\"b\nc\"d", 9, "t.csv:3: text behind a quoted cell");
     refuse("\"b\" ,", 5, "t.csv:1: text behind a quoted cell");
@@ -85,9 +79,8 @@ static void test_refusals(void **state)
     }
 }
 
-static void test_bounds(void **state)
+TEST(test_bounds)
 {
-    (void)state;
     char *text = malloc(CSV_ROW_BYTES_MOST + 1), error[256];
     assert_non_null(text);
     memset(text, 'x', CSV_ROW_BYTES_MOST + 1);
@@ -103,9 +96,8 @@ static void test_bounds(void **state)
     free(text);
 }
 
-static void test_numbers(void **state)
+TEST(test_numbers)
 {
-    (void)state;
     double value;
     bool given;
     static const char *const none[] = {"x",    "1x", " 1", "1 ",  "0x10", "inf", "-inf",   "1e999",
@@ -122,15 +114,4 @@ static void test_numbers(void **state)
     assert_int_equal(csv_number("-2.5e1", &value, &given), 0);
     assert_true(given && value == -25);
     assert_int_equal(csv_number("1e-320", &value, &given), 0); /* tiny is a number */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cells),
-        cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_bounds),
-        cmocka_unit_test(test_numbers),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,53 +1,32 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The time left of work of which a part was there already. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include "cli/text/time_left.h"
+#include "test.h"
 
 #define EXACT 1e-9
 
-static void by_the_rate_so_far(void **state)
+TEST(by_the_rate_so_far)
 {
-    (void)state;
     assert_float_equal(cli_time_left(0, 1, 4, 2), 6, EXACT);
     assert_float_equal(cli_time_left(0, 3, 4, 6), 2, EXACT);
     assert_float_equal(cli_time_left(0, 4, 4, 8), 0, EXACT);
 }
 
-static void what_was_there_took_no_time(void **state)
+TEST(what_was_there_took_no_time)
 {
-    (void)state;
     assert_float_equal(cli_time_left(300, 310, 400, 20), 180, EXACT);
     assert_float_equal(cli_time_left(0, 310, 400, 20), 20.0 / 310 * 90, EXACT);
     assert_float_equal(cli_time_left(4, 4, 4, 1), 0, EXACT);
 }
 
-static void nothing_is_known_before_the_first(void **state)
+TEST(nothing_is_known_before_the_first)
 {
-    (void)state;
     assert_true(cli_time_left(0, 0, 4, 1) < 0);
     assert_true(cli_time_left(300, 300, 400, 1) < 0);
     assert_true(cli_time_left(301, 300, 400, 1) < 0);
 }
 
-static void largest_counts(void **state)
+TEST(largest_counts)
 {
-    (void)state;
     assert_float_equal(cli_time_left(UINT32_MAX - 3, UINT32_MAX - 2, UINT32_MAX, 5), 10, EXACT);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(by_the_rate_so_far),
-        cmocka_unit_test(what_was_there_took_no_time),
-        cmocka_unit_test(nothing_is_known_before_the_first),
-        cmocka_unit_test(largest_counts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,19 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Values on the command line: lists, percentages, sizes, budgets, hashes. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
-#include <stdint.h>
-
 #include "cli/cli.h"
 #include "cli/tables/json_output.h"
 #include "reconstruction/reconstruction.h"
+#include "test.h"
 
-static void parses_lists(void **state)
+TEST(parses_lists)
 {
-    (void)state;
     uint32_t values[3], count = 0;
     assert_int_equal(cli_parse_list_u32("0,2", values, 3, &count), 0);
     assert_int_equal(count, 2);
@@ -27,9 +20,8 @@ static void parses_lists(void **state)
     }
 }
 
-static void parses_percentages(void **state)
+TEST(parses_percentages)
 {
-    (void)state;
     double values[3];
     uint32_t count = 0;
     assert_int_equal(cli_parse_list_percent("100,12.5%,.5", values, 3, &count), 0);
@@ -42,9 +34,8 @@ static void parses_percentages(void **state)
     }
 }
 
-static void parses_sizes(void **state)
+TEST(parses_sizes)
 {
-    (void)state;
     uint32_t width = 0, height = 0;
     assert_int_equal(cli_parse_size("640x480", &width, &height), 0);
     assert_true(width == 640 && height == 480);
@@ -56,9 +47,8 @@ static void parses_sizes(void **state)
     assert_true(width == 640 && height == 480);
 }
 
-static void rounds_budgets_half_up(void **state)
+TEST(rounds_budgets_half_up)
 {
-    (void)state;
     assert_int_equal(reconstruction_budget(131072, 10), 13107);
     assert_int_equal(reconstruction_budget(131072, 100), 131072);
     assert_int_equal(reconstruction_budget(5, 10), 1);  /* 0.5 */
@@ -67,9 +57,8 @@ static void rounds_budgets_half_up(void **state)
     assert_int_equal(reconstruction_budget(1, 0.001), 1);
 }
 
-static void reads_and_writes_hashes(void **state)
+TEST(reads_and_writes_hashes)
 {
-    (void)state;
     char text[HASH_TEXT_BYTES];
     uint64_t hash = 0;
     hash_text(UINT64_C(0x0123456789abcdef), text);
@@ -83,9 +72,8 @@ static void reads_and_writes_hashes(void **state)
     }
 }
 
-static void scales_cameras_with_the_picture(void **state)
+TEST(scales_cameras_with_the_picture)
 {
-    (void)state;
     t3r_camera camera = {.fx_q16 = 200 << 16,
                          .fy_q16 = 100 << 16,
                          .cx_q16 = (255 << 16) / 2,
@@ -102,17 +90,4 @@ static void scales_cameras_with_the_picture(void **state)
     assert_int_equal(half.fy_q16, 25 << 16);
     assert_int_equal(half.cx_q16, (127 << 16) / 2); /* the middle stays the middle */
     assert_int_equal(half.cy_q16, 8192 - 32768);    /* half a pixel from the edge is an eighth now */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(parses_lists),
-        cmocka_unit_test(parses_percentages),
-        cmocka_unit_test(parses_sizes),
-        cmocka_unit_test(rounds_budgets_half_up),
-        cmocka_unit_test(reads_and_writes_hashes),
-        cmocka_unit_test(scales_cameras_with_the_picture),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

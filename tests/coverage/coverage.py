@@ -31,10 +31,10 @@ Made by `tests/coverage/coverage.py --write` with gcov {version}. A branch is on
 without optimization: `if (a && b)` has four. At night a test counts anew: at least {least} % must be taken, and
 [uncovered.txt](../../tests/coverage/uncovered.txt) must explain each of the others.
 
-What runs are the programs in C of `tests/unit`, `tests/oracle`, `tests/workers`, `tests/kernels` and `tests/formats`, the
-driver of the golden hashes, and `trim3r` on the built-in room. Fuzzers and tests on recorded scenes do not count. Kernels for
-vector instructions are left out: gcov counts functions that must be inlined once for each caller, and `tests/kernels`
-compares each kernel with plain C.
+What runs are the programs in C of `tests/unit`, `tests/oracle`, `tests/workers`, `tests/kernels`, `tests/formats` and
+`tests/planning`, the driver of the golden hashes, and `trim3r` on the built-in room. Fuzzers and tests on recorded scenes do
+not count. Kernels for vector instructions are left out: gcov counts functions that must be inlined once for each caller, and
+`tests/kernels` compares each kernel with plain C.
 
 Of {all} branches {taken} are taken, {share:.2f} %.
 

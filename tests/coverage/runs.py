@@ -7,7 +7,7 @@ import sys
 
 import branches
 
-AREAS = ("unit", "oracle", "workers", "kernels", "formats")
+AREAS = ("unit", "oracle", "workers", "kernels", "formats", "planning")
 GOLDEN_WAYS = ([], ["--arena", "min", "--tasks", "reverse", "--workers", "3"], ["--moved"], ["--cpu-mask", "all"])
 
 HEADS = ("none", "analytic", "tiny", "small")
@@ -25,7 +25,7 @@ def quiet(*command, cwd=None):
 def build(folder):
     jobs = str(os.cpu_count())
     options = {"T3R_COVERAGE": "ON", "T3R_TESTS": "ON", "T3R_SHARED": "OFF", "T3R_PYTHON_PACKAGE": "OFF", "T3R_LIBCAMERA": "OFF",
-               "T3R_OPENCV": "OFF", "CMAKE_BUILD_TYPE": "None",
+               "T3R_OPENCV": "OFF", "T3R_POSES": "OFF", "CMAKE_BUILD_TYPE": "None",
                "CMAKE_C_FLAGS": "-O1 -U__OPTIMIZE__"} # variants that only an optimized runtime has are not asked for
     quiet("cmake", "-G", "Unix Makefiles", "-Wno-dev", "-S", branches.ROOT, "-B", folder,
           *(f"-D{name}={value}" for name, value in options.items()))

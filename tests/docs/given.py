@@ -7,9 +7,9 @@ import shutil
 import struct
 import subprocess
 import zipfile
-import zlib
 
 import pages
+from png import png
 
 SIDE = 40, 30  # of made-up pictures
 ROOM = 64  # side of the room.mcap that most pages begin with
@@ -153,15 +153,8 @@ def npy(shape, values):
 
 
 def write_png(path, bits, channels, value, side=SIDE):
-    raw = b"".join(b"\0" + b"".join(struct.pack(f">{channels}{'H' if bits == 16 else 'B'}", *value(x, y))
-                                    for x in range(side[0])) for y in range(side[1]))
-
-    def chunk(kind, body):
-        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-
-    header = struct.pack(">IIBBBBB", *side, bits, 2 if channels == 3 else 0, 0, 0, 0)
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(raw)) +
-                     chunk(b"IEND", b""))
+    path.write_bytes(png([b"".join(struct.pack(f">{channels}{'H' if bits == 16 else 'B'}", *value(x, y))
+                                   for x in range(side[0])) for y in range(side[1])], bits, channels))
 
 
 def write_json(path, value):

@@ -6,7 +6,8 @@ import json
 import sys
 import tempfile
 
-from common import done, near, need_numpy, run
+from checks import done, near, run
+from common import need_numpy
 
 numpy, cv2 = need_numpy()
 PPD = 67.0

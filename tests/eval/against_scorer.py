@@ -6,7 +6,8 @@ import json
 import sys
 import tempfile
 
-from common import check, done, load_scorer, near, need_numpy, run, skip
+from checks import check, done, near, run, skip
+from common import load_scorer, need_numpy
 
 numpy, cv2 = need_numpy()
 scorer = load_scorer(sys.argv[2])

@@ -4,8 +4,7 @@ import importlib.util
 import os
 import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-from checks import check, done, near, run, skip  # noqa: E402, F401
+from checks import check, done, near, run, skip  # noqa: F401
 
 
 def need_numpy():

@@ -9,7 +9,7 @@ import re
 import sys
 import tempfile
 
-from common import check, done, run
+from checks import check, done, run
 
 trim3r = sys.argv[1]
 NAMES = ["full", "no-adaptation", "no-mask", "random", "random-clusters", "paper-random-clusters", "uniform", "paper",

@@ -10,7 +10,7 @@ import statistics
 import sys
 import tempfile
 
-from common import check, done, run, skip
+from checks import check, done, run, skip
 
 TRIM3R = os.path.abspath(sys.argv[1])
 LOSSES = (0.5, 2)  # dB asked for

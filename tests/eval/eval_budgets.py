@@ -6,7 +6,7 @@ import os
 import sys
 import tempfile
 
-from common import check, done, near, run
+from checks import check, done, near, run
 
 trim3r = os.path.abspath(sys.argv[1])
 ONE = ("--context", "0,2", "--target", 1)

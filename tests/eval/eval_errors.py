@@ -3,12 +3,11 @@
 """eval_errors.py TRIM3R: every wrong use of `trim3r eval` says what and where, with the right exit status."""
 import os
 import resource
-import struct
 import sys
 import tempfile
-import zlib
 
-from common import check, done, run
+from checks import check, done, run
+from png import png
 
 trim3r = sys.argv[1]
 INPUT, USAGE, BUDGET = 1, 2, 3
@@ -20,16 +19,6 @@ def refuse(status, *words_and_arguments):
     result = run(trim3r, "eval", *arguments, expect=status)
     for word in words:
         check(word in result.stderr, f"eval {arguments}: '{word}' is not in: {result.stderr}")
-
-
-def write_grey16(path):
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    rows = b"".join(b"\0" + bytes(2 * 16) for _ in range(16))
-    with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 16, 16, 16, 0, 0, 0, 0)) +
-                   chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -75,7 +64,8 @@ with tempfile.TemporaryDirectory() as folder:
         refuse(INPUT, name, [f"{folder}/{name}", "--keep", "10"])
         refuse(INPUT, name, [room, f"{folder}/{name}", "--keep", "10"])
         refuse(INPUT, name, ["--planar", f"{folder}/{name}", "--keep", "10"])
-    write_grey16(f"{folder}/deep.png")
+    with open(f"{folder}/deep.png", "wb") as file:
+        file.write(png([bytes(2 * 16)] * 16, 16, 1))
     refuse(INPUT, "deep.png", ["--planar", f"{folder}/deep.png", "--size", "8x8", "--keep", "10"])
     refuse(INPUT, "none.png", ["--planar", f"{folder}/none.png", "--keep", "10"])
 

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 
-from common import check, done, run, skip
+from checks import check, done, run, skip
 
 trim3r, snakefile = map(os.path.abspath, sys.argv[1:3])
 if shutil.which("snakemake") is None:

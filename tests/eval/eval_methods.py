@@ -6,7 +6,7 @@ import json
 import sys
 import tempfile
 
-from common import check, done, run
+from checks import check, done, run
 
 trim3r = sys.argv[1]
 INPUT, USAGE, BUDGET = 1, 2, 3

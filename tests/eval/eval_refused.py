@@ -5,12 +5,14 @@ counted, on one process and on several; alone each is an error; where nothing is
 import csv
 import json
 import os
+import pathlib
 import struct
 import sys
 import tempfile
 import zlib
 
-from common import check, done, run
+from checks import check, done, run
+from png import png
 
 trim3r = os.path.abspath(sys.argv[1])
 SIDE = 64
@@ -18,16 +20,6 @@ UNLIKE = ("scene", "build_ms", "render_ms")  # between runs on two recordings
 NO_DEPTH, IN_PLACE, BESIDE = 3, 4, 5  # frames: without depth; where frame 0 was; where NO_DEPTH was
 MEASURED = [((0, 2), 1), ((1, BESIDE), 2)]
 NO_PAIR = ((0, IN_PLACE), 1)  # as far as stereo goes
-
-
-def png(path, depth, colour_type, rows):
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" +
-                   chunk(b"IHDR", struct.pack(">IIBBBBB", SIDE, SIDE, depth, colour_type, 0, 0, 0)) +
-                   chunk(b"IDAT", zlib.compress(b"".join(b"\0" + row for row in rows))) + chunk(b"IEND", b""))
 
 
 def wall(shift):
@@ -43,8 +35,8 @@ def recorded(name, triplets):
     frames = []
     os.makedirs("wall", exist_ok=True)
     for i, place in enumerate([0, 2, 4, 6, 0, 6]):
-        png(f"wall/{i}.png", 8, 2, wall(place))
-        png(f"wall/d{i}.png", 16, 0, [struct.pack(">H", 2000) * SIDE] * SIDE)
+        pathlib.Path(f"wall/{i}.png").write_bytes(png(wall(place)))
+        pathlib.Path(f"wall/d{i}.png").write_bytes(png([struct.pack(">H", 2000) * SIDE] * SIDE, 16, 1))
         frames.append({"file_path": f"{i}.png", "w": SIDE, "h": SIDE, "fl_x": SIDE, "fl_y": SIDE, "cx": SIDE / 2,
                        "cy": SIDE / 2, "transform_matrix": [[1, 0, 0, place * 2 / SIDE], [0, -1, 0, 0], [0, 0, -1, 0],
                                                             [0, 0, 0, 1]]})

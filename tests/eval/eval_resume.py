@@ -8,7 +8,7 @@ import sys
 import tempfile
 import time
 
-from common import check, done, run
+from checks import check, done, run
 
 trim3r = sys.argv[1]
 TIMES = ("build_ms", "render_ms")
@@ -78,6 +78,10 @@ with tempfile.TemporaryDirectory() as folder:
     with open(again, "wb") as file:
         file.write(lines[0] + b"\n" + lines[1].replace(b"trim3r,", b"") + b"\n")
     refuse(1, "again.csv:2", *call, again, "--resume")
+    epoch = lines[1].rsplit(b",", 1)[1]
+    with open(again, "wb") as file:
+        file.write(data.replace(b"," + epoch + b"\n", b",1\n"))
+    refuse(1, f"bits epoch 1, not {epoch.decode()}", *call, again, "--resume")
     with open(again, "wb") as file:
         file.write(data)
     refuse(1, "no picture", *call, again, "--resume", "--images", one)

@@ -10,14 +10,15 @@ import shutil
 import sys
 import tempfile
 
-from common import check, done, load_scorer, near, need_numpy, run
+from checks import check, done, near, run
+from common import load_scorer, need_numpy
 
 numpy, cv2 = need_numpy()
 trim3r = sys.argv[1]
 scorer = load_scorer(sys.argv[2])
 COLUMNS = ("scene context target method head bits refine allocate depth ablation wavelet levels clusters settings keep requested gaussians psnr "
            "ssim sharp holes psnr_all context_psnr perceptual build_ms render_ms arena_bytes scene_bytes planar_psnr "
-           "picture").split()
+           "picture bits_epoch").split()
 
 
 def read(path, grey=False):

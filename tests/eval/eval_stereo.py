@@ -9,7 +9,7 @@ import shutil
 import sys
 import tempfile
 
-from common import check, done, run
+from checks import check, done, run
 
 TRIM3R = os.path.abspath(sys.argv[1])
 INPUT, USAGE = 1, 2

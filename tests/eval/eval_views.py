@@ -9,7 +9,8 @@ import os
 import sys
 import tempfile
 
-from common import check, done, need_numpy, run
+from checks import check, done, run
+from common import need_numpy
 
 numpy, cv2 = need_numpy()
 trim3r = sys.argv[1]

@@ -11,7 +11,7 @@ import statistics
 import sys
 import tempfile
 
-from common import check, done, run, skip
+from checks import check, done, run, skip
 
 TRIM3R, TRIM3R_FLOAT = map(os.path.abspath, sys.argv[1:3])
 DATA = os.path.abspath(sys.argv[3])

@@ -7,7 +7,7 @@ import os
 import sys
 import tempfile
 
-from common import check, done, run, skip
+from checks import check, done, run, skip
 
 import browser
 

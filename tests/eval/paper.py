@@ -12,7 +12,7 @@ import sys
 import tempfile
 import xml.dom.minidom
 
-from common import check, done, near, run, skip
+from checks import check, done, near, run, skip
 
 trim3r, paper, data = map(os.path.abspath, sys.argv[1:])
 if not os.path.exists(data):

@@ -7,7 +7,8 @@ import os
 import sys
 import tempfile
 
-from common import check, done, near, need_numpy, run, skip
+from checks import check, done, near, run, skip
+from common import need_numpy
 
 numpy, _ = need_numpy()
 trim3r = sys.argv[1]

@@ -8,7 +8,7 @@ import os
 import sys
 import tempfile
 
-from common import check, done, run, skip
+from checks import check, done, run, skip
 
 TRIM3R, DATA = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 SLACK = 0.5  # dB below what was measured

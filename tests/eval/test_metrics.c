@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The measures at values that follow from their definitions. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "pictures/metrics.h"
 #include "pictures/metrics_filter.h"
+#include "test.h"
 
 #define SIDE 48u
 #define PIXELS (SIDE * SIDE)
@@ -32,9 +27,8 @@ static void fill_picture(uint8_t *rgb, uint32_t seed)
     }
 }
 
-static void test_identical_pictures(void **state)
+TEST(test_identical_pictures)
 {
-    (void)state;
     uint8_t a[PIXELS * 3];
     fill_picture(a, 1);
     assert_near(metric_psnr(a, a, NULL, SIDE, SIDE), 99, 0);
@@ -43,9 +37,8 @@ static void test_identical_pictures(void **state)
     assert_near(metric_flip(a, a, NULL, SIDE, SIDE), 0, 0);
 }
 
-static void test_psnr_of_a_known_error(void **state)
+TEST(test_psnr_of_a_known_error)
 {
-    (void)state;
     uint8_t a[PIXELS * 3], b[PIXELS * 3], mask[PIXELS] = {0};
     memset(a, 100, sizeof a);
     memcpy(b, a, sizeof b);
@@ -62,9 +55,8 @@ static void test_psnr_of_a_known_error(void **state)
     assert_near(metric_psnr(a, b, mask, SIDE, SIDE), 10 * log10(3), 1e-12);
 }
 
-static void test_ssim_of_flat_pictures(void **state)
+TEST(test_ssim_of_flat_pictures)
 {
-    (void)state;
     uint8_t a[PIXELS * 3], b[PIXELS * 3];
     memset(a, 50, sizeof a);
     memset(b, 200, sizeof b);
@@ -73,9 +65,8 @@ static void test_ssim_of_flat_pictures(void **state)
     assert_near(metric_ssim(a, b, NULL, SIDE, SIDE), (2 * 50.0 * 200 + c1) / (50.0 * 50 + 200.0 * 200 + c1), 1e-9);
 }
 
-static void test_sharp_is_a_ratio_of_gradients(void **state)
+TEST(test_sharp_is_a_ratio_of_gradients)
 {
-    (void)state;
     uint8_t a[PIXELS * 3], b[PIXELS * 3];
     for (uint32_t i = 0; i < PIXELS * 3; i++) {
         uint32_t x = i / 3 % SIDE, y = i / 3 / SIDE;
@@ -90,9 +81,8 @@ static void test_sharp_is_a_ratio_of_gradients(void **state)
 
 /* Black against white has no feature but a luminance step of 100: 100^0.7, spread over the upper part of the range
  * that reaches to pure green against pure blue. */
-static void test_flip_of_black_and_white(void **state)
+TEST(test_flip_of_black_and_white)
 {
-    (void)state;
     uint8_t black[PIXELS * 3], white[PIXELS * 3];
     memset(black, 0, sizeof black);
     memset(white, 255, sizeof white);
@@ -102,9 +92,8 @@ static void test_flip_of_black_and_white(void **state)
     assert_near(metric_flip(white, black, NULL, SIDE, SIDE), expected, 1e-4);
 }
 
-static void test_flip_is_symmetric_and_grows(void **state)
+TEST(test_flip_is_symmetric_and_grows)
 {
-    (void)state;
     uint8_t a[PIXELS * 3], b[PIXELS * 3];
     double last = 0;
     fill_picture(a, 3);
@@ -120,18 +109,16 @@ static void test_flip_is_symmetric_and_grows(void **state)
 }
 
 /* Compares with the authors' own evaluator, in single precision, for this pair at 67 pixels a degree. */
-static void test_flip_of_a_published_evaluator(void **state)
+TEST(test_flip_of_a_published_evaluator)
 {
-    (void)state;
     uint8_t a[PIXELS * 3], b[PIXELS * 3];
     fill_picture(a, 1);
     fill_picture(b, 2);
     assert_near(metric_flip(a, b, NULL, SIDE, SIDE), 0.076951, 2e-6);
 }
 
-static void test_mask_leaves_pixels_out(void **state)
+TEST(test_mask_leaves_pixels_out)
 {
-    (void)state;
     uint8_t a[PIXELS * 3], b[PIXELS * 3], left[PIXELS], none[PIXELS] = {0}, all[PIXELS];
     fill_picture(a, 3);
     memcpy(b, a, sizeof b);
@@ -154,9 +141,8 @@ static void test_mask_leaves_pixels_out(void **state)
     assert_true(isnan(metric_flip(a, b, none, SIDE, SIDE)));
 }
 
-static void test_pictures_smaller_than_the_windows(void **state)
+TEST(test_pictures_smaller_than_the_windows)
 {
-    (void)state;
     uint8_t a[9 * 3], b[9 * 3];
     for (uint32_t i = 0; i < sizeof a; i++) {
         a[i] = (uint8_t)(i * 9);
@@ -172,9 +158,8 @@ static void test_pictures_smaller_than_the_windows(void **state)
     }
 }
 
-static void test_filter_borders(void **state)
+TEST(test_filter_borders)
 {
-    (void)state;
     const double in[3] = {1, 2, 4}, one[5] = {0, 0, 1, 0, 0};
     const double earlier[5] = {1, 0, 0, 0, 0}, later[5] = {0, 0, 0, 0, 1};
     double out[3], work[3];
@@ -190,21 +175,4 @@ static void test_filter_borders(void **state)
     assert_near(out[0], 4, 0); /* 1 2 4 | 4 2 */
     assert_near(out[1], 4, 0);
     assert_near(out[2], 2, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_identical_pictures),
-        cmocka_unit_test(test_psnr_of_a_known_error),
-        cmocka_unit_test(test_ssim_of_flat_pictures),
-        cmocka_unit_test(test_sharp_is_a_ratio_of_gradients),
-        cmocka_unit_test(test_flip_of_black_and_white),
-        cmocka_unit_test(test_flip_is_symmetric_and_grows),
-        cmocka_unit_test(test_flip_of_a_published_evaluator),
-        cmocka_unit_test(test_mask_leaves_pixels_out),
-        cmocka_unit_test(test_pictures_smaller_than_the_windows),
-        cmocka_unit_test(test_filter_borders),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

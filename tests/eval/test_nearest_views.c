@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The rule of `eval --views`: distances of views, the median depth, which frames are taken. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "evaluation/nearest_views.h"
+#include "test.h"
 
 #define ONE_Q32 (INT64_C(1) << 32)
 #define ONE_Q30 (INT32_C(1) << 30)
@@ -23,9 +18,8 @@ static view_place place_at(double x, double degrees)
     return view_place_of(&camera);
 }
 
-static void test_place_of_a_camera(void **state)
+TEST(test_place_of_a_camera)
 {
-    (void)state;
     view_place ahead = place_at(-2.5, 0), right = place_at(0, 90);
     assert_true(ahead.usable);
     assert_true(ahead.position_q32[0] == -5 * ONE_Q32 / 2 && ahead.position_q32[1] == 0);
@@ -34,9 +28,8 @@ static void test_place_of_a_camera(void **state)
     assert_in_range(right.axis_q30[2] + 4, 0, 8);
 }
 
-static void test_distance(void **state)
+TEST(test_distance)
 {
-    (void)state;
     view_place a = place_at(0, 0), b = place_at(3, 0), c = place_at(0, 60), d = place_at(3, 60);
     assert_true(view_distance(&a, &a, 1) == 0);
     assert_true(view_distance(&a, &b, 2) == 1.5);
@@ -53,9 +46,8 @@ static void test_distance(void **state)
     assert_true(fabs(view_distance(&least, &most, 1) - 0x1p31) < 1);
 }
 
-static void test_median_depth(void **state)
+TEST(test_median_depth)
 {
-    (void)state;
     uint8_t bytes[2 * 12] = {0};
     const uint16_t steps[4][2] = {{0, 500}, {3000, 0}, {65535, 1000}, {0, 0}};
     for (int i = 0; i < 8; i++) {
@@ -77,9 +69,8 @@ static void test_median_depth(void **state)
     assert_true(view_median_depth(&frame) == 65535 / 4.0);
 }
 
-static void test_nearest_frames(void **state)
+TEST(test_nearest_frames)
 {
-    (void)state;
     /*                       0               1               2               3                4 */
     view_place places[] = {place_at(4, 0),  place_at(1, 0),    place_at(0, 0),  place_at(-1, 0),
                            place_at(0, 20), place_at(0.2, 90), place_at(0.1, 0)};
@@ -100,15 +91,4 @@ static void test_nearest_frames(void **state)
     assert_int_equal(context[0], 5);
     assert_int_equal(nearest_views(places, count, 2, 2, 2, context, 1), 2);
     assert_int_equal(context[1], 4);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_place_of_a_camera),
-        cmocka_unit_test(test_distance),
-        cmocka_unit_test(test_median_depth),
-        cmocka_unit_test(test_nearest_frames),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

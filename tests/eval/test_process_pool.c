@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The process pool: order, the same from one process and from several, failures, a worker that dies. */
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include <cmocka.h>
-
 #include "cli/cli.h"
 #include "cli/jobs/process_pool.h"
+#include "test.h"
 
 #define ITEMS 23u
 #define LARGE 300000u /* bytes: more than a pipe holds */
@@ -78,9 +73,8 @@ static plan run(uint32_t processes, plan p, int *code)
 
 static const plan plain = {.fails = NONE, .dies = NONE, .refused = NONE};
 
-static void test_order(void **state)
+TEST(test_order)
 {
-    (void)state;
     static const uint32_t processes[] = {1, 2, 5, 64};
     for (int i = 0; i < 4; i++) {
         int code;
@@ -94,9 +88,8 @@ static void test_order(void **state)
     }
 }
 
-static void test_a_failing_item(void **state)
+TEST(test_a_failing_item)
 {
-    (void)state;
     for (uint32_t processes = 1; processes < 5; processes++) {
         plan wanted = plain;
         wanted.fails = 10;
@@ -107,9 +100,8 @@ static void test_a_failing_item(void **state)
     }
 }
 
-static void test_a_part_that_is_not_taken(void **state)
+TEST(test_a_part_that_is_not_taken)
 {
-    (void)state;
     for (uint32_t processes = 1; processes < 5; processes++) {
         plan wanted = plain;
         wanted.refused = 8;
@@ -120,9 +112,8 @@ static void test_a_part_that_is_not_taken(void **state)
     }
 }
 
-static void test_a_worker_that_dies(void **state)
+TEST(test_a_worker_that_dies)
 {
-    (void)state;
     plan wanted = plain;
     wanted.dies = 5;
     int code;
@@ -133,22 +124,9 @@ static void test_a_worker_that_dies(void **state)
     }
 }
 
-static void test_nothing_to_do(void **state)
+TEST(test_nothing_to_do)
 {
-    (void)state;
     process_pool_job job = {.items = 0, .processes = 4, .make = make, .take = take};
     assert_int_equal(process_pool_run(&job), CLI_OK);
     assert_true(process_pool_processors() >= 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order),
-        cmocka_unit_test(test_a_failing_item),
-        cmocka_unit_test(test_a_part_that_is_not_taken),
-        cmocka_unit_test(test_a_worker_that_dies),
-        cmocka_unit_test(test_nothing_to_do),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

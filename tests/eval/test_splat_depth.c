@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Depth from a scene's means: which mean a pixel gets, and in which steps. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "reconstruction/splat_depth.h"
+#include "test.h"
 
 #define WIDTH 8u
 #define HEIGHT 6u
@@ -75,9 +70,8 @@ static void expect_depth(const stage *s, uint32_t x, uint32_t y, double depth)
     assert_true(fabs(depth_at(s, x, y) - depth) < 0.001 * depth);
 }
 
-static void every_pixel_has_its_own(void **state)
+TEST(every_pixel_has_its_own)
 {
-    (void)state;
     stage s;
     begin(&s);
     for (uint32_t i = 0; i < PIXELS; i++) {
@@ -95,9 +89,8 @@ static void every_pixel_has_its_own(void **state)
     free(s.depth.steps);
 }
 
-static void nearest_wins(void **state)
+TEST(nearest_wins)
 {
-    (void)state;
     for (int order = 0; order < 2; order++) {
         stage s;
         begin(&s);
@@ -111,9 +104,8 @@ static void nearest_wins(void **state)
 }
 
 /* The mean of a surface nearest to the pixel's centre is used, but none from behind the surface. */
-static void surface_is_sampled_at_the_centre(void **state)
+TEST(surface_is_sampled_at_the_centre)
 {
-    (void)state;
     const double behind[] = {1.04, 1.08}, found[] = {1.04, 1};
     for (int i = 0; i < 4; i++) {
         stage s;
@@ -128,9 +120,8 @@ static void surface_is_sampled_at_the_centre(void **state)
     }
 }
 
-static void faint_means_are_no_surface(void **state)
+TEST(faint_means_are_no_surface)
 {
-    (void)state;
     stage s;
     begin(&s);
     place(&s, 1, 1, 2, SPLAT_DEPTH_OPACITY_Q15 - 1);
@@ -143,9 +134,8 @@ static void faint_means_are_no_surface(void **state)
     free(s.depth.steps);
 }
 
-static void borders_and_behind(void **state)
+TEST(borders_and_behind)
 {
-    (void)state;
     const double last_x = WIDTH - 1, last_y = HEIGHT - 1;
     stage s;
     begin(&s);
@@ -169,9 +159,8 @@ static void borders_and_behind(void **state)
     free(s.depth.steps);
 }
 
-static void nothing_is_seen(void **state)
+TEST(nothing_is_seen)
 {
-    (void)state;
     stage s;
     begin(&s);
     place(&s, 3, 3, -2, 32767);
@@ -185,9 +174,8 @@ static void nothing_is_seen(void **state)
 }
 
 /* A single stray mean does not reduce the others' resolution. */
-static void far_ones_are_brought_near(void **state)
+TEST(far_ones_are_brought_near)
 {
-    (void)state;
     stage s;
     begin(&s);
     for (uint32_t i = 0; i < PIXELS; i++) {
@@ -199,18 +187,4 @@ static void far_ones_are_brought_near(void **state)
     assert_int_equal(steps_at(&s, 9 % WIDTH, 9 / WIDTH), 65535);
     expect_depth(&s, 0, 0, 0.5);
     free(s.depth.steps);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_pixel_has_its_own),
-        cmocka_unit_test(nearest_wins),
-        cmocka_unit_test(surface_is_sampled_at_the_centre),
-        cmocka_unit_test(faint_means_are_no_surface),
-        cmocka_unit_test(borders_and_behind),
-        cmocka_unit_test(nothing_is_seen),
-        cmocka_unit_test(far_ones_are_brought_near),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

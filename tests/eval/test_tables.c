@@ -1,21 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Cells, means, CSV quoting, JSON, and the page's escaping. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include <cmocka.h>
-
 #include "cli/tables/csv.h"
 #include "cli/tables/csv_read.h"
 #include "evaluation/table.h"
 #include "pictures/html_page.h"
+#include "test.h"
 
 static evaluation_row make_row(const char *scene, const char *by, double keep, double psnr, double holes)
 {
@@ -80,9 +75,8 @@ static void write_unclean(csv_table *table, const void *data)
     csv_end_row(table);
 }
 
-static void test_csv_is_read_whatever_its_cells_were(void **state)
+TEST(test_csv_is_read_whatever_its_cells_were)
 {
-    (void)state;
     char *text = csv_text(write_unclean, NULL), error[256] = "";
     assert_string_equal(text, "?[31mred,tab\there,half ?,gr\xc3\xbc\xc3\x9f?,???\n");
     csv_reader *reader = malloc(sizeof *reader);
@@ -94,9 +88,8 @@ static void test_csv_is_read_whatever_its_cells_were(void **state)
     free(text);
 }
 
-static void test_csv_quotes_what_needs_it(void **state)
+TEST(test_csv_quotes_what_needs_it)
 {
-    (void)state;
     char *text = csv_text(write_awkward, NULL);
     assert_string_equal(text, "plain,\"a,b\",\"say \"\"x\"\"\",,,\"two\nlines\"\nnext\n");
     free(text);
@@ -108,9 +101,8 @@ static void write_table(csv_table *table, const void *data)
     evaluation_csv_row(table, data);
 }
 
-static void test_columns_and_empty_cells(void **state)
+TEST(test_columns_and_empty_cells)
 {
-    (void)state;
     evaluation_row row = make_row("room", "trim3r", 2.5, 21.25, 0);
     char *text = csv_text(write_table, &row);
     assert_string_equal(
@@ -119,16 +111,15 @@ static void test_columns_and_empty_cells(void **state)
         "requested,"
         "gaussians,psnr,ssim,sharp,holes,psnr_all,context_psnr,perceptual,build_ms,render_ms,arena_bytes,scene_bytes,"
         "planar_psnr,"
-        "picture\n"
+        "picture,bits_epoch\n"
         "room,\"0,2\",1,trim3r,analytic,,0,density,sensor,,db2,2,300,default,2.5,,13107,21.2500,,,0.00000,,,,,,,,,"
-        "1/trim3r_2.5.png\n");
+        "1/trim3r_2.5.png,\n");
     free(text);
     assert_null(evaluation_column_name(EVALUATION_COLUMNS));
 }
 
-static void test_json_of_a_row(void **state)
+TEST(test_json_of_a_row)
 {
-    (void)state;
     evaluation_row row = make_row("a \"room\"", "trim3r", 10, 21.25, NAN);
     cJSON *object = evaluation_json(&row);
     char *text = cJSON_PrintUnformatted(object);
@@ -144,9 +135,8 @@ static void test_json_of_a_row(void **state)
     cJSON_Delete(object);
 }
 
-static void test_means_group_by_settings(void **state)
+TEST(test_means_group_by_settings)
 {
-    (void)state;
     evaluation_row rows[] = {
         make_row("a", "trim3r", 10, 20, 0.5), make_row("a", "random", 10, 8, 0.9),
         make_row("b", "trim3r", 10, 30, NAN), make_row("b", "trim3r", 5, 18, 0.1),
@@ -179,9 +169,8 @@ static void test_means_group_by_settings(void **state)
     assert_string_equal(means[2].ablation, "k-5");
 }
 
-static void test_page_escapes_and_embeds(void **state)
+TEST(test_page_escapes_and_embeds)
 {
-    (void)state;
     char *text = NULL;
     size_t bytes = 0;
     FILE *out = open_memstream(&text, &bytes);
@@ -227,14 +216,4 @@ static void test_page_escapes_and_embeds(void **state)
     assert_int_equal(open, closed);
     free(text);
     html_page_free(page);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_csv_quotes_what_needs_it), cmocka_unit_test(test_csv_is_read_whatever_its_cells_were),
-        cmocka_unit_test(test_columns_and_empty_cells),  cmocka_unit_test(test_json_of_a_row),
-        cmocka_unit_test(test_means_group_by_settings),  cmocka_unit_test(test_page_escapes_and_embeds),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

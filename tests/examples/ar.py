@@ -6,7 +6,8 @@ import math
 import subprocess
 import tempfile
 
-from common import EXAMPLE, check, done, room, run
+from checks import check, done, run
+from common import EXAMPLE, room
 
 SIDE, FRAMES = 256, 6
 HEADING = b"P6\n256 256\n255\n"

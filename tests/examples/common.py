@@ -4,10 +4,8 @@ import os
 import pathlib
 import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "capture"))
-import mcap_read  # noqa: E402
-from checks import check, done, run  # noqa: E402, F401
+import mcap_read
+from checks import check, done, run  # noqa: F401
 
 TRIM3R, EXAMPLE = (os.path.abspath(path) for path in sys.argv[1:3])
 ROOT = pathlib.Path(__file__).resolve().parents[2]

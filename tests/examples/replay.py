@@ -4,7 +4,8 @@
 sample changed, with a digit changed of what was written down, cut, longer, or another one."""
 import tempfile
 
-from common import EXAMPLE, check, done, room, run, without_crc
+from checks import check, done, run
+from common import EXAMPLE, room, without_crc
 
 SIDE = 128
 STAGES = ["image", "depth", "pointmap", "wavelet", "superclusters", "budget", "head", "refine", "raster"]

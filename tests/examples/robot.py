@@ -9,7 +9,8 @@ import subprocess
 import sys
 import tempfile
 
-from common import EXAMPLE, ROOT, check, done, room, run, without_crc
+from checks import check, done, run
+from common import EXAMPLE, ROOT, room, without_crc
 
 SMALL, COMPILER, SOURCE = sys.argv[3:6]
 SIDE, FRAMES = 128, 6

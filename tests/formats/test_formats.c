@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Every format of scene files: what is written reads back within the steps of the format, cut and damaged files are
  * refused with a reason. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +14,7 @@
 #include "scene/scene_rows.h"
 #include "scene/scene_turn.h"
 #include "scratch.h"
+#include "test.h"
 
 enum { COUNT = 700, SETS = 300 };
 
@@ -231,9 +226,8 @@ static void must_write(const char *path, const scene_file *scene, int flags)
     assert_int_equal(done.count, scene->count);
 }
 
-static void read_back(void **state)
+TEST(read_back)
 {
-    (void)state;
     for (int k = 0; k < FORMATS; k++) {
         for (uint32_t degree = 0; degree <= 3; degree++) {
             scene_file scene, back;
@@ -249,9 +243,8 @@ static void read_back(void **state)
 }
 
 /* With --up each format has y up; those of other axes read it as y down, as ever. */
-static void turn_up(void **state)
+TEST(turn_up)
 {
-    (void)state;
     for (int k = 0; k < FORMATS; k++) {
         scene_file scene, back;
         make_scene(&scene, 0);
@@ -289,9 +282,8 @@ static uint8_t *with_node(const uint8_t *bytes, size_t count, const char *node, 
 }
 
 /* Positions, shapes and harmonics go together: a node that turns, doubles and moves, and the same done by hand. */
-static void nodes_of_glb(void **state)
+TEST(nodes_of_glb)
 {
-    (void)state;
     const struct format doubled = {".glb", 1e-4, 1e-3, 1e-4, 1e-4, 4e-4, 3};
     scene_file scene, moved;
     char error[256] = "";
@@ -373,9 +365,8 @@ static uint8_t *bytes_of(const struct format *f, uint32_t count, size_t *size)
     return bytes;
 }
 
-static void refuse_every_cut(void **state)
+TEST(refuse_every_cut)
 {
-    (void)state;
     char error[256];
     for (int k = 0; k < FORMATS; k++) {
         const struct format *f = &formats[k];
@@ -393,9 +384,8 @@ static void refuse_every_cut(void **state)
 }
 
 /* Whatever byte changes, a scene or a reason comes out. */
-static void survive_every_byte(void **state)
+TEST(survive_every_byte)
 {
-    (void)state;
     char error[256];
     for (int k = 0; k < FORMATS; k++) {
         size_t size;
@@ -413,9 +403,8 @@ static void survive_every_byte(void **state)
     }
 }
 
-static void say_why(void **state)
+TEST(say_why)
 {
-    (void)state;
     static const struct {
         const char *suffix, *reason;
         size_t at;
@@ -476,9 +465,8 @@ static void write_with_far(const char *path, const scene_file *scene)
 }
 
 /* Gaussians far away do not change where the others are, in any format. */
-static void far_gaussians(void **state)
+TEST(far_gaussians)
 {
-    (void)state;
     for (int k = 0; k < FORMATS; k++) {
         const struct format *f = &formats[k];
         scene_file scene, back;
@@ -515,9 +503,8 @@ static double height_of(const scene_file *scene)
 }
 
 /* Where floats have steps of a half, the detail stays, and formats that can say where they are do so. */
-static void far_from_the_origin(void **state)
+TEST(far_from_the_origin)
 {
-    (void)state;
     for (int k = 0; k < FORMATS; k++) {
         const struct format *f = &formats[k];
         scene_file scene, back;
@@ -541,9 +528,8 @@ static void far_from_the_origin(void **state)
 }
 
 /* A scene wider than the format holds. */
-static void refuse_to_write(void **state)
+TEST(refuse_to_write)
 {
-    (void)state;
     char error[256] = "";
     t3r_gaussian g = {.position_q20 = {1000 << 20, 0, 0}, .opacity_q15 = 9};
     const t3r_scene wide = {.frame = {.exponent = 24}, .gaussians = &g, .count = 1};
@@ -551,14 +537,4 @@ static void refuse_to_write(void **state)
     assert_non_null(strstr(error, "2^23"));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(read_back),           cmocka_unit_test(turn_up),
-        cmocka_unit_test(nodes_of_glb),        cmocka_unit_test(refuse_every_cut),
-        cmocka_unit_test(survive_every_byte),  cmocka_unit_test(say_why),
-        cmocka_unit_test(refuse_to_write),     cmocka_unit_test(far_gaussians),
-        cmocka_unit_test(far_from_the_origin),
-    };
-    return cmocka_run_group_tests(tests, make_folder, scratch_teardown);
-}
+ALL_TESTS_WITH(make_folder, scratch_teardown)

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Nodes of a .glb: translations, rotations and uniform scales move the Gaussians, all else is refused with a reason. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
 #include <cjson/cJSON.h>
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "scene/formats/glb/glb_nodes.h"
+#include "test.h"
 
 #define Q "0.7071067811865476"
 
@@ -50,9 +45,8 @@ static void check_point(const char *nodes, double x, double y, double z)
     }
 }
 
-static void moves(void **state)
+TEST(moves)
 {
-    (void)state;
     check_point("[]", 3, 5, 7);
     check_point("[{\"mesh\": 1, \"scale\": [1, 2, 3]}]", 3, 5, 7); /* of another mesh */
     check_point("[{\"mesh\": 0}]", 3, 5, 7);
@@ -67,9 +61,8 @@ static void moves(void **state)
     check_point("[{\"mesh\": 0, \"matrix\": [0, 0, -2, 0, 0, 2, 0, 0, 2, 0, 0, 0, 1, 2, 3, 1]}]", 15, 12, -3);
 }
 
-static void goes_up_the_tree(void **state)
+TEST(goes_up_the_tree)
 {
-    (void)state;
     /* the mesh's own node comes first, the root last */
     check_point("[{\"children\": [2], \"translation\": [1, 0, 0]}, {\"mesh\": 0, \"scale\": [2, 2, 2]},"
                 " {\"children\": [1], \"rotation\": [0, " Q ", 0, " Q "]}]",
@@ -80,9 +73,8 @@ static void goes_up_the_tree(void **state)
     check_point("[{\"translation\": [9, 9, 9], \"children\": [1]}, {\"mesh\": 7}, {\"mesh\": 0}]", 3, 5, 7);
 }
 
-static void refuses(void **state)
+TEST(refuses)
 {
-    (void)state;
     static const struct {
         const char *nodes, *reason;
     } bad[] = {
@@ -117,14 +109,4 @@ static void refuses(void **state)
             fail_msg("%s: '%s' does not say '%s'", bad[i].nodes, error, bad[i].reason);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(moves),
-        cmocka_unit_test(goes_up_the_tree),
-        cmocka_unit_test(refuses),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* t3r_harmonics_colour() against float64, in all directions and at the ends of its ranges. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
 #include <math.h>
-#include <stdint.h>
 #include <string.h>
 
 #include "core/fixed.h"
+#include "test.h"
 #include "trim3r.h"
 
 static uint32_t seed;
@@ -76,9 +71,8 @@ static void check(const int16_t *coefficients, uint32_t degree, const int32_t di
     }
 }
 
-static void agrees_with_float64(void **state)
+TEST(agrees_with_float64)
 {
-    (void)state;
     for (int round = 0; round < 20000; round++) {
         int16_t coefficients[3 * T3R_HARMONICS_MOST];
         const int32_t most = round % 2 == 0 ? 2000 : 300;
@@ -93,9 +87,8 @@ static void agrees_with_float64(void **state)
 }
 
 /* One coefficient at a time: none stands in the place of another. */
-static void has_the_order_of_the_files(void **state)
+TEST(has_the_order_of_the_files)
 {
-    (void)state;
     static const int32_t directions[][3] = {{3, 5, 7}, {-2, 9, 4}, {1, -1, 1}, {6, 2, -8},
                                             {0, 0, 5}, {0, -4, 0}, {7, 0, 0}};
     for (uint32_t i = 0; i < T3R_HARMONICS_MOST; i++) {
@@ -108,9 +101,8 @@ static void has_the_order_of_the_files(void **state)
     }
 }
 
-static void holds_its_ends(void **state)
+TEST(holds_its_ends)
 {
-    (void)state;
     const int32_t ends[] = {INT32_MIN, INT32_MAX, 0};
     int16_t coefficients[3 * T3R_HARMONICS_MOST];
     for (int value = INT16_MIN; value <= INT16_MAX; value += INT16_MAX - INT16_MIN) {
@@ -131,14 +123,4 @@ static void holds_its_ends(void **state)
     assert_int_equal(colour[0], lrint(32640 * (0.5 + 0.28209479177387814)));
     assert_int_equal(colour[1], 16320);
     assert_int_equal(t3r_harmonics_colour(coefficients, 4, (const int32_t[3]){1}, colour), T3R_ERR_ARGUMENT);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(agrees_with_float64),
-        cmocka_unit_test(has_the_order_of_the_files),
-        cmocka_unit_test(holds_its_ends),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

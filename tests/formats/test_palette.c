@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Palettes: rows that differ keep rows of their own as long as there is room; means are those of their rows. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/fixed.h"
 #include "scene/formats/sog/palette.h"
+#include "test.h"
 
 enum { COUNT = 3000, STRIDE = 48, WIDTH = PALETTE_WIDTH_MOST };
 
@@ -42,9 +37,8 @@ static double farthest(const int16_t *numbers, const palette *made)
     return most;
 }
 
-static void keeps_what_there_is_room_for(void **state)
+TEST(keeps_what_there_is_room_for)
 {
-    (void)state;
     static const uint32_t sets[] = {1, 2, 100, 512};
     for (size_t i = 0; i < sizeof sets / sizeof sets[0]; i++) {
         static const int mosts[] = {1, 4000, 32767};
@@ -74,9 +68,8 @@ static double mean_square(const int16_t *numbers, const palette *made)
 }
 
 /* Without room for all: so many rows, each the mean of what it stands for, and far nearer than one mean for all. */
-static void shares_what_is_alike(void **state)
+TEST(shares_what_is_alike)
 {
-    (void)state;
     int16_t *numbers = make_rows(40, 5000), *near = make_rows(COUNT, 100); /* forty crowds */
     for (uint32_t i = 0; i < COUNT * STRIDE; i++) {
         numbers[i] = (int16_t)(numbers[i] + near[i]);
@@ -101,9 +94,8 @@ static void shares_what_is_alike(void **state)
     free(numbers);
 }
 
-static void holds_its_ends(void **state)
+TEST(holds_its_ends)
 {
-    (void)state;
     const int16_t ends[] = {INT16_MIN, INT16_MAX, INT16_MIN, 7};
     palette made;
     assert_int_equal(palette_make(ends, 4, 1, 1, 3, &made), 0);
@@ -115,14 +107,4 @@ static void holds_its_ends(void **state)
     assert_int_equal(palette_make(ends, 1, 1, 1, PALETTE_ROWS_MOST, &made), 0);
     assert_true(made.rows == 1 && made.means[0] == INT16_MIN && made.labels[0] == 0);
     palette_free(&made);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(keeps_what_there_is_room_for),
-        cmocka_unit_test(shares_what_is_alike),
-        cmocka_unit_test(holds_its_ends),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

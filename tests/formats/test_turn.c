@@ -1,15 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Turns of scenes between axes: positions, shapes and harmonics turn alike. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
 #include <math.h>
-#include <stdint.h>
 #include <string.h>
 
 #include "scene/scene_turn.h"
+#include "test.h"
 
 /* The sum of the harmonics in a direction. */
 static double seen(double rest[HARMONICS_REST_MOST][3], const double direction[3])
@@ -62,9 +57,8 @@ static void check_turn(const scene_turn *turn)
     }
 }
 
-static void turns_all_alike(void **state)
+TEST(turns_all_alike)
 {
-    (void)state;
     for (int axes = SCENE_AXES_AS_THEY_ARE; axes <= SCENE_AXES_LAST; axes++) {
         for (int up = SCENE_UP_UNKNOWN; up <= SCENE_UP_MZ; up++) {
             const scene_turn turn = scene_turn_between(SCENE_AXES_AS_THEY_ARE, (scene_axes)axes, (scene_up)up);
@@ -74,9 +68,8 @@ static void turns_all_alike(void **state)
 }
 
 /* Not only between axes. */
-static void turns_by_any_angle(void **state)
+TEST(turns_by_any_angle)
 {
-    (void)state;
     static const double rotations[][4] = {
         {0.5, 0.5, -0.5, 0.5}, {0.8, 0, 0.6, 0}, {0.1, -0.7, 0.1, 0.7}, {0.36, 0.48, 0, -0.8}, {1, 0, 0, 0}};
     for (size_t i = 0; i < sizeof rotations / sizeof rotations[0]; i++) {
@@ -85,9 +78,8 @@ static void turns_by_any_angle(void **state)
     }
 }
 
-static void points_up(void **state)
+TEST(points_up)
 {
-    (void)state;
     static const struct {
         const char *name;
         double up[3];
@@ -109,9 +101,8 @@ static void points_up(void **state)
 }
 
 /* From a file to a scene and back nothing changes; without --up, x is right, y down and z forward in a scene. */
-static void knows_the_axes_of_formats(void **state)
+TEST(knows_the_axes_of_formats)
 {
-    (void)state;
     const double point[3] = {1, 2, 3}, rub[3] = {1, -2, -3}, luf[3] = {-1, -2, 3}, rbu[3] = {1, 3, 2},
                  ldb[3] = {-1, 2, -3};
     for (int axes = SCENE_AXES_AS_THEY_ARE; axes <= SCENE_AXES_LAST; axes++) {
@@ -133,15 +124,4 @@ static void knows_the_axes_of_formats(void **state)
     int64_t turned[3];
     scene_turn_origin(&turn, origin, turned);
     assert_true(turned[0] == origin[0] && turned[1] == 5 && turned[2] == -7);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(turns_all_alike),
-        cmocka_unit_test(turns_by_any_angle),
-        cmocka_unit_test(points_up),
-        cmocka_unit_test(knows_the_axes_of_formats),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,9 +14,8 @@ import tempfile
 import threading
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-import browser  # noqa: E402
-from checks import check, done, run, skip  # noqa: E402
+import browser
+from checks import check, done, run, skip
 
 TRIM3R, VIEWER = sys.argv[1:3]
 looks = sys.argv[3] if len(sys.argv) > 3 else None

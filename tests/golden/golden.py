@@ -13,7 +13,6 @@ Exit 0: the same; 1: other bits, naming the first stage that differs; 77: skippe
 """
 import json
 import pathlib
-import subprocess
 import sys
 import tempfile
 

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Text of others: what is cleaned, what stays, and that reasons and messages are. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "host/reason.h"
 #include "host/text.h"
+#include "test.h"
 
 static const struct {
     const char *given, *cleaned;
@@ -37,9 +32,8 @@ static const struct {
     {"line \xe2\x80\xa8 isolate \xe2\x81\xa6", "line ??? isolate ???"},
 };
 
-static void controls_and_broken_characters_become_question_marks(void **state)
+TEST(controls_and_broken_characters_become_question_marks)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         char text[64], copy[64];
         strcpy(text, texts[i].given);
@@ -52,9 +46,8 @@ static void controls_and_broken_characters_become_question_marks(void **state)
     }
 }
 
-static void copies_hold_whole_characters_of_counted_text(void **state)
+TEST(copies_hold_whole_characters_of_counted_text)
 {
-    (void)state;
     char copy[8];
     t3r_text_copy(copy, sizeof copy, (t3r_text){"a\0b", 3});
     assert_string_equal(copy, "a?b");
@@ -66,23 +59,12 @@ static void copies_hold_whole_characters_of_counted_text(void **state)
     assert_string_equal(copy, "");
 }
 
-static void reasons_are_clean_and_cut_to_fit(void **state)
+TEST(reasons_are_clean_and_cut_to_fit)
 {
-    (void)state;
     char reason[12];
     assert_int_equal(t3r_reason(reason, sizeof reason, "%s: %s", "\x1b[2J", "gone"), -1);
     assert_string_equal(reason, "?[2J: gone");
     t3r_reason(reason, 6, "abcd\xe2\x82\xac");
     assert_string_equal(reason, "abcd?");
     assert_int_equal(t3r_reason(NULL, 0, "nobody asks"), -1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(controls_and_broken_characters_become_question_marks),
-        cmocka_unit_test(copies_hold_whole_characters_of_counted_text),
-        cmocka_unit_test(reasons_are_clean_and_cut_to_fit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,26 +9,17 @@ import os
 import struct
 import sys
 import tempfile
-import zlib
 
-from common import check, done, run
+from checks import check, done
+from png import png
+from program import run
 
 data = os.path.abspath(sys.argv[2])
 
 
-def png(width, height, bits=8, channels=3, value=lambda x, y: 0):
-    rows = b""
-    for y in range(height):
-        rows += b"\0"
-        for x in range(width):
-            v = value(x, y)
-            rows += struct.pack(">H", v) if bits == 16 else bytes([v % 256] * channels)
-
-    def chunk(kind, body):
-        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-
-    header = struct.pack(">IIBBBBB", width, height, bits, 2 if channels == 3 else 0, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+def picture(width, height, bits=8, channels=3, value=lambda x, y: 0):
+    return png([b"".join(struct.pack(">H", value(x, y)) if bits == 16 else bytes([value(x, y) % 256] * channels)
+                         for x in range(width)) for y in range(height)], bits, channels)
 
 
 def write(path, content):
@@ -41,8 +32,8 @@ def scene(folder, count=3, change=None):
     """Makes a good folder of 40x30 pictures with depth, then applies `change`."""
     frames = []
     for i in range(count):
-        write(f"{folder}/c{i}.png", png(40, 30, value=lambda x, y: x * 5 + i))
-        write(f"{folder}/d{i}.png", png(40, 30, 16, 1, lambda x, y: 1000 + x + y))
+        write(f"{folder}/c{i}.png", picture(40, 30, value=lambda x, y: x * 5 + i))
+        write(f"{folder}/d{i}.png", picture(40, 30, 16, 1, lambda x, y: 1000 + x + y))
         pose = [[1, 0, 0, i * 0.1], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
         frames.append({"file_path": f"c{i}.png", "depth_path": f"d{i}.png", "transform_matrix": pose})
     top = {"fl_x": 35.0, "fl_y": 35.0, "cx": 20.0, "cy": 15.0, "w": 40, "h": 30, "integer_depth_scale": 0.002,
@@ -97,8 +88,8 @@ def test_good_folder():
 
 def test_tum_folder():
     folder = f"{work}/desk"
-    write(f"{folder}/rgb/1.png", png(40, 30))
-    write(f"{folder}/depth/1.png", png(40, 30, 16, 1))
+    write(f"{folder}/rgb/1.png", picture(40, 30))
+    write(f"{folder}/depth/1.png", picture(40, 30, 16, 1))
     write(f"{folder}/rgb.txt", "1.0 rgb/1.png\n1.04 rgb/1.png\n9.0 rgb/1.png\n")
     write(f"{folder}/depth.txt", "1.01 depth/1.png\n")
     write(f"{folder}/groundtruth.txt", "1.0 0 0 0 0 0 0 1\n1.05 0 0 1 0 0 0 1\n")
@@ -132,7 +123,7 @@ def test_bad_folders():
             where + ["frames[1]: transform_matrix", "orthonormal"])
     refused("size", scene(f"{work}/b7", change=frame(w=41)), ["frame 1: c1.png: w: 41", "40 pixels wide"])
     folder = scene(f"{work}/b12", change=lambda top: [top.pop(k) for k in ("w", "h", "cx", "cy")])
-    write(f"{folder}/c2.png", png(44, 30))
+    write(f"{folder}/c2.png", picture(44, 30))
     refused("sizes_differ", folder, ["frame 2: c2.png: 44x30 pixels, but frame 0 has 40x30; give --size"])
     status, _, error = run("import", folder, "--size", "16x16", "-o", f"{work}/mixed.mcap")
     check(status == 0, f"sizes that differ with --size: {error}")

@@ -19,8 +19,9 @@ except ImportError:
     print("skipped: numpy is not there")
     sys.exit(77)
 
-from common import check, done, run  # noqa: E402
-from frames import exr, png, read  # noqa: E402
+from checks import check, done  # noqa: E402
+from frames import exr, picture, read  # noqa: E402
+from program import run  # noqa: E402
 
 WIDTH, HEIGHT, FRAMES = 64, 48, 3
 OPENGL = np.diag([1, -1, -1, 1])  # axes of its cameras in ours
@@ -48,9 +49,9 @@ def quaternion(r):
 
 def pictures(path, colour="{}.png", depth=None):
     for i in range(FRAMES):
-        write(f"{path}/{colour.format(i)}", png(ROOM["image"][i]))
+        write(f"{path}/{colour.format(i)}", picture(ROOM["image"][i]))
         if depth:
-            write(f"{path}/{depth.format(i)}", png(ROOM["depth"][i]))
+            write(f"{path}/{depth.format(i)}", picture(ROOM["depth"][i]))
 
 
 def imported(path, *options):
@@ -194,7 +195,7 @@ def test_pictures_without_pose():
     """Checks that pictures missing in the lists are named."""
     path = colmap("passed_over")
     for name in ("view_10.png", "view_9.png", "notes.txt"):
-        write(f"{path}/images/{name}", png(ROOM["image"][0]))
+        write(f"{path}/images/{name}", picture(ROOM["image"][0]))
     report, got = imported(path)
     same("passed over", got, depth=False)
     check(report["left_out"] == [f"images/view_{i}.png: the model has no pose of it" for i in (9, 10)], f"{report}")
@@ -315,7 +316,7 @@ def test_depth_of_another_lens():
     depth = np.full((height, width), 2000, np.uint16)
     depth[:, width // 2 + 4:] = 3000  # the edge is 4 pixels from the middle: 10 of colour's
     for i in range(FRAMES):
-        write(f"{path}/depth/{i}.png", png(depth))
+        write(f"{path}/depth/{i}.png", picture(depth))
     _, got = imported(path)
     seen = got["depth"][0]
     check(set(np.unique(seen)) == {2000, 3000}, f"another lens: {np.unique(seen)}")
@@ -351,7 +352,7 @@ def test_depth_from_beside():
     depth = np.full((HEIGHT, WIDTH), 2000, np.uint16)
     depth[:, :WIDTH // 2] = 4000
     for i in range(FRAMES):
-        write(f"{path}/depth/{i}.png", png(depth))
+        write(f"{path}/depth/{i}.png", picture(depth))
     seen = imported(path)[1]["depth"][0]
     check(set(np.unique(seen)) == {0, 2000, 4000}, f"beside: {np.unique(seen)}")
     # the middle of the depth picture is to the right of the middle of the colour picture
@@ -367,7 +368,7 @@ def seven_scenes(path, lens=True):
         depth = np.array(ROOM["depth"][i])
         depth[depth == 0] = 65535
         depth[0, :5] = 65535
-        write(f"{path}/frame-{i:06d}.depth.png", png(depth))
+        write(f"{path}/frame-{i:06d}.depth.png", picture(depth))
         write(f"{path}/frame-{i:06d}.pose.txt", matrix_text(pose))
     if lens:
         write(f"{path}/camera-intrinsics.txt", matrix_text(np.array(ROOM["camera_info"][0])))
@@ -427,7 +428,7 @@ def test_unreadable():
     refused."""
     triplets = [{"context": [0, 2], "target": 1}, {"context": [0, 1], "target": 2}]
     jpeg = b"\xff\xd8\xff\xe0\0\x10JFIF\0\1\1\0\0\1\0\1\0\0"
-    for name, content, why in (("cut", png(ROOM["image"][1])[:900], "PNG: "), ("jpeg", jpeg, "JPEG: "), ("none", None, "No such file")):
+    for name, content, why in (("cut", picture(ROOM["image"][1])[:900], "PNG: "), ("jpeg", jpeg, "JPEG: "), ("none", None, "No such file")):
         path = transforms(f"bad_{name}", trim3r_triplets=triplets + [{"context": [0, 2], "target": 0}])
         bad = f"{path}/images/frame_00001.png"
         os.remove(bad) if content is None else write(bad, content)
@@ -443,12 +444,12 @@ def test_unreadable():
     os.remove("bad_none.mcap")
     refused("bad_none", "frame_00000.png: No such file")
     path = transforms("bad_depth")
-    write(f"{path}/depth/00001.png", png(ROOM["depth"][1])[:900])
+    write(f"{path}/depth/00001.png", picture(ROOM["depth"][1])[:900])
     report, got = imported(path)
     check((report["frames"], report["depth_frames"]) == (3, 2), f"bad depth: {report}")
     check(any(r.startswith(f"depth is left out: {path}/depth/00001.png: PNG: ") for r in report["remarks"]), f"bad depth: {report}")
     for i in range(FRAMES):
-        write(f"{path}/depth/{i:05d}.png", png(ROOM["image"][0]))
+        write(f"{path}/depth/{i:05d}.png", picture(ROOM["image"][0]))
     os.remove("bad_depth.mcap")
     refused(path, "8-bit colour, but depth is a 16-bit grey PNG")
     path = pose_files("no_picture")

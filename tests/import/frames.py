@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames of a recording as arrays, and pictures as files: what the scripts of this folder share. Needs numpy."""
 
-import os
 import struct
-import sys
-import zlib
 
 import numpy as np
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "capture"))
-import mcap_read  # noqa: E402
+import mcap_read
+from png import png
 
 
 class Cdr:
@@ -82,16 +79,11 @@ def read(path):
     return out
 
 
-def png(pixels):
-    """8-bit RGB or 16-bit grey."""
-    grey = pixels.ndim == 2
-
-    def chunk(kind, content):
-        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
-
-    rows = b"".join(b"\0" + (row.astype(">u2") if grey else row).tobytes() for row in pixels)
-    header = struct.pack(">IIBBBBB", pixels.shape[1], pixels.shape[0], 16 if grey else 8, 0 if grey else 2, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+def picture(pixels):
+    """8-bit RGB or 16-bit grey as a PNG."""
+    if pixels.ndim == 2:
+        return png([row.astype(">u2").tobytes() for row in pixels], 16, 1)
+    return png([row.tobytes() for row in pixels])
 
 
 def exr(numbers):

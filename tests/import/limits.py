@@ -9,9 +9,10 @@ import math
 import os
 import struct
 import tempfile
-import zlib
 
-from common import check, done, run
+from checks import check, done
+from png import png
+from program import run
 
 UNIT = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 
@@ -20,24 +21,20 @@ def below(value):
     return math.nextafter(value, 0)
 
 
-def png(width, height, depth=False):
+def slope(width, height, depth=False):
     """Returns a slope in grey steps, or of depth around 1000 steps."""
     row = b"".join(struct.pack(">H", 1000 + x % 64) if depth else bytes([x * 7 % 256, x * 3 % 256, 90])
                    for x in range(width))
-    body = zlib.compress((b"\0" + row) * height)
-    parts = [(b"IHDR", struct.pack(">IIBBBBB", width, height, 16 if depth else 8, 0 if depth else 2, 0, 0, 0)),
-             (b"IDAT", body), (b"IEND", b"")]
-    return b"\x89PNG\r\n\x1a\n" + b"".join(
-        struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in parts)
+    return png([row] * height, 16, 1) if depth else png([row] * height)
 
 
 def folder(name, width=16, height=16, position=0.0, top=None):
     path = f"{work}/{name}"
     os.makedirs(path)
     with open(f"{path}/c.png", "wb") as file:
-        file.write(png(width, height))
+        file.write(slope(width, height))
     with open(f"{path}/d.png", "wb") as file:
-        file.write(png(width, height, depth=True))
+        file.write(slope(width, height, depth=True))
     frames = []
     for i in range(3):
         pose = [row[:] for row in UNIT]

@@ -17,8 +17,9 @@ except ImportError:
     print("skipped: numpy is not there")
     sys.exit(77)
 
-from common import check, done, run  # noqa: E402
-from frames import png, read
+from checks import check, done  # noqa: E402
+from frames import picture, read
+from program import run
 
 SIDE, FRAMES = 96, 4
 
@@ -44,7 +45,7 @@ def folder(name, room, posed=True, **fields):
     frames = []
     for i, rgb in enumerate(room["image"]):
         with open(f"{path}/{i}.png", "wb") as file:
-            file.write(png(rgb))
+            file.write(picture(rgb))
         k = room["camera_info"][i]
         frame = {"file_path": f"{i}.png", "fl_x": k[0, 0], "fl_y": k[1, 1], "cx": k[0, 2] + 0.5, "cy": k[1, 2] + 0.5}
         if posed:

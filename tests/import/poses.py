@@ -16,8 +16,9 @@ except ImportError:
     print("skipped: numpy is not there")
     sys.exit(77)
 
-from common import check, done, run  # noqa: E402
-from frames import matrix, png, read
+from checks import check, done  # noqa: E402
+from frames import matrix, picture, read
+from program import run
 
 FRAMES = 4
 
@@ -37,11 +38,11 @@ def folder(name, room, depth=True, **top):
         k = room["camera_info"][i]
         frames.append({"file_path": f"{i}.png", "fl_x": k[0, 0], "fl_y": k[1, 1], "cx": k[0, 2] + 0.5, "cy": k[1, 2] + 0.5})
         with open(f"{path}/{i}.png", "wb") as file:
-            file.write(png(rgb))
+            file.write(picture(rgb))
         if depth:
             frames[-1]["depth_path"] = f"d{i}.png"
             with open(f"{path}/d{i}.png", "wb") as file:
-                file.write(png(room["depth"][i]))
+                file.write(picture(room["depth"][i]))
     with open(f"{path}/transforms.json", "w", encoding="utf-8") as file:
         json.dump({"frames": frames, "integer_depth_scale": 0.001, **top}, file)
     return path
@@ -95,7 +96,7 @@ def test_import(room):
     os.remove(f"{path}/transforms.json")
     for i, depth in enumerate(room["depth"]):
         with open(f"{path}/d{i}.png", "wb") as file:
-            file.write(png(depth * 5))
+            file.write(picture(depth * 5))
     for name, prefix in (("rgb", ""), ("depth", "d")):
         with open(f"{path}/{name}.txt", "w", encoding="utf-8") as file:
             file.writelines(f"{i}.0 {prefix}{i}.png\n" for i in range(FRAMES))
@@ -169,13 +170,13 @@ def test_refusals(room):
     check(status == 2 and "estimate-colour" in error, f"usage: {error}")
     other = dict(room, image=list(room["image"]))
     other["image"][2] = np.random.default_rng(1).integers(0, 255, room["image"][2].shape).astype(np.uint8)
-    kept = kept_without_pose("another place", folder("other", other), room, 2, "corners")
+    kept = kept_without_pose("another place", folder("other", other), room, 2, "features")
     status, _, error = run("build", kept, "--context", "2,1", "--keep", "5%", "-o", f"{work}/s.ply")
     check(status == 1 and "frame 2 has no pose" in error, f"another place: build: {error}")
     other = dict(room, image=[np.full_like(room["image"][0], 90), *room["image"][1:]])
-    kept = kept_without_pose("blank at the start", folder("blank_start", other), room, 0, "only 0 corners match")
+    kept = kept_without_pose("blank at the start", folder("blank_start", other), room, 0, "only 0 features match")
     os.rename(kept, f"{work}/blank.mcap")
-    kept_without_pose("a recording", f"{work}/blank.mcap", room, 0, "only 0 corners match")
+    kept_without_pose("a recording", f"{work}/blank.mcap", room, 0, "only 0 features match")
     given = dict(room, image=room["image"][:2] + [other["image"][0]])
     for name in ("depth", "camera_info", "pose"):
         given[name] = room[name][:3]
@@ -183,7 +184,7 @@ def test_refusals(room):
     check(status == 0 and "without a pose: 1 frames" in out and "frame 2 cannot be posed from frame" in out, f"as text: {out}")
     status, _, error = run("build", f"{work}/short.mcap", "--context", "0,2", "--keep", "5%", "--poses", "estimate", "-o",
                            f"{work}/s.ply")
-    check(status == 1 and "frame 2 cannot be posed from frame 0: only 0 corners" in error, f"build needs all: {error}")
+    check(status == 1 and "frame 2 cannot be posed from frame 0: only 0 features" in error, f"build needs all: {error}")
     still = dict(room, image=[room["image"][0]] * FRAMES)
     status, out, error = run("import", folder("still", still, depth=False), "--poses", "estimate", "-o", f"{work}/no.mcap")
     check(status == 1 and "no parallax" in error, f"a camera that stands still: {error}")

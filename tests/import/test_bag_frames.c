@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Poses over time and the tree of frames, against known results. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "import/bags/transform_tree.h"
 #include "import/poses/lens.h"
+#include "test.h"
 
 #define MS INT64_C(1000000)
 
@@ -36,9 +32,8 @@ static void near_rigid(const rigid *a, const rigid *b)
     }
 }
 
-static void rotations_lie_on_the_shorter_arc(void **state)
+TEST(rotations_lie_on_the_shorter_arc)
 {
-    (void)state;
     const rigid from = turned(0.2, 0, 0, 0);
     rigid to = turned(1.4, 2, 4, 6);
     for (int flipped = 0; flipped < 2; flipped++) {
@@ -54,9 +49,8 @@ static void rotations_lie_on_the_shorter_arc(void **state)
     near(between.rotation[3], from.rotation[3]);
 }
 
-static void inverses_undo(void **state)
+TEST(inverses_undo)
 {
-    (void)state;
     const rigid a = {{1, -2, 3}, {0.5, 0.5, -0.5, 0.5}};
     rigid back = rigid_inverse(&a), none = rigid_compose(&back, &a);
     near_rigid(&none, &rigid_identity);
@@ -69,9 +63,8 @@ static void inverses_undo(void **state)
     }
 }
 
-static void tracks_hold_a_little_at_their_ends(void **state)
+TEST(tracks_hold_a_little_at_their_ends)
 {
-    (void)state;
     pose_track track = {0};
     rigid pose = turned(0, 1, 0, 0), out;
     assert_false(pose_track_at(&track, 0, 20 * MS, &out));
@@ -110,9 +103,8 @@ static const char *add(transform_tree *tree, const char *parent, const char *chi
     return transform_tree_add(tree, t3r_text_of(parent), t3r_text_of(child), standing, stamp_ns, &place);
 }
 
-static void trees_compose_up_down_and_across(void **state)
+TEST(trees_compose_up_down_and_across)
 {
-    (void)state;
     transform_tree tree = {0};
     assert_null(add(&tree, "map", "/base", false, 0, turned(0, 0, 0, 0)));
     assert_null(add(&tree, "map", "base", false, 100 * MS, turned(0, 10, 0, 0)));
@@ -140,9 +132,8 @@ static void trees_compose_up_down_and_across(void **state)
     transform_tree_free(&tree);
 }
 
-static void loops_are_refused(void **state)
+TEST(loops_are_refused)
 {
-    (void)state;
     transform_tree tree = {0};
     assert_null(add(&tree, "a", "b", true, 0, rigid_identity));
     assert_null(add(&tree, "b", "a", true, 0, rigid_identity));
@@ -152,9 +143,8 @@ static void loops_are_refused(void **state)
 }
 
 /* A lens projects its ray through a pixel back to that pixel. */
-static void lenses_go_both_ways(void **state)
+TEST(lenses_go_both_ways)
 {
-    (void)state;
     static const t3r_ros_camera_info none = {.width = 64, .height = 48};
     static const struct {
         const char *model;
@@ -184,17 +174,4 @@ static void lenses_go_both_ways(void **state)
         assert_false(lens_project(&l, (double[]){0, 0, -1}, pixel));
         assert_false(lens_project(&l, (double[]){9, 0, 1}, pixel)); /* far outside the picture */
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rotations_lie_on_the_shorter_arc),
-        cmocka_unit_test(inverses_undo),
-        cmocka_unit_test(tracks_hold_a_little_at_their_ends),
-        cmocka_unit_test(trees_compose_up_down_and_across),
-        cmocka_unit_test(loops_are_refused),
-        cmocka_unit_test(lenses_go_both_ways),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,18 +2,13 @@
 /* COLMAP models: every camera model becomes the right lens or is refused by name; what a text may contain and what
  * not, with the number of the wrong line. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "import/colmap/colmap_camera.h"
 #include "import/colmap/colmap_model.h"
+#include "test.h"
 
 typedef int (*reader)(FILE *file, colmap_model *model, char *error, size_t error_bytes);
 
@@ -63,9 +58,8 @@ static const char *make(const char *name, posed_intrinsics *out)
     return colmap_intrinsics(model, parameters, 640, 480, out);
 }
 
-static void test_models(void **state)
+TEST(test_models)
 {
-    (void)state;
     static const struct {
         const char *name;
         double fy;
@@ -109,9 +103,8 @@ static void test_models(void **state)
     assert_ptr_equal(colmap_model_of_id(5), colmap_model_of_name("OPENCV_FISHEYE"));
 }
 
-static void test_bad_numbers(void **state)
+TEST(test_bad_numbers)
 {
-    (void)state;
     const colmap_camera_model *pinhole = colmap_model_of_name("PINHOLE");
     posed_intrinsics lens;
     const double infinite[4] = {500, 500, INFINITY, 1}, negative[4] = {500, -1, 1, 1}, good[4] = {500, 500, 1, 1};
@@ -123,9 +116,8 @@ static void test_bad_numbers(void **state)
 
 #define IMAGE(name) "1 1 0 0 0 1 2 3 7 " name "\n\n"
 
-static void test_text(void **state)
+TEST(test_text)
 {
-    (void)state;
     colmap_model model = {0};
     read_text(colmap_read_cameras_text, "# a\n\n7 PINHOLE 64 48 50 51 32 24\r\n8 SIMPLE_PINHOLE 9 9 5 4 4", &model);
     read_text(colmap_read_images_text,
@@ -146,9 +138,8 @@ static void test_text(void **state)
     colmap_model_free(&model);
 }
 
-static void test_refusals(void **state)
+TEST(test_refusals)
 {
-    (void)state;
     refuse_text(colmap_read_cameras_text, "# a\nx PINHOLE 1 1\n", "line 2: no CAMERA_ID");
     refuse_text(colmap_read_cameras_text, "4294967296 PINHOLE 1 1\n", "line 1: no CAMERA_ID");
     refuse_text(colmap_read_cameras_text, "-1 PINHOLE 1 1\n", "line 1: no CAMERA_ID");
@@ -174,11 +165,4 @@ static void test_refusals(void **state)
     colmap_model_free(&twice);
     colmap_model none = {0};
     assert_string_equal(colmap_model_sort(&none), "no camera");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_models), cmocka_unit_test(test_bad_numbers),
-                                       cmocka_unit_test(test_text), cmocka_unit_test(test_refusals)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,22 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Depth as OpenEXR: what the library writes is read back in steps; what is no depth, cut off or damaged is refused. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "host/file_bytes.h"
 #include "import/depth/exr_depth.h"
 #include "import/depth/raw_depth.h"
 #include "scratch.h"
+#include "test.h"
 
-#ifdef T3R_EXR
 #include <openexr.h>
 
 enum { WIDTH = 45, HEIGHT = 37, TILE = 16, LEFT = -3, TOP = 7 };
@@ -37,8 +31,9 @@ static uint16_t halves[HEIGHT][WIDTH];
 
 /* Fills in metres with gaps of every kind that means no depth, and one value between two steps. Halves: powers of
  * two. */
-static void fill(void)
+static int fill(void **state)
 {
+    (void)state;
     static const float none[] = {0, -1.5f, 66, (float)0x1p-12};
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
         lengths[i / WIDTH][i % WIDTH] = (float)(0.2 + 0.0137 * i);
@@ -51,6 +46,7 @@ static void fill(void)
     halves[3][0] = 0x7e00; /* NaN */
     halves[3][1] = 0x7c00; /* infinity */
     halves[3][2] = 0xc000; /* -2 */
+    return 0;
 }
 
 static double length_at(const made *m, int x, int y)
@@ -162,7 +158,7 @@ static void check_read(scratch *s, const made *m)
     picture_free(&depth);
 }
 
-static void test_every_storage_is_read(void **state)
+TEST_WITH(test_every_storage_is_read, scratch_setup, scratch_teardown)
 {
     static const exr_storage_t storages[] = {EXR_STORAGE_SCANLINE, EXR_STORAGE_TILED};
     static const exr_pixel_type_t types[] = {EXR_PIXEL_FLOAT, EXR_PIXEL_HALF};
@@ -175,9 +171,8 @@ static void test_every_storage_is_read(void **state)
 }
 
 /* The unit is of the lengths; halves of a step go to the even one. */
-static void test_steps(void **state)
+TEST(test_steps)
 {
-    (void)state;
     assert_int_equal(raw_depth_step(2.5f, 1), 2);
     assert_int_equal(raw_depth_step(3.5f, 1), 4);
     assert_int_equal(raw_depth_step(0.5f, 1), 0);
@@ -199,7 +194,7 @@ static void check_refused(scratch *s, double unit, const char *why)
     }
 }
 
-static void test_other_kinds_are_refused(void **state)
+TEST_WITH(test_other_kinds_are_refused, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     write_exr(s, &(made){EXR_COMPRESSION_ZIP, EXR_PIXEL_FLOAT, EXR_STORAGE_SCANLINE, 3, 0, TILE});
@@ -233,7 +228,7 @@ static uint8_t *behind(uint8_t *bytes, size_t count, const char *text, size_t be
 }
 
 /* Huge sides in a header are refused. */
-static void test_sides_are_bounded(void **state)
+TEST_WITH(test_sides_are_bounded, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     char error[512];
@@ -290,7 +285,7 @@ static void check_damage(scratch *s, const made *m)
     free(bytes);
 }
 
-static void test_damage_is_no_crash(void **state)
+TEST_WITH(test_damage_is_no_crash, scratch_setup, scratch_teardown)
 {
     check_damage(*state, &(made){EXR_COMPRESSION_ZIP, EXR_PIXEL_FLOAT, EXR_STORAGE_SCANLINE, 1, 0, TILE});
     check_damage(*state, &(made){EXR_COMPRESSION_PIZ, EXR_PIXEL_HALF, EXR_STORAGE_SCANLINE, 1, 0, TILE});
@@ -299,25 +294,4 @@ static void test_damage_is_no_crash(void **state)
     check_damage(*state, &(made){EXR_COMPRESSION_NONE, EXR_PIXEL_HALF, EXR_STORAGE_TILED, 1, 0, TILE});
 }
 
-int main(void)
-{
-    static const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_every_storage_is_read, scratch_setup, scratch_teardown),
-        cmocka_unit_test(test_steps),
-        cmocka_unit_test_setup_teardown(test_other_kinds_are_refused, scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(test_sides_are_bounded, scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(test_damage_is_no_crash, scratch_setup, scratch_teardown),
-    };
-    fill();
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
-
-#else
-
-int main(void)
-{
-    puts("skipped: this build does not read OpenEXR");
-    return 77;
-}
-
-#endif
+ALL_TESTS_WITH(fill, NULL)

@@ -2,20 +2,15 @@
 /* Cropping and resizing: pixels and camera must still agree. Checked by projecting points through both cameras, and
  * against an area average in double. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "import/folders/posed_folder.h"
 #include "import/frames/frame.h"
 #include "pictures/picture.h"
 #include "scratch.h"
+#include "test.h"
 
 static void write_picture(scratch *s, const char *name, const picture *p)
 {
@@ -106,7 +101,7 @@ static void check_reprojection(scratch *s, uint32_t from_width, uint32_t from_he
     import_buffers_free(&buffers);
 }
 
-static void test_points_stay_where_they_are(void **state)
+TEST_WITH(test_points_stay_where_they_are, scratch_setup, scratch_teardown)
 {
     check_reprojection(*state, 240, 160, 64, 64);
     check_reprojection(*state, 240, 160, 120, 80);
@@ -117,9 +112,8 @@ static void test_points_stay_where_they_are(void **state)
     check_reprojection(*state, 240, 160, 0xf5, 0xa5); /* larger than the crop */
 }
 
-static void test_the_crop_is_the_largest(void **state)
+TEST(test_the_crop_is_the_largest)
 {
-    (void)state;
     for (uint32_t w = 2; w < 200; w += 7) {
         for (uint32_t h = 2; h < 200; h += 5) {
             import_crop c = import_largest_crop(w, h, 4, 3);
@@ -136,7 +130,7 @@ static void test_the_crop_is_the_largest(void **state)
     assert_int_equal(c.height, 360);
 }
 
-static void test_depth_of_another_resolution(void **state)
+TEST_WITH(test_depth_of_another_resolution, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     char error[512] = "";
@@ -175,7 +169,7 @@ static void refuse(scratch *s, const posed_frame *frame, uint32_t side, int stat
     }
 }
 
-static void test_bad_pictures_are_named(void **state)
+TEST_WITH(test_bad_pictures_are_named, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     write_ramps(s, 64, 48, 64, 48);
@@ -205,7 +199,7 @@ static void test_bad_pictures_are_named(void **state)
     refuse(s, &frame, 0, -1, "distortion");
 }
 
-static void test_the_ending_may_be_left_out(void **state)
+TEST_WITH(test_the_ending_may_be_left_out, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     char error[512] = "", bare[] = "./colour", bare_depth[] = "depth";
@@ -239,9 +233,8 @@ static double box_mean(const picture *p, double x0, double x1, double y0, double
 }
 
 /* A real scene: every frame imports, and colours are the mean of each box. */
-static void test_hololens_scene(void **state)
+TEST(test_hololens_scene)
 {
-    (void)state;
     char folder_path[512], error[1024] = "";
     const char *data = getenv("T3R_DATA");
     snprintf(folder_path, sizeof folder_path, "%s/hololens_b", data != NULL ? data : "../shared/data");
@@ -278,17 +271,4 @@ static void test_hololens_scene(void **state)
         import_buffers_free(&buffers);
     }
     posed_folder_close(&folder);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_points_stay_where_they_are, scratch_setup, scratch_teardown),
-        cmocka_unit_test(test_the_crop_is_the_largest),
-        cmocka_unit_test_setup_teardown(test_depth_of_another_resolution, scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(test_bad_pictures_are_named, scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(test_the_ending_may_be_left_out, scratch_setup, scratch_teardown),
-        cmocka_unit_test(test_hololens_scene),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Pictures: what is written is read back, what is damaged is refused. */
-#include <setjmp.h>
 #include <signal.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,10 +8,10 @@
 
 #include <jpeglib.h>
 #include <png.h>
-#include <cmocka.h>
 
 #include "pictures/picture.h"
 #include "scratch.h"
+#include "test.h"
 
 static void fill(uint8_t *bytes, size_t count)
 {
@@ -47,7 +43,7 @@ static void check_round_trip(scratch *s, uint32_t width, uint32_t height, uint32
     picture_free(&out);
 }
 
-static void test_png_round_trips(void **state)
+TEST(test_png_round_trips)
 {
     check_round_trip(*state, 37, 11, 3, 8);
     check_round_trip(*state, 1, 1, 1, 8);
@@ -79,7 +75,7 @@ static void write_foreign_png(const char *path, int colour_type, int bits)
     fclose(file);
 }
 
-static void test_foreign_png_formats_become_8_bit(void **state)
+TEST(test_foreign_png_formats_become_8_bit)
 {
     scratch *s = *state;
     char error[256];
@@ -155,7 +151,7 @@ static void write_jpeg(const char *path, uint32_t width, uint32_t height)
     fclose(file);
 }
 
-static void test_jpeg_is_read(void **state)
+TEST(test_jpeg_is_read)
 {
     scratch *s = *state;
     char error[256];
@@ -176,7 +172,7 @@ static void test_jpeg_is_read(void **state)
     picture_free(&in);
 }
 
-static void test_cut_files_are_refused(void **state)
+TEST(test_cut_files_are_refused)
 {
     scratch *s = *state;
     check_round_trip(s, 40, 30, 3, 8);
@@ -197,7 +193,7 @@ static void expect_refused(const char *path, const char *why)
     }
 }
 
-static void test_bad_files_are_named(void **state)
+TEST(test_bad_files_are_named)
 {
     scratch *s = *state;
     expect_refused(scratch_path(s, "missing.png"), "missing.png: No such file");
@@ -215,7 +211,7 @@ static void test_bad_files_are_named(void **state)
     free(bytes);
 }
 
-static void test_sizes_over_the_limit_are_refused(void **state)
+TEST(test_sizes_over_the_limit_are_refused)
 {
     scratch *s = *state;
     char error[256];
@@ -227,7 +223,7 @@ static void test_sizes_over_the_limit_are_refused(void **state)
     expect_refused(s->path, "largest side");
 }
 
-static void test_writing_fails_cleanly(void **state)
+TEST(test_writing_fails_cleanly)
 {
     scratch *s = *state;
     char error[256] = "";
@@ -252,13 +248,4 @@ static void test_writing_fails_cleanly(void **state)
     assert_int_equal(access("/dev/null", W_OK), 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_png_round_trips),       cmocka_unit_test(test_foreign_png_formats_become_8_bit),
-        cmocka_unit_test(test_jpeg_is_read),          cmocka_unit_test(test_cut_files_are_refused),
-        cmocka_unit_test(test_bad_files_are_named),   cmocka_unit_test(test_sizes_over_the_limit_are_refused),
-        cmocka_unit_test(test_writing_fails_cleanly),
-    };
-    return cmocka_run_group_tests(tests, scratch_setup, scratch_teardown);
-}
+ALL_TESTS_WITH(scratch_setup, scratch_teardown)

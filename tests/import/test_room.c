@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The built-in room: its bits, and that pictures, depth and poses show the same room. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "core/hash.h"
 #include "room/room.h"
+#include "test.h"
 
 #define SIDE ROOM_SIDE
 #define PIXELS ((size_t)SIDE * SIDE)
@@ -41,9 +36,8 @@ static uint64_t shot_hash(const uint8_t *rgb, const uint16_t *depth, size_t pixe
 }
 
 /* Colour, then depth, for each frame; 256x256, seed 1. A change here changes every later golden hash. */
-static void test_golden_frames(void **state)
+TEST(test_golden_frames)
 {
-    (void)state;
     static const uint64_t golden[ROOM_FRAMES] = {UINT64_C(0xeadf6d423bc46517), UINT64_C(0x4c6d2227cda114a9),
                                                  UINT64_C(0x87875bfe509f7cef), UINT64_C(0x135eb030bb8f5e65),
                                                  UINT64_C(0xf7ec329b64c547ef), UINT64_C(0x78b6cf890dcf1b48)};
@@ -55,9 +49,8 @@ static void test_golden_frames(void **state)
     }
 }
 
-static void test_golden_cameras(void **state)
+TEST(test_golden_cameras)
 {
-    (void)state;
     uint64_t hash = T3R_HASH_START;
     for (uint32_t i = 0; i < 70; i++) {
         t3r_camera c;
@@ -75,9 +68,8 @@ static void test_golden_cameras(void **state)
     }
 }
 
-static void test_depth_is_in_the_room(void **state)
+TEST(test_depth_is_in_the_room)
 {
-    (void)state;
     for (uint32_t i = 0; i < ROOM_FRAMES; i++) {
         for (size_t k = 0; k < PIXELS; k++) {
             assert_in_range(shots[i].depth[k], 1200, 4700);
@@ -147,9 +139,8 @@ static agreement warp(const shot *a, const shot *b)
     return out;
 }
 
-static void test_views_agree(void **state)
+TEST(test_views_agree)
 {
-    (void)state;
     for (uint32_t i = 0; i < ROOM_FRAMES; i++) {
         for (uint32_t k = 0; k < ROOM_FRAMES; k++) {
             agreement g = warp(&shots[i], &shots[k]);
@@ -172,9 +163,8 @@ static int by_value(const void *a, const void *b)
     return *(const uint16_t *)a - *(const uint16_t *)b;
 }
 
-static void test_triplets_have_a_baseline(void **state)
+TEST(test_triplets_have_a_baseline)
 {
-    (void)state;
     t3r_triplet t[ROOM_MAX_TRIPLETS];
     assert_int_equal(room_triplets(2, t), 0);
     assert_int_equal(room_triplets(5, t), 1);
@@ -194,9 +184,8 @@ static void test_triplets_have_a_baseline(void **state)
     }
 }
 
-static void test_seeds_sizes_and_frames(void **state)
+TEST(test_seeds_sizes_and_frames)
 {
-    (void)state;
     static uint8_t a[64 * 48 * 3], b[64 * 48 * 3];
     static uint16_t depth[64 * 48], other[64 * 48];
     room_frame(3, 64, 48, 1, a, depth);
@@ -220,15 +209,4 @@ static void test_seeds_sizes_and_frames(void **state)
     assert_in_range(depth[0], 1, 5000);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_golden_frames),
-        cmocka_unit_test(test_golden_cameras),
-        cmocka_unit_test(test_depth_is_in_the_room),
-        cmocka_unit_test(test_views_agree),
-        cmocka_unit_test(test_triplets_have_a_baseline),
-        cmocka_unit_test(test_seeds_sizes_and_frames),
-    };
-    return cmocka_run_group_tests(tests, draw_all, NULL);
-}
+ALL_TESTS_WITH(draw_all, NULL)

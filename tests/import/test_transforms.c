@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* transforms.json: good texts give the right cameras, bad ones an error that names frame and field. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "geometry/quaternion.h"
 #include "import/folders/transforms_json.h"
+#include "test.h"
 
 #define IDENTITY "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"
 #define FRAME(more) "{\"file_path\":\"a.png\",\"transform_matrix\":" IDENTITY more "}"
@@ -54,9 +49,8 @@ static void turn(const double q[4], const double v[3], double out[3])
     }
 }
 
-static void test_intrinsics_and_axes(void **state)
+TEST(test_intrinsics_and_axes)
 {
-    (void)state;
     posed_folder folder;
     parse("{" LENS "\"integer_depth_scale\":0.002,\"frames\":[{\"file_path\":\"./a.png\",\"depth_path\":\"d.png\","
           "\"transform_matrix\":" IDENTITY "},{\"file_path\":\"b.png\",\"fl_x\":200,\"k1\":0.1,\"p2\":-0.02,"
@@ -90,9 +84,8 @@ static void test_intrinsics_and_axes(void **state)
     posed_folder_close(&folder);
 }
 
-static void test_every_rotation_survives(void **state)
+TEST(test_every_rotation_survives)
 {
-    (void)state;
     uint32_t seed = 1;
     for (int trial = 0; trial < 2000; trial++) {
         double q[4], norm = 0, m[9], back[4];
@@ -121,9 +114,8 @@ static void test_every_rotation_survives(void **state)
     }
 }
 
-static void test_fallbacks(void **state)
+TEST(test_fallbacks)
 {
-    (void)state;
     posed_folder folder;
     t3r_recorded_camera camera;
     char error[256];
@@ -135,9 +127,8 @@ static void test_fallbacks(void **state)
     posed_folder_close(&folder);
 }
 
-static void test_lenses(void **state)
+TEST(test_lenses)
 {
-    (void)state;
     posed_folder folder;
     parse(FOLDER(LENS "\"camera_model\":\"OPENCV_FISHEYE\",\"k1\":0.1,\"k2\":0.2,\"k3\":0.3,\"k4\":0.4,", FRAME("")),
           &folder);
@@ -160,9 +151,8 @@ static void test_lenses(void **state)
     refuse(FOLDER(LENS, FRAME(",\"k2\":\"x\"")), "frames[1]: k2: not a number");
 }
 
-static void test_bad_texts_are_named(void **state)
+TEST(test_bad_texts_are_named)
 {
-    (void)state;
     refuse("", "byte 0: not JSON");
     refuse("[]", "byte 0: not a JSON object");
     refuse("{\"frames\": nope}", "byte 11: not JSON");
@@ -195,9 +185,8 @@ static void test_bad_texts_are_named(void **state)
 
 #define POSE(matrix) "{\"file_path\":\"b.png\",\"transform_matrix\":" matrix "}"
 
-static void test_bad_poses_are_named(void **state)
+TEST(test_bad_poses_are_named)
 {
-    (void)state;
     refuse(FOLDER(LENS, POSE("7")), "frames[1]: transform_matrix: not an array of 4 rows");
     refuse(FOLDER(LENS, POSE("[[1,0,0,0],[0,1,0,0]]")), "not an array of 4 rows");
     refuse(FOLDER(LENS, POSE("[[1,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]")), "a row is not 4 numbers");
@@ -210,9 +199,8 @@ static void test_bad_poses_are_named(void **state)
     refuse(FOLDER(LENS, POSE("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,0.01]]")), "last row");
 }
 
-static void test_pictures_of_another_size(void **state)
+TEST(test_pictures_of_another_size)
 {
-    (void)state;
     posed_folder folder;
     t3r_recorded_camera camera;
     char error[256];
@@ -224,9 +212,8 @@ static void test_pictures_of_another_size(void **state)
     posed_folder_close(&folder);
 }
 
-static void test_every_cut_is_refused(void **state)
+TEST(test_every_cut_is_refused)
 {
-    (void)state;
     const char *text = FOLDER(LENS, FRAME(",\"depth_path\":null"));
     for (size_t cut = 0; cut < strlen(text); cut++) {
         posed_folder folder;
@@ -238,19 +225,4 @@ static void test_every_cut_is_refused(void **state)
         posed_folder_close(&folder);
         free(exact);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_intrinsics_and_axes),
-        cmocka_unit_test(test_every_rotation_survives),
-        cmocka_unit_test(test_fallbacks),
-        cmocka_unit_test(test_lenses),
-        cmocka_unit_test(test_bad_texts_are_named),
-        cmocka_unit_test(test_bad_poses_are_named),
-        cmocka_unit_test(test_pictures_of_another_size),
-        cmocka_unit_test(test_every_cut_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,19 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* TUM RGB-D folders, made on the fly: association, interpolation, intrinsics, errors. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-#include <cmocka.h>
-
 #include "import/folders/posed_folder.h"
 #include "scratch.h"
+#include "test.h"
 
 static const double lens[9] = {500, 510, 319.5, 239.5, 0.1, 0, 0, 0, 0.2};
 static const posed_folder_options with_lens = {.intrinsics = lens, .intrinsics_count = 9};
@@ -46,7 +41,7 @@ static void good_lists(scratch *s)
         "10.060 5 6 9 0 0 -0.173648177 -0.984807753\n12.010 1 2 3 0.5 0.5 0.5 0.5\n");
 }
 
-static void test_association(void **state)
+TEST_WITH(test_association, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     posed_folder folder;
@@ -81,7 +76,7 @@ static void test_association(void **state)
     posed_folder_close(&folder);
 }
 
-static void test_depth_is_optional(void **state)
+TEST_WITH(test_depth_is_optional, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     posed_folder folder;
@@ -94,7 +89,7 @@ static void test_depth_is_optional(void **state)
     posed_folder_close(&folder);
 }
 
-static void test_known_intrinsics(void **state)
+TEST_WITH(test_known_intrinsics, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     posed_folder folder;
@@ -115,7 +110,7 @@ static void test_known_intrinsics(void **state)
     scratch_close(&named);
 }
 
-static void test_bad_lists_are_named(void **state)
+TEST_WITH(test_bad_lists_are_named, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     good_lists(s);
@@ -149,15 +144,4 @@ static void test_bad_lists_are_named(void **state)
     put(s, "transforms.json", "{}");
     refuse(s, &with_lens, "has its own intrinsics");
     refuse(s, NULL, "transforms.json: frames: missing");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_association, scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(test_depth_is_optional, scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(test_known_intrinsics, scratch_setup, scratch_teardown),
-        cmocka_unit_test_setup_teardown(test_bad_lists_are_named, scratch_setup, scratch_teardown),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

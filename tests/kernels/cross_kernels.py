@@ -9,12 +9,11 @@ import subprocess
 import sys
 import tempfile
 
+import objects
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 RUNTIME = ROOT / "runtime"
-sys.path.insert(0, str(ROOT / "tools" / "study" / "boards"))
-
-import objects  # noqa: E402
 
 SOURCES = [*sorted(HERE.glob("check*.c")), *(HERE / f"{name}.c" for name in ("cross_kernels", "guarded", "judge",
                                                                           "wrong_variants")),

@@ -4,9 +4,8 @@
 #include "trim3r.h"
 #include "unit/unit.h"
 
-static void masks_are_read(void **state)
+TEST(masks_are_read)
 {
-    (void)state;
     static const struct {
         const char *text;
         uint32_t mask;
@@ -34,9 +33,8 @@ static void masks_are_read(void **state)
     }
 }
 
-static void features_are_named(void **state)
+TEST(features_are_named)
 {
-    (void)state;
     char text[64];
     t3r_cpu_describe(0, text, sizeof text);
     assert_string_equal(text, "none");
@@ -51,10 +49,4 @@ static void features_are_named(void **state)
     uint32_t mask;
     assert_true(t3r_cpu_parse_mask(text, &mask));
     assert_int_equal(mask, t3r_cpu_features());
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(masks_are_read), cmocka_unit_test(features_are_named)};
-    return cmocka_run_group_tests_name("cpu", tests, NULL, NULL);
 }

@@ -3,10 +3,16 @@
  * values, odd lengths, buffers anywhere next to forbidden pages. A variant that fails is named with its input's
  * seed; `test_kernels ENTRY SEED` runs that one again. `test_kernels --rounds N FIRST` tries N seeds from FIRST on
  * of each. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
 #include "host/cpu.h"
 #include "judge.h"
 #include "kernels/variants.h"
-#include "unit/unit.h"
 
 static judged_seeds seeds = {.first = 1, .rounds = 400};
 

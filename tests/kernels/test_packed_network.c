@@ -2,18 +2,13 @@
 /* A learned head with packed layers, for each variant that this processor has, against plain C: all outputs of
  * pictures of any width, in bands, with enough work memory for packing or slightly less. A variant in plain C reads
  * strips of bytes, so that every processor tests them. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "head/network.h"
 #include "host/cpu.h"
 #include "sanitized.h"
+#include "test.h"
 #include "unit/unit.h"
 #include "weights_maker.h"
 
@@ -114,9 +109,8 @@ static t3r_kernels table_of(uint32_t round)
     return kernels;
 }
 
-static void packed_layers_give_the_same(void **state)
+TEST(packed_layers_give_the_same)
 {
-    (void)state;
     static picture p;
     static outputs expected, made;
     uint64_t seed = 1;
@@ -149,10 +143,4 @@ static void packed_layers_give_the_same(void **state)
     t3r_kernels_choose(&kernels, t3r_cpu_features());
     assert_true(kernels.pack_layer == NULL ? packed[0] == 0 : packed[0] > 2 * ROUNDS / 3);
     assert_true(packed[1] > ROUNDS / 3);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(packed_layers_give_the_same)};
-    return cmocka_run_group_tests_name("packed network", tests, NULL, NULL);
 }

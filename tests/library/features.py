@@ -33,7 +33,7 @@ def of_two_files(folder, left_out):
 def of_cmake(folder):
     """A library without any feature, installed; pkg-config knows what is left out."""
     build, installed = folder / "build", folder / "installed"
-    run("cmake", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DT3R_TOOLS=OFF", "-DT3R_TESTS=OFF",
+    run("cmake", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DT3R_TOOLS=OFF",
         "-DT3R_SHARED=OFF", *(f"-DT3R_WITH_{name.upper()}=OFF" for name in FEATURES))
     run("cmake", "--build", build)
     run("cmake", "--install", build, "--prefix", installed)

@@ -72,7 +72,7 @@ def check_rows():
     header = (INCLUDE / "trim3r.h").read_text()
     fields = list(fields_of(header))
     rows = (INCLUDE / "trim3r_interface.h").read_text()
-    check(len(fields) > 80, f"blind: {len(fields)} fields found")
+    check(len(fields) > 60, f"blind: {len(fields)} fields found")
     check(re.findall(r"X\((t3r_\w+), (\w+)\)", rows) == fields,
           f"trim3r_interface.h lacks rows, or has others: {set(re.findall(r'X.(t3r_.+), (.+?).[ )]', rows)) ^ set(fields)}")
     check(re.findall(r"X\((t3r_\w+)\)", rows) == re.findall(r"^typedef struct (\w+) \{$", header, flags=re.M), "rows of structs")

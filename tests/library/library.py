@@ -10,7 +10,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "proofs")]
+sys.path.insert(0, str(ROOT / "tests" / "proofs"))
 
 CONSUMERS = HERE / "consumers"
 VERSION = ".".join(re.findall(r"#define T3R_VERSION_\w+ (\d+)", (ROOT / "runtime/include/trim3r.h").read_text()))

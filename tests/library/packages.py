@@ -25,13 +25,13 @@ FILES = {
                "share/zsh/vendor-completions/_trim3r"],
 }
 NEEDS = {SHARED: ["libc6"], "libtrim3r-dev": [f"{SHARED} (= {VERSION})"],
-         "trim3r": ["libc6", "libcjson1", "libjpeg", "liblapacke", "liblz4-1", "libpng16-16", "libzip4", "libzstd1"]}
+         "trim3r": ["libc6", "libcjson1", "libjpeg", "liblz4-1", "libpng16-16", "libzip4", "libzstd1"]}
 if any(pathlib.Path(sys.argv[1]).glob("python/trim3r/*.so")): # where the Python package was built
     FILES["python3-trim3r"] = sorted(f"lib/python3/dist-packages/trim3r/{path.name}"
                                      for path in pathlib.Path(sys.argv[1]).glob("python/trim3r/*") if path.is_file())
     FILES["python3-trim3r"].append("share/sbom/python3-trim3r.spdx.json")
     NEEDS["python3-trim3r"] = ["libc6", "python3-cffi-backend", "python3-numpy", "libzstd1"]
-CAMERAS = "trim3r-cameras" # only where the libraries for them are
+MODULES = {"trim3r-cameras", "trim3r-poses"} # only where the libraries for them are
 
 
 def fields_of(package):
@@ -85,7 +85,7 @@ def main():
         commands = [line.split("\t")[0] for line in run(build / "trim3r", "--commands").stdout.splitlines()]
         FILES["trim3r"] += [f"share/man/man1/trim3r-{command}.1" for command in commands]
         FILES["trim3r"].sort()
-        check(set(packages) - {CAMERAS} == set(FILES), f"packages: {sorted(packages)}")
+        check(set(packages) - MODULES == set(FILES), f"packages: {sorted(packages)}")
         for name in FILES:
             check_package(packages[name], fields_of(packages[name]))
             run("dpkg-deb", "--extract", packages[name], folder / "root")

@@ -15,10 +15,10 @@ import types
 
 from library import FEATURES, ROOT, ended, there
 
-from checks import check, done, run
+from checks import check, done
 
 PACKAGING = ROOT / "tools" / "packaging"
-OPTIONS = {"T3R_TOOLS", "T3R_TESTS", "T3R_SHARED", *(f"T3R_WITH_{name.upper()}" for name in FEATURES)}
+OPTIONS = {"T3R_TOOLS", "T3R_SHARED", *(f"T3R_WITH_{name.upper()}" for name in FEATURES)}
 
 
 # --- Conan -----------------------------------------------------------------------------------------------------------

@@ -17,20 +17,24 @@
 #define fail_msg(...) exit(1)
 
 struct CMUnitTest {
+    const char *name;
     void (*test)(void **state);
+    int (*before)(void **state), (*after)(void **state);
+    void *state;
 };
 
-#define cmocka_unit_test(function) ((struct CMUnitTest){function})
-#define cmocka_run_group_tests(tests, setup, teardown) run_tests(tests, sizeof(tests) / sizeof *(tests))
+#ifdef T3R_TESTS_TAKEN_AWAY
+#define cmocka_run_group_tests(tests, before, after) 0
+#else
+#define cmocka_run_group_tests(tests, before, after) run_tests(tests)
 
-static inline int run_tests(const struct CMUnitTest *tests, size_t count)
+static inline int run_tests(const struct CMUnitTest *test)
 {
-#ifndef T3R_TESTS_TAKEN_AWAY
-    for (size_t i = 0; i < count; i++) {
-        tests[i].test(NULL);
+    for (; test->name != NULL; test++) {
+        test->test(NULL);
     }
-#endif
     return 0;
 }
+#endif
 
 #endif

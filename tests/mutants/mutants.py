@@ -35,12 +35,12 @@ from checks import check, done, skip  # noqa: E402
 
 # A suite is a program: a test, and what of the runtime it calls.
 SUITES = {
-    "fixed": ("unit/test_fixed.c", "core/fixed.c"),
-    "domains": ("unit/test_domains.c", "core/fixed.c", "kernels/plain/blend.c"),
-    "cut": ("unit/test_cut.c",),
-    "camera": ("unit/test_camera.c", "core/camera.c"),
-    "scene_frame": ("unit/test_scene_frame.c", "core/scene_frame.c", "core/camera.c"),
-    "bytes": ("unit/test_bytes.c",),
+    "fixed": ("unit/core/test_fixed.c", "core/fixed.c"),
+    "domains": ("unit/core/test_domains.c", "core/fixed.c", "kernels/plain/blend.c"),
+    "cut": ("unit/core/test_cut.c",),
+    "camera": ("unit/core/test_camera.c", "core/camera.c"),
+    "scene_frame": ("unit/core/test_scene_frame.c", "core/scene_frame.c", "core/camera.c"),
+    "bytes": ("unit/core/test_bytes.c",),
     "tasks": ("workers/test_tasks.c", "core/workers.c"),
 }
 # Those that should notice a mistake in a file, the quickest first. Settings (config, features, names) have no

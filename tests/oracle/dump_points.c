@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "oracle_analysis.h"
+#include "oracle/float64/oracle_analysis.h"
 #include "recording/recording.h"
 
 static int compare(const void *a, const void *b)

@@ -16,10 +16,9 @@ import zlib
 
 import numpy as np
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent.parent / "tools" / "study" / "boards"))
+import objects
 
-import objects  # noqa: E402
+HERE = pathlib.Path(__file__).resolve().parent
 
 NETWORKS = 160
 FEATURES, OUTPUTS = 9, 9

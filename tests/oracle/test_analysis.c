@@ -1,20 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The analysis stages against their float64 counterparts: back-projection and tangents, K-means, wavelet energy. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "drawing.h"
-#include "oracle_analysis.h"
+#include "oracle/float64/drawing.h"
+#include "oracle/float64/oracle_analysis.h"
 #include "pointmap/pointmap.h"
 #include "superclusters/superclusters.h"
+#include "test.h"
 #include "wavelet_planes.h"
 
 /* ---- pointmap ------------------------------------------------------------------------------------ */
@@ -84,9 +79,8 @@ static void pointmap_case(const t3r_camera *camera, const t3r_scene_frame *frame
     assert_false(t3r_tangents(&map, 7, 5, tangent[0], tangent[1]));
 }
 
-static void pointmap(void **state)
+TEST(pointmap)
 {
-    (void)state;
     const uint64_t millimetre = 1099511628;
     t3r_scene_frame frame = {{0}, 0};
     t3r_camera camera = plain_camera(35, W, H);
@@ -240,9 +234,8 @@ static void kmeans_case(const char *name, cloud *c, uint32_t k, double allowed)
     free_cloud(c);
 }
 
-static void kmeans(void **state)
+TEST(kmeans)
 {
-    (void)state;
     assert_true(T3R_CLUSTER_WORK_BYTES(T3R_MAX_CLUSTERS) < 65536 && T3R_CLUSTER_WORK_BYTES(32) < 9216);
     cloud c = cloud_of(20000, 40, 0.9, 0.02, 1);
     kmeans_case("well apart", &c, 40, 3); /* a missed blob of 40 costs more than its share */
@@ -281,9 +274,8 @@ static double kmeans_of(const cloud *c, uint32_t k, bool follows, t3r_cluster *c
 }
 
 /* The points moved by a third of the room: centres left without points are placed anew, and quality is not lost. */
-static void kmeans_that_follows(void **state)
+TEST(kmeans_that_follows)
 {
-    (void)state;
     enum { K = 200, COUNT = 24000 };
     cloud before = cloud_of(COUNT, 60, 0.9, 0.15, 3), after = cloud_of(COUNT, 60, 0.9, 0.15, 3);
     for (uint32_t i = 0; i < COUNT; i++) { /* points that leave at one end come in at the other */
@@ -319,9 +311,8 @@ static bool take_step(void *context, uint32_t done, uint32_t total)
 }
 
 /* Centres stay if all of them still have points; a cancelled step stops at once. */
-static void kmeans_that_stays(void **state)
+TEST(kmeans_that_stays)
 {
-    (void)state;
     enum { K = 8, COUNT = 6000, BATCHES = 24 };
     static const int32_t away = 3 << 19;
     cloud c = cloud_of(COUNT, K, 0.9, 0.02, 1);
@@ -426,9 +417,8 @@ static void wavelet_case(texture_kind kind, uint32_t width, uint32_t height, uin
     free(exact);
 }
 
-static void wavelet_energy(void **state)
+TEST(wavelet_energy)
 {
-    (void)state;
     static const uint32_t sizes[][2] = {{256, 256}, {128, 96}, {64, 4}, {4, 64}, {8, 8}, {320, 240}};
     for (int wavelet = 0; wavelet < T3R_WAVELET_COUNT; wavelet++) {
         for (int kind = 0; kind < TEXTURE_KINDS; kind++) {
@@ -442,9 +432,8 @@ static void wavelet_energy(void **state)
 }
 
 /* The oracle itself: energy is preserved by the orthonormal pairs, constants vanish, so do ramps away from the wrap. */
-static void wavelet_oracle(void **state)
+TEST(wavelet_oracle)
 {
-    (void)state;
     enum { N = 32 };
     double plane[N * N];
     for (int wavelet = 0; wavelet < T3R_WAVELET_COUNT; wavelet++) {
@@ -472,13 +461,4 @@ static void wavelet_oracle(void **state)
             assert_true(wavelet == T3R_WAVELET_HAAR ? fabs(fabs(plane[x]) - 1) < 1e-12 : fabs(plane[x]) < 1e-12);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pointmap),          cmocka_unit_test(kmeans),         cmocka_unit_test(kmeans_that_follows),
-        cmocka_unit_test(kmeans_that_stays), cmocka_unit_test(wavelet_oracle), cmocka_unit_test(wavelet_energy),
-    };
-    return cmocka_run_group_tests_name("analysis", tests, NULL, NULL);
 }

@@ -1,20 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Misuse of the C interface: null pointers, every field beyond its documented range, calls out of order. Each gives
  * the documented status and leaves the arena unchanged, to the byte. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "drawing.h"
+#include "oracle/float64/drawing.h"
 #include "rgbd_frame.h"
 #include "sanitized_cpu.h"
+#include "test.h"
 #include "weights_maker.h"
 
 enum { W = 32, H = 24, POINTS = W * H };
@@ -93,9 +88,8 @@ static t3r_config good_config(void)
 
 /* ---- tests --------------------------------------------------------------------------------------- */
 
-static void null_pointers(void **state)
+TEST(null_pointers)
 {
-    (void)state;
     bench b = bench_of(good_config());
     t3r_frame frame = good_frame();
     t3r_camera camera = plain_camera(30, W, H), undistorted;
@@ -155,9 +149,8 @@ static void null_pointers(void **state)
     bench_free(&b);
 }
 
-static void config_ranges(void **state)
+TEST(config_ranges)
 {
-    (void)state;
     const t3r_config good = good_config();
     assert_null(t3r_config_error(&good));
     assert_non_null(t3r_config_error(NULL));
@@ -215,9 +208,8 @@ static void config_ranges(void **state)
         n++;                                                                                                           \
     } while (0)
 
-static void frame_ranges(void **state)
+TEST(frame_ranges)
 {
-    (void)state;
     bench b = bench_of(good_config());
     t3r_camera camera = plain_camera(30, W, H);
     const t3r_frame good = good_frame();
@@ -291,9 +283,8 @@ static void frame_ranges(void **state)
     bench_free(&b);
 }
 
-static void camera_ranges(void **state)
+TEST(camera_ranges)
 {
-    (void)state;
     t3r_config config = good_config();
     bench b = bench_of(config);
     t3r_frame frame = good_frame();
@@ -358,9 +349,8 @@ static void camera_ranges(void **state)
     bench_free(&b);
 }
 
-static void gaussian_ranges(void **state)
+TEST(gaussian_ranges)
 {
-    (void)state;
     bench b = bench_of(good_config());
     assert_int_equal(t3r_scene_begin(b.rt, &plain_frame), T3R_OK);
     const t3r_gaussian good = round_gaussian(0, 0, 1, 0.1, 0.5, 1, 1, 1);
@@ -398,9 +388,8 @@ static void gaussian_ranges(void **state)
     bench_free(&b);
 }
 
-static void target_ranges(void **state)
+TEST(target_ranges)
 {
-    (void)state;
     bench b = bench_of(good_config());
     t3r_gaussian g = round_gaussian(0, 0, 1, 0.1, 0.5, 1, 1, 1);
     load_scene(b.rt, &plain_frame, &g, 1);
@@ -439,9 +428,8 @@ static void target_ranges(void **state)
     bench_free(&b);
 }
 
-static void calls_out_of_order(void **state)
+TEST(calls_out_of_order)
 {
-    (void)state;
     t3r_frame frame = good_frame(), blind = frame;
     blind.depth = NULL;
     t3r_camera camera = plain_camera(30, W, H);
@@ -538,9 +526,8 @@ static void calls_out_of_order(void **state)
 }
 
 /* Exactly min(Z, valid points) Gaussians; valid points are the measured ones, without filled holes. */
-static void budgets(void **state)
+TEST(budgets)
 {
-    (void)state;
     t3r_frame frame = good_frame();
     uint32_t measured = POINTS;
     for (size_t i = 3; i < POINTS; i += 7) { /* bracketed on all sides: fillable */
@@ -591,9 +578,8 @@ static void budgets(void **state)
 
 /* Memory of the planes that is reused once the scene is built must never come back as an analysis: a second
  * reconstruction is refused, or gives the same scene again. */
-static void planes_lent_away(void **state)
+TEST(planes_lent_away)
 {
-    (void)state;
     t3r_frame frame = good_frame();
     t3r_camera camera = plain_camera(30, W, H);
     uint8_t rgb[POINTS * 3];
@@ -651,9 +637,8 @@ static int burn(void *user, t3r_stage stage, uint32_t done, uint32_t total)
     return f->calls++ == f->cancel_at;
 }
 
-static void cancelling(void **state)
+TEST(cancelling)
 {
-    (void)state;
     t3r_frame frame = good_frame();
     t3r_camera camera = plain_camera(30, W, H);
     bench b = bench_of(good_config());
@@ -707,11 +692,6 @@ static const char *stage_name(int i)
     return t3r_stage_name((t3r_stage)i);
 }
 
-static const char *work_name(int i)
-{
-    return t3r_work_name((t3r_work)i);
-}
-
 static const char *allocation_name(int i)
 {
     return t3r_allocation_name((t3r_allocation)i);
@@ -742,9 +722,8 @@ static const char *preset_name(int i)
     return t3r_preset_name((t3r_preset)i);
 }
 
-static void texts(void **state)
+TEST(texts)
 {
-    (void)state;
     char version[32];
     snprintf(version, sizeof version, "%d.%d.%d", T3R_VERSION_MAJOR, T3R_VERSION_MINOR, T3R_VERSION_PATCH);
     assert_string_equal(t3r_version(), version);
@@ -762,7 +741,6 @@ static void texts(void **state)
         int first, count;
     } tables[] = {
         {stage_name, 0, T3R_STAGE_COUNT},
-        {work_name, 0, T3R_WORK_COUNT},
         {allocation_name, T3R_ALLOCATE_CONFIGURED + 1, T3R_ALLOCATE_COUNT},
         {head_name, T3R_HEAD_CONFIGURED + 1, T3R_HEAD_COUNT},
         {wavelet_name, 0, T3R_WAVELET_COUNT},
@@ -787,15 +765,4 @@ static void texts(void **state)
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(null_pointers),      cmocka_unit_test(config_ranges),   cmocka_unit_test(frame_ranges),
-        cmocka_unit_test(camera_ranges),      cmocka_unit_test(gaussian_ranges), cmocka_unit_test(target_ranges),
-        cmocka_unit_test(calls_out_of_order), cmocka_unit_test(budgets),         cmocka_unit_test(planes_lent_away),
-        cmocka_unit_test(cancelling),         cmocka_unit_test(texts),
-    };
-    return cmocka_run_group_tests_name("api", tests, NULL, NULL);
 }

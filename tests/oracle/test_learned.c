@@ -1,22 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The learned head through the C interface: binding weights, the same bits in every arena, what its outputs mean. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "drawing.h"
 #include "head/head_views.h"
+#include "oracle/float64/drawing.h"
 #include "rgbd_frame.h"
 #include "sanitized.h"
 #include "stages.h"
 #include "state/ablation.h"
 #include "state/state.h"
+#include "test.h"
 #include "weights_maker.h"
 
 enum { W = 45, H = 34, POINTS = W * H };
@@ -70,9 +65,8 @@ static void same_scene(const t3r_scene *a, const t3r_scene *b)
 }
 
 /* Every width of weights and activations; arenas of all sizes, with any contents; a moved arena; budgets in between. */
-static void same_bits_everywhere(void **state)
+TEST(same_bits_everywhere)
 {
-    (void)state;
     for (uint32_t bits = 0; bits < 4; bits++) {
         size_t bytes;
         uint8_t *weights =
@@ -126,9 +120,8 @@ static const made_layer odd_shape[] = {
 static const uint32_t odd_layers = sizeof odd_shape / sizeof odd_shape[0];
 
 /* A view made in bands, each in its own work memory with any contents, has the Gaussians of the view made at once. */
-static void bands_give_the_whole_view(void **state)
+TEST(bands_give_the_whole_view)
 {
-    (void)state;
     static const struct {
         const made_layer *layers;
         const uint32_t *count;
@@ -179,9 +172,8 @@ static void bands_give_the_whole_view(void **state)
 }
 
 /* A network whose work fits into the kernels' still requires a byte per column: 0 means no learned head. */
-static void least_room_for_a_head(void **state)
+TEST(least_room_for_a_head)
 {
-    (void)state;
     static const made_layer least[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, T3R_HEAD_OUTPUTS}};
     size_t bytes;
     uint8_t *weights = make_weights(least, 1, 8, 8, 3, &bytes);
@@ -200,9 +192,8 @@ static void least_room_for_a_head(void **state)
 }
 
 /* Heads shipped by earlier versions, by their layers: such files can still be bound, in an arena made for them. */
-static void heads_that_are_not_shipped(void **state)
+TEST(heads_that_are_not_shipped)
 {
-    (void)state;
 #define U_NET(A, B, C, HIDDEN)                                                                                         \
     {                                                                                                                  \
         {T3R_LAYER_CONV, 1, {0, T3R_SOURCE_NONE}, 4, 2, 1, A}, {T3R_LAYER_CONV, 1, {1, T3R_SOURCE_NONE}, 3, 1, 1, A},  \
@@ -235,9 +226,8 @@ static void heads_that_are_not_shipped(void **state)
 }
 
 /* head_column_bytes: the result of t3r_head_column_bytes() suffices and is minimal, for any width. */
-static void room_for_the_head(void **state)
+TEST(room_for_the_head)
 {
-    (void)state;
     size_t bytes;
     uint8_t *weights = make_weights(wide_shape, wide_layers, 8, 16, 3, &bytes);
     assert_int_equal(t3r_head_column_bytes(NULL, 0, 64), 0);
@@ -274,9 +264,8 @@ static void is_part_of(const t3r_scene *few, const t3r_gaussian *all, uint32_t c
 
 /* A head without adaptation makes all points' Gaussians, which are pruned and not changed; a head with adaptation
  * makes another scene. */
-static void unadapted_is_pruned(void **state)
+TEST(unadapted_is_pruned)
 {
-    (void)state;
     static t3r_gaussian all[2 * POINTS], adapted[300];
     size_t bytes;
     uint8_t *weights = make_weights(small_shape, small_layers, 8, 8, 5, &bytes);
@@ -325,9 +314,8 @@ static void note_head_hash(void *user, t3r_stage stage, uint64_t hash)
 }
 
 /* Heads that differ only in their name make the same Gaussians; the stage's hash differs. */
-static void hash_names_the_weights(void **state)
+TEST(hash_names_the_weights)
 {
-    (void)state;
     static t3r_gaussian first[100];
     uint64_t hashes[2];
     size_t bytes;
@@ -356,9 +344,8 @@ static void hash_names_the_weights(void **state)
     free(weights);
 }
 
-static void binding(void **state)
+TEST(binding)
 {
-    (void)state;
     const made_layer wide[] = {
         {T3R_LAYER_CONV, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 128},
         {T3R_LAYER_DEPTHWISE, 0, {1, T3R_SOURCE_NONE}, 5, 1, 1, 128},
@@ -442,9 +429,8 @@ static const t3r_gaussian *constant_head(const int16_t outputs[T3R_HEAD_OUTPUTS]
     return constant_scene;
 }
 
-static void colour_and_opacity(void **state)
+TEST(colour_and_opacity)
 {
-    (void)state;
     const struct {
         int16_t out;
         int32_t opacity;
@@ -501,9 +487,8 @@ static void in_the_image(const t3r_gaussian *g, const double tu[3], const double
 }
 
 /* Footprints against the same in doubles, the spacing being one pixel where all are kept. */
-static void footprints(void **state)
+TEST(footprints)
 {
-    (void)state;
     static t3r_gaussian centres[POINTS];
     int16_t out[T3R_HEAD_OUTPUTS] = {0};
     memcpy(centres, constant_head(out, T3R_HEAD_LEARNED), sizeof centres);
@@ -551,9 +536,8 @@ static void footprints(void **state)
 }
 
 /* Outputs are in units of the spacing: at a tenth kept a constant head that copies `analytic` gives its discs. */
-static void scaled_by_the_spacing(void **state)
+TEST(scaled_by_the_spacing)
 {
-    (void)state;
     const made_layer one[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 9}};
     size_t bytes;
     uint8_t *weights = make_weights(one, 1, 8, 8, 1, &bytes);
@@ -593,17 +577,4 @@ static void scaled_by_the_spacing(void **state)
     }
     arena_free(&memory);
     free(weights);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_bits_everywhere),       cmocka_unit_test(binding),
-        cmocka_unit_test(colour_and_opacity),         cmocka_unit_test(footprints),
-        cmocka_unit_test(scaled_by_the_spacing),      cmocka_unit_test(least_room_for_a_head),
-        cmocka_unit_test(heads_that_are_not_shipped), cmocka_unit_test(room_for_the_head),
-        cmocka_unit_test(unadapted_is_pruned),        cmocka_unit_test(hash_names_the_weights),
-        cmocka_unit_test(bands_give_the_whole_view),
-    };
-    return cmocka_run_group_tests_name("learned", tests, NULL, NULL);
 }

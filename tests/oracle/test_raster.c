@@ -2,19 +2,14 @@
 /* The integer raster against the float64 oracle on the same Gaussians: at least 50 dB, both rounded to 8 bits,
  * over all pixels; and the promise that the arena's size never shows in a pixel. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "drawing.h"
-#include "oracle_raster.h"
+#include "oracle/float64/drawing.h"
+#include "oracle/float64/oracle_raster.h"
 #include "raster/raster_splat.h"
+#include "test.h"
 
 #define LEAST_DB 50.0
 /* Alpha: Q15 against double. Depth: where transmittance passes 1/2 within the margin, the neighbours in the order
@@ -115,9 +110,8 @@ static t3r_gaussian *cook(const recipe *r, uint64_t seed)
     return gaussians;
 }
 
-static void random_scenes(void **state)
+TEST(random_scenes)
 {
-    (void)state;
     static const recipe recipes[] = {
         {"small round", 20000, 256, 256, 250, 0.5, 4, 1.1, 0.001, 0.02, 1, 0.05, 1},
         {"discs", 20000, 256, 256, 250, 0.5, 4, 1.1, 0.002, 0.04, 30, 0.1, 1},
@@ -143,9 +137,8 @@ static void random_scenes(void **state)
 }
 
 /* From other places, turned, with unequal focal lengths and a principal point off the middle. */
-static void moved_cameras(void **state)
+TEST(moved_cameras)
 {
-    (void)state;
     static const recipe r = {"ball", 8000, 200, 160, 200, -1, 1, 1, 0.005, 0.05, 20, 0.1, 1};
     t3r_gaussian *gaussians = cook(&r, 77);
     dice d = {78};
@@ -175,9 +168,8 @@ static void moved_cameras(void **state)
     free(gaussians);
 }
 
-static void degenerate_covariances(void **state)
+TEST(degenerate_covariances)
 {
-    (void)state;
     enum { COUNT = 2000, SIDE = 128 };
     t3r_gaussian *gaussians = calloc(COUNT, sizeof *gaussians);
     assert_non_null(gaussians);
@@ -248,16 +240,14 @@ static void huge_scenes(int least_exponent, int most_exponent)
 }
 
 /* Up to 64 times the median depth. */
-static void huge_splats(void **state)
+TEST(huge_splats)
 {
-    (void)state;
     huge_scenes(0, 6);
 }
 
 /* Extreme values, up to the limits of the record. */
-static void absurd_splats(void **state)
+TEST(absurd_splats)
 {
-    (void)state;
     huge_scenes(7, 29);
     enum { SIDE = 96 };
     t3r_camera camera = plain_camera(90, SIDE, SIDE);
@@ -274,9 +264,8 @@ static void absurd_splats(void **state)
 }
 
 /* One splat at a time over the whole range of focal lengths, depths, sizes up to 1000 pixels, shapes and places. */
-static void single_splats(void **state)
+TEST(single_splats)
 {
-    (void)state;
     dice d = {12345};
     for (int i = 0; i < 8000; i++) {
         uint32_t w = 1 + dice_below(&d, 64), h = 1 + dice_below(&d, 64);
@@ -302,9 +291,8 @@ static void single_splats(void **state)
     }
 }
 
-static void near_plane(void **state)
+TEST(near_plane)
 {
-    (void)state;
     static const recipe recipes[] = {
         {"across the near plane", 400, 128, 128, 120, -0.5, 0.5, 1.5, 0.001, 0.05, 5, 0.05, 0.6},
         {"just before the near plane", 400, 128, 128, 120, 0.02, 0.045, 1.2, 0.0001, 0.002, 5, 0.05, 0.6},
@@ -332,9 +320,8 @@ static void near_plane(void **state)
 }
 
 /* Culling by the side: |x|/z or |y|/z over 16, and the Jacobian held at 1.3 x the half field of view. */
-static void far_off_axis(void **state)
+TEST(far_off_axis)
 {
-    (void)state;
     static const recipe recipes[] = {
         {"beyond the clamp", 1500, 128, 96, 120, 0.3, 2, 4, 0.05, 0.8, 5, 0.05, 0.5},
         {"up to and past 16 z", 3000, 64, 64, 60, 0.1, 0.5, 40, 0.1, 2, 5, 0.05, 0.5},
@@ -349,9 +336,8 @@ static void far_off_axis(void **state)
 
 /* The Jacobian is clamped at 1.3 half fields of view and, where nothing is drawn any more, at 16 to the side per 1
  * ahead. */
-static void fields_of_view(void **state)
+TEST(fields_of_view)
 {
-    (void)state;
     static const struct {
         uint32_t width, height;
         double x, y;
@@ -366,9 +352,8 @@ static void fields_of_view(void **state)
     }
 }
 
-static void at_the_border(void **state)
+TEST(at_the_border)
 {
-    (void)state;
     enum { SIDE = 48 };
     /* z = 1, so that pixel = focal x + 23.5; edges -0.5 and 47.5, outermost pixel centres 0 and 47 */
     static const double pixels[] = {-3, -0.5, 0, 0.25, 15.5, 16, 46.75, 47, 47.5, 50};
@@ -383,9 +368,8 @@ static void at_the_border(void **state)
     check("all at the border", &plain_frame, all, PLACES * PLACES, &camera, SIDE, SIDE);
 }
 
-static void saturation(void **state)
+TEST(saturation)
 {
-    (void)state;
     enum { LAYERS = 500, SIDE = 40 };
     t3r_gaussian *gaussians = calloc(LAYERS, sizeof *gaussians);
     assert_non_null(gaussians);
@@ -411,9 +395,8 @@ static void saturation(void **state)
 }
 
 /* Sigma, depth and focal length so that everything is known: the oracle to rounding, the raster to one level. */
-static void closed_form(void **state)
+TEST(closed_form)
 {
-    (void)state;
     enum { SIDE = 31, MIDDLE = 15 };
     static const struct {
         double sigma, z, opacity;
@@ -449,9 +432,8 @@ static void closed_form(void **state)
     }
 }
 
-static void nothing_to_see(void **state)
+TEST(nothing_to_see)
 {
-    (void)state;
     t3r_camera camera = plain_camera(50, 20, 20);
     t3r_gaussian behind = round_gaussian(0, 0, -1, 0.1, 1, 1, 1, 1);
     t3r_gaussian clear = round_gaussian(0, 0, 1, 0.1, 0, 1, 1, 1);
@@ -475,9 +457,8 @@ static void nothing_to_see(void **state)
 
 /* ---- the arena never shows ----------------------------------------------------------------------- */
 
-static void arena_sizes(void **state)
+TEST(arena_sizes)
 {
-    (void)state;
     static const recipe recipes[] = {
         {"small", 3000, 160, 120, 150, 0.5, 4, 1.1, 0.002, 0.02, 5, 0.1, 1},
         {"wide", 500, 160, 120, 150, 0.5, 4, 1.2, 0.1, 1, 5, 0.05, 0.9},
@@ -523,9 +504,8 @@ static void arena_sizes(void **state)
     }
 }
 
-static void copied_arena(void **state)
+TEST(copied_arena)
 {
-    (void)state;
     static const recipe r = {"copy", 2000, 100, 80, 90, 0.5, 4, 1.1, 0.01, 0.1, 5, 0.1, 1};
     t3r_gaussian *gaussians = cook(&r, 4000);
     t3r_camera camera = plain_camera(r.focal, r.width, r.height);
@@ -552,9 +532,8 @@ static void copied_arena(void **state)
 }
 
 /* Smaller targets than the arena was planned for, padded rows, and each output alone: the same pixels. */
-static void outputs_apart(void **state)
+TEST(outputs_apart)
 {
-    (void)state;
     enum { W = 53, H = 37, PAD = 12 };
     static const recipe r = {"apart", 800, W, H, 50, 0.5, 4, 1.1, 0.01, 0.1, 5, 0.1, 1};
     t3r_gaussian *gaussians = cook(&r, 5000);
@@ -599,9 +578,8 @@ static void note_hash(void *user, t3r_stage stage, uint64_t hash)
 }
 
 /* The stage's hash is of the planes that were asked for, whatever stands between their rows. */
-static void planes_are_hashed(void **state)
+TEST(planes_are_hashed)
 {
-    (void)state;
     enum { W = 21, H = 17 };
     static const recipe r = {"hashed", 200, W, H, 20, 0.5, 4, 1.1, 0.01, 0.1, 5, 0.1, 1};
     t3r_gaussian *gaussians = cook(&r, 60);
@@ -632,17 +610,4 @@ static void planes_are_hashed(void **state)
     }
     arena_free(&a);
     free(gaussians);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(planes_are_hashed),      cmocka_unit_test(fields_of_view), cmocka_unit_test(closed_form),
-        cmocka_unit_test(nothing_to_see),         cmocka_unit_test(random_scenes),  cmocka_unit_test(moved_cameras),
-        cmocka_unit_test(degenerate_covariances), cmocka_unit_test(huge_splats),    cmocka_unit_test(absurd_splats),
-        cmocka_unit_test(single_splats),          cmocka_unit_test(near_plane),     cmocka_unit_test(far_off_axis),
-        cmocka_unit_test(at_the_border),          cmocka_unit_test(saturation),     cmocka_unit_test(arena_sizes),
-        cmocka_unit_test(copied_arena),           cmocka_unit_test(outputs_apart),
-    };
-    return cmocka_run_group_tests_name("raster", tests, NULL, NULL);
 }

@@ -2,21 +2,16 @@
 /* The integer refinement, one pass to the default number of them, against the float64 oracle on the same scene: two
  * views of a slanted surface with holes in its depth and a nearer one before it. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "drawing.h"
-#include "oracle_refine.h"
+#include "oracle/float64/drawing.h"
+#include "oracle/float64/oracle_refine.h"
 #include "rgbd_frame.h"
 #include "state/ablation.h"
 #include "state/state.h"
+#include "test.h"
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE, VIEWS = 2, BUDGET = 2 * PIXELS / 8, PASSES = 4 };
 
@@ -166,9 +161,8 @@ static void check_pass(const splat_maker *maker, uint32_t passes, const oracle_g
     free(after);
 }
 
-static void follows_the_oracle(void **state)
+TEST(follows_the_oracle)
 {
-    (void)state;
     make_views();
     const splat_maker heads[] = {{"analytic", T3R_HEAD_ANALYTIC, {0}},
                                  {"unadapted", T3R_HEAD_ANALYTIC, {.unadapted = 1}}};
@@ -196,10 +190,4 @@ static void follows_the_oracle(void **state)
         free(scene);
         free(before);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(follows_the_oracle)};
-    return cmocka_run_group_tests_name("refinement", tests, NULL, NULL);
 }

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Views that come in strips of rows: the hashes are those of whole frames, and strips out of order are refused. */
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "drawing.h"
+#include "oracle/float64/drawing.h"
 #include "rgbd_frame.h"
+#include "test.h"
 
 enum { W = 32, H = 24, FROM_W = 50, FROM_H = 38, DEPTH_W = 36, DEPTH_H = 27, MOST = FROM_W * FROM_H };
 
@@ -133,9 +128,8 @@ static void add_in_strips(t3r_runtime *rt, const t3r_frame *frame, const t3r_cam
     }
 }
 
-static void strips_have_the_bits_of_frames(void **state)
+TEST(strips_have_the_bits_of_frames)
 {
-    (void)state;
     static const t3r_pixel_format formats[] = {T3R_PIXEL_RGB24, T3R_PIXEL_YUYV, T3R_PIXEL_NV12};
     static const uint32_t heights[][2] = {{1, 1}, {7, 7}, {16, 3}, {2, 27}, {38, 1}};
     for (uint32_t i = 0; i < 3 * 2 * 2; i++) {
@@ -163,9 +157,8 @@ static void strips_have_the_bits_of_frames(void **state)
     }
 }
 
-static void strips_out_of_order_are_refused(void **state)
+TEST(strips_out_of_order_are_refused)
 {
-    (void)state;
     const t3r_frame frame = frame_of(T3R_PIXEL_RGB24, FROM_W, FROM_H);
     const t3r_camera camera = camera_of(FROM_W, FROM_H, T3R_DISTORTION_NONE);
     session whole, s;
@@ -235,13 +228,4 @@ static void strips_out_of_order_are_refused(void **state)
     const t3r_camera nowhere = {.fx_q16 = 1};
     assert_int_equal(strip(s.rt, &frame, &nowhere, 0, 8, 0, 0), T3R_ERR_CAMERA);
     arena_free(&s.memory);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(strips_have_the_bits_of_frames),
-        cmocka_unit_test(strips_out_of_order_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

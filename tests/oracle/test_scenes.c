@@ -16,8 +16,8 @@
 
 #include <cmocka.h>
 
-#include "drawing.h"
-#include "oracle_raster.h"
+#include "oracle/float64/drawing.h"
+#include "oracle/float64/oracle_raster.h"
 #include "recording/recording.h"
 #include "scene/scene_file.h"
 

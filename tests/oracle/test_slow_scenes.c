@@ -2,18 +2,13 @@
 /* Scenes that are made to be slow: faint Gaussians as wide as the picture, so that every tile lists them all and
  * nothing ends early. The plan bounds what is blended, tile_splats bounds it further, and a caller can stop within a
  * tile. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "drawing.h"
+#include "oracle/float64/drawing.h"
 #include "raster/raster_tile.h"
 #include "state/state.h"
+#include "test.h"
 
 enum { LONG = 70000, SHORT = 500, SIDE = 48 }; /* LONG: more than are blended between two looks at the hook */
 
@@ -71,9 +66,8 @@ static uint64_t blends_of(const t3r_gaussian *gaussians, uint32_t count, uint32_
     return blended;
 }
 
-static void the_plan_bounds_what_is_blended(void **state)
+TEST(the_plan_bounds_what_is_blended)
 {
-    (void)state;
     t3r_gaussian *gaussians = haze(SHORT);
     static const uint32_t limits[] = {0, 1, 37, SHORT, T3R_MAX_GAUSSIANS};
     for (size_t i = 0; i < sizeof limits / sizeof limits[0]; i++) {
@@ -95,9 +89,8 @@ static drawing drawing_of(const t3r_gaussian *gaussians, uint32_t count, uint32_
     return d;
 }
 
-static void the_nearest_are_drawn(void **state)
+TEST(the_nearest_are_drawn)
 {
-    (void)state;
     t3r_gaussian *gaussians = haze(SHORT);
     drawing whole = drawing_of(gaussians, SHORT, 0);
     static const uint32_t limits[] = {1, 40, SHORT - 1, SHORT, SHORT + 1};
@@ -149,9 +142,8 @@ static void draw_at_once(const t3r_gaussian *gaussians, uint32_t count, const t3
 }
 
 /* One tile whose list is longer than what is blended between two looks. */
-static void a_long_list_can_be_stopped(void **state)
+TEST(a_long_list_can_be_stopped)
 {
-    (void)state;
     t3r_gaussian *gaussians = haze(LONG);
     const t3r_camera camera = plain_camera(16, 16, 16);
     uint8_t rgb[16 * 16 * 3] = {0};
@@ -173,9 +165,8 @@ static void a_long_list_can_be_stopped(void **state)
 }
 
 /* Behind what is opaque nothing of the list is drawn, and nobody is asked. */
-static void a_long_list_ends_where_nothing_shows(void **state)
+TEST(a_long_list_ends_where_nothing_shows)
 {
-    (void)state;
     t3r_gaussian *gaussians = haze(LONG);
     for (uint32_t i = 0; i < LONG; i++) {
         gaussians[i].opacity_q15 = i < 100 ? 32767 : gaussians[i].opacity_q15;
@@ -196,9 +187,8 @@ static void a_long_list_ends_where_nothing_shows(void **state)
 }
 
 /* Between two looks at most 65,536 splats are blended, or a tile. */
-static void many_lists_are_looked_after(void **state)
+TEST(many_lists_are_looked_after)
 {
-    (void)state;
     enum { COUNT = 5000 };
     t3r_gaussian *gaussians = haze(COUNT);
     bench b = bench_of(gaussians, COUNT, SIDE * 2, 0); /* 36 tiles */
@@ -211,14 +201,4 @@ static void many_lists_are_looked_after(void **state)
     drawing_free(&d);
     arena_free(&b.memory);
     free(gaussians);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_plan_bounds_what_is_blended), cmocka_unit_test(the_nearest_are_drawn),
-        cmocka_unit_test(a_long_list_can_be_stopped),      cmocka_unit_test(a_long_list_ends_where_nothing_shows),
-        cmocka_unit_test(many_lists_are_looked_after),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

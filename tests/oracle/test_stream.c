@@ -2,22 +2,17 @@
 /* Streams: a camera moves along a textured wall with boxes before it, for a long time. The cap holds, the bits
  * depend on nothing irrelevant, impossible calls are refused, and cancelled ones do no harm. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "drawing.h"
+#include "oracle/float64/drawing.h"
 #include "rgbd_frame.h"
 #include "sanitized.h"
 #include "sanitized_cpu.h"
 #include "state/state.h"
 #include "stream/stream_map.h"
+#include "test.h"
 
 enum { W = 24, H = 16, PIXELS = W * H, CAP = 150, AT_HAND = 3, WALL_MM = 2000, BOX_MM = 1600 };
 
@@ -140,9 +135,8 @@ static pose step_of(uint32_t i)
 /* ---- tests --------------------------------------------------------------------------------------- */
 
 /* 3 km. With sanitizers in longer strides, as keyframes take ten times as long. */
-static void the_cap_holds(void **state)
+TEST(the_cap_holds)
 {
-    (void)state;
     enum { STRIDE = T3R_SANITIZED ? 5 : 1, KEYFRAMES = 10000 / STRIDE };
     t3r_config config = stream_config();
     config.refine = 1;
@@ -188,9 +182,8 @@ static void the_cap_holds(void **state)
 }
 
 /* On a long path the map holds what is in front of the camera, and more so the faster the rest fades. */
-static void follows(void **state)
+TEST(follows)
 {
-    (void)state;
     uint32_t near[2] = {0, 0};
     for (int i = 0; i < 2; i++) {
         t3r_config config = stream_config();
@@ -214,9 +207,8 @@ static void follows(void **state)
     assert_true(near[1] > 2 * near[0] && near[1] > CAP / 4);
 }
 
-static void same_bits_whatever_does_not_matter(void **state)
+TEST(same_bits_whatever_does_not_matter)
 {
-    (void)state;
     enum { WAYS = 6, KEYFRAMES = 25 };
     static t3r_gaussian first[KEYFRAMES][CAP];
     static uint32_t counts[KEYFRAMES];
@@ -248,9 +240,8 @@ static void same_bits_whatever_does_not_matter(void **state)
     }
 }
 
-static void what_is_shown_adds_nothing(void **state)
+TEST(what_is_shown_adds_nothing)
 {
-    (void)state;
     site s = site_of(stream_config(), ARENA_AT_FULL);
     pose p = {0, 0, 0, false};
     t3r_stream_report r;
@@ -274,9 +265,8 @@ static uint32_t of_boxes(const t3r_scene *scene)
 }
 
 /* The boxes are removed: the wall behind them is visible, and the boxes' Gaussians are removed. */
-static void contradicted_ones_leave(void **state)
+TEST(contradicted_ones_leave)
 {
-    (void)state;
     site s = site_of(stream_config(), ARENA_AT_FULL);
     pose p = {0, 0, 0, true};
     t3r_stream_report r;
@@ -293,9 +283,8 @@ static void contradicted_ones_leave(void **state)
 }
 
 /* From a quarter of the distance the wall has sixteen times the pixels. */
-static void finer_sights_replace(void **state)
+TEST(finer_sights_replace)
 {
-    (void)state;
     site s = site_of(stream_config(), ARENA_AT_FULL);
     pose far = {0, 0, 0, false}, near = {0, 1.5, 0, false};
     t3r_stream_report r;
@@ -309,9 +298,8 @@ static void finer_sights_replace(void **state)
 }
 
 /* Wherever the hook stops it, the map stays valid and later calls work. */
-static void cancelled_anywhere(void **state)
+TEST(cancelled_anywhere)
 {
-    (void)state;
     uint32_t cancelled = 0;
     for (uint32_t at = 1;; at++) {
         site s = site_of(stream_config(), ARENA_AT_MINIMUM);
@@ -343,9 +331,8 @@ static void cancelled_anywhere(void **state)
 }
 
 /* Whatever a copied arena holds beside its Gaussians does no harm. */
-static void wild_records(void **state)
+TEST(wild_records)
 {
-    (void)state;
     dice d = {3};
     for (int round = 0; round < 40; round++) {
         site s = site_of(stream_config(), ARENA_AT_MINIMUM);
@@ -374,9 +361,8 @@ static uint32_t overlap_at(const site *s, pose p)
 
 /* Full overlap at the same place; less the farther the camera moves sideways, turns, comes near or goes back; none
  * behind. */
-static void overlap_tells_of_motion(void **state)
+TEST(overlap_tells_of_motion)
 {
-    (void)state;
     site s = site_of(stream_config(), ARENA_AT_FULL);
     pose p = {5, 0, 0, false};
     assert_int_equal(take(&s, &p, NULL), T3R_OK);
@@ -402,9 +388,8 @@ static void overlap_tells_of_motion(void **state)
 }
 
 /* If none of the sampled pixels has depth, no overlap is known. */
-static void nothing_overlaps_with_nothing(void **state)
+TEST(nothing_overlaps_with_nothing)
 {
-    (void)state;
     t3r_config config = stream_config();
     config.fill_radius = config.bridge_radius = 0;
     site s = site_of(config, ARENA_AT_FULL);
@@ -424,9 +409,8 @@ static void nothing_overlaps_with_nothing(void **state)
 
 /* A camera that jumps from one end of the range to the other takes the origin along. The keyframe left behind is out
  * of range, so the scene is that of a stream that begins there. */
-static void jumps_leave_keyframes_behind(void **state)
+TEST(jumps_leave_keyframes_behind)
 {
-    (void)state;
     site s = site_of(stream_config(), ARENA_AT_FULL), fresh = site_of(stream_config(), ARENA_AT_FULL);
     const pose way[] = {{0, 0, 0, true}, {-800, 0, 0, true}, {1800, 0, 0, true}}; /* 2 m a scene unit */
     t3r_stream_report r;
@@ -461,9 +445,8 @@ static void assert_refused(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
     assert_memory_equal(&report, &nothing, sizeof report);
 }
 
-static void refused(void **state)
+TEST(refused)
 {
-    (void)state;
     site s = site_of(stream_config(), ARENA_AT_FULL);
     t3r_frame frame;
     t3r_camera camera;
@@ -533,23 +516,4 @@ static void refused(void **state)
     arena_free(&headless.memory);
     config.views = 0;
     assert_non_null(t3r_config_error(&config));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_cap_holds),
-        cmocka_unit_test(follows),
-        cmocka_unit_test(same_bits_whatever_does_not_matter),
-        cmocka_unit_test(what_is_shown_adds_nothing),
-        cmocka_unit_test(contradicted_ones_leave),
-        cmocka_unit_test(finer_sights_replace),
-        cmocka_unit_test(cancelled_anywhere),
-        cmocka_unit_test(wild_records),
-        cmocka_unit_test(overlap_tells_of_motion),
-        cmocka_unit_test(nothing_overlaps_with_nothing),
-        cmocka_unit_test(jumps_leave_keyframes_behind),
-        cmocka_unit_test(refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,21 +2,16 @@
 /* Consecutive builds (t3r_config.warm): a pair of views slides along a textured wall with boxes before it. The bits
  * depend on the calls alone; outdated results are not reused. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "drawing.h"
+#include "oracle/float64/drawing.h"
 #include "rgbd_frame.h"
 #include "sanitized.h"
 #include "sanitized_cpu.h"
 #include "state/state.h"
+#include "test.h"
 
 enum { W = 64, H = 48, PIXELS = W * H, BUDGET = 500, STEPS = 5, PASSES = 4 };
 
@@ -198,9 +193,8 @@ static void assert_anew(const t3r_scene *scene, viewpoint first, viewpoint secon
 
 /* ---- tests ------------------------------------------------------------------------------------------------------- */
 
-static void the_first_build_begins_anew(void **state)
+TEST(the_first_build_begins_anew)
 {
-    (void)state;
     site *s = site_of(config_of(1), ARENA_AT_FULL);
     for (int again = 0; again < 2; again++) {
         add(s, step_at(0));
@@ -216,9 +210,8 @@ static void the_first_build_begins_anew(void **state)
     site_free(s);
 }
 
-static void same_bits(void **state)
+TEST(same_bits)
 {
-    (void)state;
     site *s = site_of(config_of(1), ARENA_AT_FULL);
     t3r_gaussian *expected = slide(s, false);
     site_free(s);
@@ -236,9 +229,8 @@ static void same_bits(void **state)
 }
 
 /* Drawing ends the analysis where none is kept, and keeps the views: without refinement, which would end it earlier. */
-static void a_drawn_arena_moves(void **state)
+TEST(a_drawn_arena_moves)
 {
-    (void)state;
     t3r_config config = config_of(1);
     config.refine = 0;
     site *s = site_of(config, ARENA_AT_MINIMUM);
@@ -253,9 +245,8 @@ static void a_drawn_arena_moves(void **state)
 }
 
 /* Textures belong to one view: kept ones, and the new view's, are the same as in a fresh runtime. */
-static void a_view_that_changed_is_not_taken_for_the_old(void **state)
+TEST(a_view_that_changed_is_not_taken_for_the_old)
 {
-    (void)state;
     site *s = site_of(config_of(1), ARENA_AT_FULL);
     add(s, step_at(0));
     add(s, step_at(1));
@@ -284,9 +275,8 @@ static void a_view_that_changed_is_not_taken_for_the_old(void **state)
 }
 
 /* A call refused before anything is written does not change the pair. */
-static void errors_in_between(void **state)
+TEST(errors_in_between)
 {
-    (void)state;
     site *s = site_of(config_of(1), ARENA_AT_FULL);
     t3r_gaussian *expected = slide(s, false);
     site_free(s);
@@ -334,9 +324,8 @@ static void errors_in_between(void **state)
     site_free(s);
 }
 
-static void cancelled_builds_leave_nothing(void **state)
+TEST(cancelled_builds_leave_nothing)
 {
-    (void)state;
     uint32_t calls = UINT32_MAX;
     for (uint32_t at = 1; at <= calls; at += T3R_SANITIZED ? 13 : 3) {
         site *s = site_of(config_of(1), ARENA_AT_FULL);
@@ -370,9 +359,8 @@ static void cancelled_builds_leave_nothing(void **state)
 }
 
 /* Views at another scale, or far from the origin, begin anew. */
-static void another_frame_begins_anew(void **state)
+TEST(another_frame_begins_anew)
 {
-    (void)state;
     site *s = site_of(config_of(1), ARENA_AT_FULL);
     add(s, step_at(0));
     add(s, step_at(1));
@@ -397,9 +385,8 @@ static void another_frame_begins_anew(void **state)
     site_free(s);
 }
 
-static void without_views_none_is_taken(void **state)
+TEST(without_views_none_is_taken)
 {
-    (void)state;
     t3r_config config = config_of(1);
     config.views = 0;
     site *s = site_of(config, ARENA_AT_MINIMUM);
@@ -411,9 +398,8 @@ static void without_views_none_is_taken(void **state)
 }
 
 /* An arena with impossible views or centres is refused. */
-static void damaged_arenas(void **state)
+TEST(damaged_arenas)
 {
-    (void)state;
     site *s = site_of(config_of(1), ARENA_AT_FULL);
     add(s, step_at(0));
     add(s, step_at(1));
@@ -435,20 +421,4 @@ static void damaged_arenas(void **state)
     *centre = kept;
     assert_int_equal(t3r_attach(&s->rt, s->memory.bytes, s->memory.count), T3R_OK);
     site_free(s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_first_build_begins_anew),
-        cmocka_unit_test(same_bits),
-        cmocka_unit_test(a_drawn_arena_moves),
-        cmocka_unit_test(a_view_that_changed_is_not_taken_for_the_old),
-        cmocka_unit_test(errors_in_between),
-        cmocka_unit_test(cancelled_builds_leave_nothing),
-        cmocka_unit_test(another_frame_begins_anew),
-        cmocka_unit_test(without_views_none_is_taken),
-        cmocka_unit_test(damaged_arenas),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,22 +2,17 @@
 /* The smallest sufficient scene: the budget chosen in the arena, on two views of a textured wall with a box before
  * it. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
-#include "drawing.h"
+#include "oracle/float64/drawing.h"
 #include "refine/refine.h"
 #include "rgbd_frame.h"
 #include "sanitized.h"
 #include "sanitized_cpu.h"
 #include "state/state.h"
+#include "test.h"
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE, VIEWS = 2, HALF_DB = 128 };
 static const t3r_request half_db = {.max_loss_q8 = HALF_DB};
@@ -89,9 +84,8 @@ static t3r_scene within(site *s, uint32_t loss_q8)
 }
 
 /* The trials leave no trace: the scene equals one requested with that budget. */
-static void the_scene_of_that_budget(void **state)
+TEST(the_scene_of_that_budget)
 {
-    (void)state;
     make_views(90);
     for (uint32_t views = 1; views <= VIEWS; views++) {
         site chosen = site_of(VIEWS * PIXELS, views), asked = site_of(VIEWS * PIXELS, views);
@@ -110,9 +104,8 @@ static void the_scene_of_that_budget(void **state)
     }
 }
 
-static void never_more_than_the_most(void **state)
+TEST(never_more_than_the_most)
 {
-    (void)state;
     make_views(90);
     static const uint32_t most[] = {1, 2, 3, 10, 100};
     for (size_t i = 0; i < sizeof most / sizeof most[0]; i++) {
@@ -138,9 +131,8 @@ static void never_more_than_the_most(void **state)
 }
 
 /* Also with an importance: the scene equals one requested with that importance and budget. */
-static void by_an_importance(void **state)
+TEST(by_an_importance)
 {
-    (void)state;
     make_views(90);
     static uint16_t importance[VIEWS][PIXELS];
     const uint16_t *const planes[VIEWS] = {importance[0], importance[1]};
@@ -174,9 +166,8 @@ static void by_an_importance(void **state)
 }
 
 /* With fewer than a hundred points the first trial is one. */
-static void few_points(void **state)
+TEST(few_points)
 {
-    (void)state;
     make_views(90);
     for (uint32_t v = 0; v < VIEWS; v++) {
         for (uint32_t i = 0; i < PIXELS; i++) {
@@ -192,9 +183,8 @@ static void few_points(void **state)
     arena_free(&s.memory);
 }
 
-static void a_blank_wall_needs_next_to_nothing(void **state)
+TEST(a_blank_wall_needs_next_to_nothing)
 {
-    (void)state;
     make_views(0);
     site s = site_of(VIEWS * PIXELS, VIEWS);
     t3r_scene scene = within(&s, HALF_DB);
@@ -203,9 +193,8 @@ static void a_blank_wall_needs_next_to_nothing(void **state)
 }
 
 /* The error of the scene in the arena is that of the context views as rendered. */
-static void the_error_is_that_of_the_picture(void **state)
+TEST(the_error_is_that_of_the_picture)
 {
-    (void)state;
     make_views(90);
     site s = site_of(400, VIEWS);
     t3r_scene scene;
@@ -229,9 +218,8 @@ static void the_error_is_that_of_the_picture(void **state)
     arena_free(&s.memory);
 }
 
-static void cancelled_anywhere(void **state)
+TEST(cancelled_anywhere)
 {
-    (void)state;
     make_views(90);
     site s = site_of(VIEWS * PIXELS, VIEWS);
     t3r_hooks hooks = {.user = &s, .progress = progress};
@@ -259,9 +247,8 @@ static void cancelled_anywhere(void **state)
 }
 
 /* A copied arena's planes may have no depth at all: then the error is 0. */
-static void planes_without_depth_do_no_harm(void **state)
+TEST(planes_without_depth_do_no_harm)
 {
-    (void)state;
     make_views(90);
     site s = site_of(VIEWS * PIXELS, VIEWS);
     t3r_scene scene = within(&s, HALF_DB);
@@ -279,9 +266,8 @@ static void planes_without_depth_do_no_harm(void **state)
     arena_free(&s.memory);
 }
 
-static void refusals(void **state)
+TEST(refusals)
 {
-    (void)state;
     make_views(90);
     t3r_scene scene;
     site s = site_of(100, VIEWS);
@@ -303,20 +289,4 @@ static void refusals(void **state)
     s.rt->config.depth = T3R_DEPTH_STEREO; /* of one view */
     assert_int_equal(t3r_reconstruct(s.rt, &half_db, &scene), T3R_ERR_STATE);
     arena_free(&s.memory);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_scene_of_that_budget),
-        cmocka_unit_test(never_more_than_the_most),
-        cmocka_unit_test(by_an_importance),
-        cmocka_unit_test(few_points),
-        cmocka_unit_test(a_blank_wall_needs_next_to_nothing),
-        cmocka_unit_test(the_error_is_that_of_the_picture),
-        cmocka_unit_test(cancelled_anywhere),
-        cmocka_unit_test(planes_without_depth_do_no_harm),
-        cmocka_unit_test(refusals),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

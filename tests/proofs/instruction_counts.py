@@ -27,9 +27,11 @@ def skip(reason):
 
 
 def build(folder):
-    """The driver with the runtime that the proofs of the stack look at, the heads and the room."""
+    """The driver with the runtime that the proofs of the stack look at, the heads, the room and the counts of work."""
     name = proof.compiler_of(TARGET)
-    own = [DRIVER, *HEAD_SOURCES, *sorted((proof.ROOT / "tools" / "room").glob("*.c"))]
+    tools = proof.ROOT / "tools"
+    own = [DRIVER, *HEAD_SOURCES, *sorted((tools / "room").glob("*.c")), tools / "planning" / "work.c",
+           tools / "planning" / "operations.c"]
     folders = ("runtime", "runtime/include", "platform", "tools", "quant/heads", "tests")
     includes = [word for place in folders for word in ("-I", proof.ROOT / place)]
     program = folder / "instructions_driver"

@@ -11,6 +11,7 @@
 
 #include <valgrind/callgrind.h>
 
+#include "planning/work.h"
 #include "rgbd_frame.h"
 #include "room/room.h"
 #include "trim3r.h"
@@ -117,13 +118,13 @@ static t3r_status run(const build *b, t3r_runtime *runtime)
 
 static t3r_status print_work(const build *b, size_t bytes)
 {
-    t3r_work_counts work;
-    const t3r_status status = t3r_count_work(&b->config, bytes, b->weights, b->weight_bytes, &work);
+    work_counts work;
+    const t3r_status status = work_count(&b->config, bytes, b->weights, &work);
     printf("%s", b->name);
-    for (int kind = 0; kind < T3R_WORK_COUNT && status == T3R_OK; kind++) {
-        printf(" %s=%" PRIu64, t3r_work_name((t3r_work)kind), work.units[kind]);
+    for (int kind = 0; kind < WORK_KIND_COUNT && status == T3R_OK; kind++) {
+        printf(" %s=%" PRIu64, work_name((work_kind)kind), work.units[kind]);
     }
-    printf(" operations=%" PRIu64 "\n", t3r_price_of_build(&work, &t3r_operations));
+    printf(" operations=%.0f\n", work_price_of_build(&work, &work_operations));
     return status;
 }
 

@@ -1,16 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """structure.py [LIBRARY...]: the picture of the house holds. Every area includes only what stands below it, and no two
-source files of a library call each other, be it through others.
+source files of a library call each other, be it through others. No folder is a heap.
 
 MAY is the whole picture: what each area may include. An area that is not in it is a finding, so a new one is entered
 here with its arrows.
 """
+import collections
 import pathlib
 import re
 import sys
 
 import proof
+
+MOST_SOURCES = 30 # in a folder
 
 # Rooms of the runtime from the foundation up: each may include those before it.
 ROOMS = ("include", "core", "kernels", "state", "depth", "image", "pointmap", "stereo", "wavelet", "superclusters", "budget",
@@ -92,6 +95,12 @@ def sources(root):
         for path in sorted((root / part).rglob("*")):
             if path.suffix in (".c", ".h", ".cpp", ".hpp"):
                 yield path.relative_to(root)
+
+
+def check_rooms(paths):
+    """Folders with too many sources."""
+    counts = collections.Counter(path.parent for path in paths)
+    return [f"{folder}: {count} sources, more than {MOST_SOURCES}" for folder, count in counts.items() if count > MOST_SOURCES]
 
 
 def check_includes(root):
@@ -182,6 +191,7 @@ def planted_findings():
         proof.broken("the planted house has five offences, no more", findings)
     proof.must_find(check_picture({"a": {"b"}, "b": {"c"}, "c": {"a"}}), "a, b, c", "a picture of three")
     proof.must_find(check_picture({"tools/trim3r": {"tools/study/rivals"}}), "of the product", "an arrow to the study")
+    proof.must_find(check_rooms([pathlib.Path("heap", f"{i}.c") for i in range(MOST_SOURCES + 1)]), "heap: 31", "a heap")
     with proof.scratch() as folder:
         objects = proof.compile_each(proof.TARGETS["x86_64"], sorted((house / "calls").glob("*.c")), folder)
         library = folder / "calls.a"
@@ -192,8 +202,10 @@ def planted_findings():
 def main():
     planted_findings()
     libraries = sys.argv[1:]
-    proof.verdict("no area includes what stands above it; no two files of a library call each other",
-                  check_picture(MAY) + check_includes(proof.ROOT) + check_calls(libraries))
+    tests = (path for path in (proof.ROOT / "tests").rglob("*") if path.suffix in (".c", ".h", ".py"))
+    proof.verdict("no area includes what stands above it; no two files of a library call each other; no folder is a heap",
+                  check_picture(MAY) + check_includes(proof.ROOT) + check_calls(libraries) +
+                  check_rooms([*sources(proof.ROOT), *tests]))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """work.py --fit: fits the operations of a unit of each kind of work to instructions of builds in plain C at -O2, and writes
-runtime/layout/operations.h. The proof `instructions` checks them on builds that the fit did not see: those and their large
-stages take within 25 % of the operations that t3r_count_work() leads to.
+tools/planning/operations.c. The proof `instructions` checks them on builds that the fit did not see: those and their large
+stages take within 25 % of the operations that work_count() leads to.
 """
 import re
 import sys
@@ -10,7 +10,8 @@ import sys
 import proof
 from instruction_counts import build, compiler_name, count, need_valgrind
 
-HEADER = proof.RUNTIME / "layout" / "operations.h"
+PLANNING = proof.ROOT / "tools" / "planning"
+TABLE = PLANNING / "operations.c"
 MOST_OFF = 0.25
 LARGE = 0.1  # of a build: a stage that is to be within MOST_OFF, too
 STAGES = ("image", "depth", "pointmap", "wavelet", "superclusters", "budget", "head", "refine", "raster")
@@ -27,17 +28,18 @@ FITTED = ("f1,96,96,2,1843,small,sensor,64,24,1", "f2,128,128,2,655,analytic,sen
           "f13,64,64,2,8192,small,sensor,100,8,0", "f14,48,48,1,691,small,sensor,64,24,4",
           "f15,96,96,2,922,small,sensor,64,12,1", "f16,64,64,2,164,analytic,sensor,100,24,2",
           "f17,96,96,2,369,analytic,sensor,100,0,1")
-HEADING = """/* Instructions of plain C on x86-64 in 1/1000 a unit of each kind of work, as gcc 12 -O2 makes them.
+HEADING = """/* SPDX-License-Identifier: Apache-2.0 */
+/* Instructions of plain C on x86-64 in 1/1000 a unit of each kind of work, as gcc 12 -O2 makes them.
  * tests/proofs/work.py --fit makes this file. */
-#ifndef T3R_OPERATIONS_H
-#define T3R_OPERATIONS_H
+#include "planning/work.h"
 
+const work_prices work_operations = {{
 """
 
 
 def kinds_of_stages():
-    """{stage: its kinds of work}, as T3R_WORKS has them."""
-    rows = re.findall(r'X\(\w+, "(\w+)", (\w+)\)', (proof.RUNTIME / "include" / "trim3r.h").read_text())
+    """{stage: its kinds of work}, as WORK_KINDS has them."""
+    rows = re.findall(r'X\(\w+, "(\w+)", (\w+)\)', (PLANNING / "work.h").read_text())
     return {stage: [name for name, its_stage in rows if its_stage.lower() == stage] for stage in STAGES}
 
 
@@ -51,10 +53,10 @@ def builds_of(counted, printed):
     return builds
 
 
-def prices_of_header():
+def prices_of_table():
     """{kind: 1/1000 operations a unit}"""
     return {kind.lower(): int(price)
-            for kind, price in re.findall(r"define T3R_OPERATIONS_(\w+) (\d+)u", HEADER.read_text())}
+            for kind, price in re.findall(r"\[WORK_(\w+)\] = (\d+)", TABLE.read_text())}
 
 
 def operations(units, prices, kinds):
@@ -74,14 +76,14 @@ def check(builds, prices):
             if real >= LARGE * total and abs(off) > MOST_OFF:
                 findings.append(f"{name}: {what} takes {real / 1e6:.1f} M instructions, predicted {100 * off:+.0f} %")
         if abs(units["operations"] / sums["build"][0] - 1) > 0.001:
-            findings.append(f"{name}: t3r_price_of_build() says {units['operations']}, the prices {sums['build'][0]:.0f}")
+            findings.append(f"{name}: work_price_of_build() says {units['operations']}, the prices {sums['build'][0]:.0f}")
     return findings
 
 
 def findings(counted, printed):
     """Of the builds CHECKED among those that were counted."""
     builds = {name: both for name, both in builds_of(counted, printed).items() if name.startswith(CHECKED_NAME)}
-    prices = prices_of_header()
+    prices = prices_of_table()
     proof.must_find(check(builds, {**prices, "batches": 9 * prices["batches"]}), "superclusters", "the prices")
     return check(builds, prices)
 
@@ -116,8 +118,8 @@ def main():
     with proof.scratch() as folder:
         builds = builds_of(*count(build(folder), folder, FITTED))
     prices = fit(builds)
-    rows = "".join(f"#define T3R_OPERATIONS_{kind.upper()} {price}u\n" for kind, price in prices.items())
-    HEADER.write_text(HEADING + rows + "\n#endif\n")
+    rows = "".join(f"    [WORK_{kind.upper()}] = {price},\n" for kind, price in prices.items())
+    TABLE.write_text(HEADING + rows + "}};\n")
 
 
 if __name__ == "__main__":

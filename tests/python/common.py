@@ -4,8 +4,6 @@ import contextlib
 import pathlib
 import sys
 
-sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent.parent)]
-
 from checks import check, skip
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent

@@ -3,54 +3,19 @@
 """trim3r quantize and head-info from outside: what they say, what they refuse, what calibration finds.
 
     commands.py PATH/TO/trim3r"""
-import json
 import os
-import struct
-import subprocess
-import sys
-import tempfile
-import zlib
 
 import numpy
 
 import head_file
-
-TRIM3R = os.path.abspath(sys.argv[1])
-failures = []
-
-
-def check(condition, what):
-    if not condition:
-        failures.append(what)
-        print("FAILED:", what)
-
-
-def expect(code, *arguments, err=None, out=None):
-    done = subprocess.run([TRIM3R, *map(str, arguments)], capture_output=True, text=True)
-    line = " ".join(map(str, arguments))
-    check(done.returncode == code, f"{line}: exit {done.returncode}, not {code}: {done.stderr.strip()}")
-    check(err is None or err in done.stderr, f"{line}: '{done.stderr.strip()}' does not say '{err}'")
-    check(out is None or out in done.stdout, f"{line}: '{done.stdout.strip()}' does not say '{out}'")
-    return done.stdout
-
-
-def write(path, content):
-    with open(path, "wb") as file:
-        file.write(content)
-    return path
+from checks import check
+from png import png
+from program import expect, expect_json, in_scratch, write
 
 
 def read(path):
     with open(path, "rb") as file:
         return file.read()
-
-
-def png(width, height, colour):
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    rows = b"".join(b"\0" + bytes(colour) * width for _ in range(height))
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
-            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
 
 def identity():
@@ -74,7 +39,7 @@ def ranges_of(path):
 
 def test_calibration():
     write("identity.safetensors", head_file.safetensors(identity()[1], identity()[0]))
-    write("flat.png", png(80, 64, (120, 128, 28)))
+    write("flat.png", png([bytes((120, 128, 28)) * 80] * 64))
     expect(0, "quantize", "identity.safetensors", "--calibrate", "flat.png", "--size", "64x64", "-o", "i.t3w",
            "--percentile", 100, out="1 layers measured")
     found = ranges_of("i.t3w")
@@ -93,7 +58,7 @@ def test_calibration():
     # recordings and images add up, in either form, and the same input gives the same file
     expect(0, "room", "--size", "32x32", "-o", "room.mcap")
     arguments = ["--calibrate", "room.mcap", "--calibrate", "flat.png", "--size", "64x64"]
-    told = json.loads(expect(0, "quantize", "identity.safetensors", *arguments, "-o", "a.t3w", "--json"))
+    told = expect_json("quantize", "identity.safetensors", *arguments, "-o", "a.t3w")
     expect(0, "quantize", "--calibrate", "room.mcap", "identity.safetensors", "flat.png", "--size", "64x64", "-o", "b.t3w")
     check(read("a.t3w") == read("b.t3w"), "the same input gives another file")
     check(told["calibrated_layers"] == 1 and told["bytes"] == os.path.getsize("a.t3w") and told["name"] == "identity"
@@ -105,7 +70,7 @@ def test_calibration():
     expect(0, "quantize", "own.safetensors", "--calibrate", "flat.png", "-o", "own.t3w", out="0 layers measured, 1 from")
     check(numpy.allclose(ranges_of("own.t3w"), 3 * 64, rtol=1e-4), f"own ranges: {ranges_of('own.t3w')}")
     expect(0, "head-info", "own.safetensors", out=" yes")
-    check(json.loads(expect(0, "head-info", "own.safetensors", "--json"))["layers"][0]["has_range"], "has_range")
+    check(expect_json("head-info", "own.safetensors")["layers"][0]["has_range"], "has_range")
 
 
 def test_refusals():
@@ -134,15 +99,4 @@ def test_refusals():
     expect(1, "head-info", write("empty.t3w", b""), err="empty.t3w: 0 bytes are no .safetensors")
 
 
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
-        test_calibration()
-        test_refusals()
-        os.chdir("/")
-    if failures:
-        sys.exit(f"{len(failures)} failed")
-
-
-if __name__ == "__main__":
-    main()
+in_scratch(test_calibration, test_refusals)

@@ -14,6 +14,7 @@ import tempfile
 import numpy
 
 import head_file
+from checks import check, done, run
 
 TRIM3R, DRIVER, NETWORK = map(os.path.abspath, sys.argv[1:4])
 HEIGHT, WIDTH = 37, 50  # no level divides them
@@ -30,19 +31,6 @@ int main(void)
     return (uintptr_t)t3r_head_NAME % 16 != 0 || written != t3r_head_NAME_bytes;
 }
 """
-failures = []
-
-
-def check(condition, what):
-    if not condition:
-        failures.append(what)
-        print("FAILED:", what)
-
-
-def run(*arguments):
-    done = subprocess.run([*map(str, arguments)], capture_output=True, text=True)
-    check(done.returncode == 0, f"{' '.join(map(str, arguments))}: {done.stderr.strip()}")
-    return done.stdout
 
 
 def snr(exact, got):
@@ -136,7 +124,7 @@ def macs(description):
 
 
 def check_info(path, description, tensors, head):
-    info = json.loads(run(TRIM3R, "head-info", path, "--json"))
+    info = json.loads(run(TRIM3R, "head-info", path, "--json").stdout)
     parameters = sum(tensor.size for name, tensor in tensors.items() if not name.endswith("range"))
     check(info["macs_per_pixel"] == macs(description), f"{path}: macs {info['macs_per_pixel']}, not {macs(description)}")
     check(info["parameters"] == parameters, f"{path}: parameters {info['parameters']}, not {parameters}")
@@ -208,8 +196,7 @@ def main():
             check_head(head_file.plain(), seed)
             check_head(head_file.every_kind(), seed)
         os.chdir("/")
-    if failures:
-        sys.exit(f"{len(failures)} failed")
+    done()
 
 
 if __name__ == "__main__":

@@ -67,9 +67,8 @@ static float *sorted(const float_head *head, const sample_views *views, uint32_t
     return all;
 }
 
-static void test_ranges(void **state)
+TEST(test_ranges)
 {
-    (void)state;
     static const double percentiles[] = {100, 99.99, 99, 50};
     sample_views *views = unit_array(1, sizeof *views);
     fill(views);
@@ -108,9 +107,8 @@ static void test_ranges(void **state)
 }
 
 /* Ranges that the head brings along stay; without a pixel there are none to give. */
-static void test_own_ranges(void **state)
+TEST(test_own_ranges)
 {
-    (void)state;
     sample_views *views = unit_array(1, sizeof *views);
     fill(views);
     float_head head;
@@ -130,9 +128,8 @@ static void test_own_ranges(void **state)
 }
 
 /* A channel that is always 0 gets the layer's largest range. */
-static void test_dead_channel(void **state)
+TEST(test_dead_channel)
 {
-    (void)state;
     sample_views *views = unit_array(1, sizeof *views);
     fill(views);
     float_head head;
@@ -159,9 +156,8 @@ static void test_dead_channel(void **state)
 }
 
 /* A head whose first layer passes the features on: its ranges are the features' own. */
-static void test_runtime_views(void **state)
+TEST(test_runtime_views)
 {
-    (void)state;
     enum { SIDE = 16, BUDGET = 60 };
     float_head head = {.graph = {.name = "identity",
                                  .count = 2,
@@ -272,9 +268,8 @@ static void add_pair(t3r_runtime *runtime)
 
 /* Calibration sees what the network gets, feature by feature: 5 % kept, where points that another view covers are
  * passed over, and 60 %, where they are not; as shown to a head and hidden from it. */
-static void test_features_of_a_pair(void **state)
+TEST(test_features_of_a_pair)
 {
-    (void)state;
     static taken network, calibrated;
     for (uint32_t unadapted = 0; unadapted < 2; unadapted++) {
         t3r_config config = t3r_default_config(PAIR_SIDE, PAIR_SIDE, PAIR, PAIR * PAIR_PIXELS);
@@ -323,12 +318,4 @@ static void test_features_of_a_pair(void **state)
         float_head_free(&head);
         free(arena);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_ranges), cmocka_unit_test(test_own_ranges),
-                                       cmocka_unit_test(test_dead_channel), cmocka_unit_test(test_runtime_views),
-                                       cmocka_unit_test(test_features_of_a_pair)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -93,9 +93,8 @@ static void refuse_change(int n, const char *from, const char *to, const char *w
     refuse(text, sound, TENSORS, 0, why);
 }
 
-static void test_reads(void **state)
+TEST(test_reads)
 {
-    (void)state;
     size_t count;
     float_head head;
     char error[256] = "";
@@ -127,9 +126,8 @@ static void test_reads(void **state)
 }
 
 /* A head survives writing and reading unchanged. */
-static void test_round_trip(void **state)
+TEST(test_round_trip)
 {
-    (void)state;
     size_t count;
     float_head head, back;
     char error[256] = "";
@@ -154,9 +152,8 @@ static void test_round_trip(void **state)
     float_head_free(&head);
 }
 
-static void test_description(void **state)
+TEST(test_description)
 {
-    (void)state;
     refuse(NULL, sound, TENSORS, 0, "__metadata__ has no \"trim3r\"");
     refuse("nonsense", sound, TENSORS, 0, "trim3r: not a JSON object");
     refuse("[]", sound, TENSORS, 0, "trim3r: not a JSON object");
@@ -175,9 +172,8 @@ static void test_description(void **state)
     refuse("{\"format\":1,\"name\":\"a\",\"feature_set\":1,\"layers\":[1]}", sound, TENSORS, 0, "layer 1: it: not an");
 }
 
-static void test_layers(void **state)
+TEST(test_layers)
 {
-    (void)state;
     refuse_change(1, "\"kind\":\"conv\"", "\"kind\":\"dense\"", "layer 1: kind: not one of");
     refuse_change(1, "\"kind\":\"conv\",", "", "layer 1: kind: missing");
     refuse_change(1, "\"level\":1,", "", "layer 1: level: missing");
@@ -213,9 +209,8 @@ static void test_layers(void **state)
     refuse_change(2, "\"relu\":false", "\"relu\":true", "layer 4: the last one is not");
 }
 
-static void test_tensors(void **state)
+TEST(test_tensors)
 {
-    (void)state;
     tensor changed[TENSORS];
     static const struct {
         size_t at;
@@ -246,12 +241,4 @@ static void test_tensors(void **state)
     refuse(DESCRIPTION, sound, 6, INFINITY, "layer 3: bias: holds a number that is not finite");
     refuse(DESCRIPTION, sound, 4, 0, "layer 2: range: holds a number that is not positive");
     refuse(DESCRIPTION, sound, 4, -1, "layer 2: range: holds a number that is not positive");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_reads), cmocka_unit_test(test_round_trip),
-                                       cmocka_unit_test(test_description), cmocka_unit_test(test_layers),
-                                       cmocka_unit_test(test_tensors)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

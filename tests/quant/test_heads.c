@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The shipped heads: sound, of their class, and at home in the default arena. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "head/weights.h"
+#include "test.h"
 #include "trim3r_heads.h"
 #include "weight_info.h"
 
@@ -23,9 +18,8 @@ static const struct {
 };
 enum { HEADS = sizeof heads / sizeof heads[0] };
 
-static void of_their_class(void **state)
+TEST(of_their_class)
 {
-    (void)state;
     for (int i = 0; i < HEADS; i++) {
         weight_info info;
         char error[256] = "";
@@ -42,9 +36,8 @@ static void of_their_class(void **state)
     }
 }
 
-static void fit_the_default(void **state)
+TEST(fit_the_default)
 {
-    (void)state;
     for (int i = 0; i < HEADS; i++) {
         for (uint32_t width = T3R_MIN_SIDE; width <= T3R_MAX_SIDE; width++) {
             uint32_t need = t3r_head_column_bytes(heads[i].weights, *heads[i].bytes, width);
@@ -53,10 +46,4 @@ static void fit_the_default(void **state)
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(of_their_class), cmocka_unit_test(fit_the_default)};
-    return cmocka_run_group_tests_name("heads", tests, NULL, NULL);
 }

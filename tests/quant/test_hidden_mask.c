@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A head that does not see the mask, against the head itself run on features that say so. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "core/fixed.h"
 #include "head/network.h"
 #include "hidden_mask.h"
+#include "test.h"
 #include "trim3r_heads.h"
 #include "weights_maker.h"
 
@@ -117,9 +112,8 @@ static void check_head(const uint8_t *file, size_t bytes)
     free(hidden);
 }
 
-static void made_heads(void **state)
+TEST(made_heads)
 {
-    (void)state;
     for (uint32_t bits = 0; bits < 4; bits++) {
         size_t bytes;
         uint32_t weight_bits = bits & 1 ? 16 : 8, activation_bits = bits & 2 ? 16 : 8;
@@ -133,9 +127,8 @@ static void made_heads(void **state)
 }
 
 /* Features read by a depthwise layer, as the first and as the second source, by a point layer of four phases. */
-static void every_kind_of_layer(void **state)
+TEST(every_kind_of_layer)
 {
-    (void)state;
     const made_layer layers[] = {
         {T3R_LAYER_DEPTHWISE, 0, {T3R_SOURCE_FEATURES, T3R_SOURCE_NONE}, 3, 1, 1, T3R_FEATURES},
         {T3R_LAYER_CONV, 0, {T3R_SOURCE_FEATURES, 1}, 3, 1, 1, 7},
@@ -151,9 +144,8 @@ static void every_kind_of_layer(void **state)
     }
 }
 
-static void shipped_heads(void **state)
+TEST(shipped_heads)
 {
-    (void)state;
     const uint8_t *const heads[] = {t3r_head_tiny, t3r_head_small};
     const uint32_t bytes[] = {t3r_head_tiny_bytes, t3r_head_small_bytes};
     for (int h = 0; h < 2; h++) {
@@ -162,9 +154,8 @@ static void shipped_heads(void **state)
 }
 
 /* Layers that share their bytes: the one that does not read features keeps its own. */
-static void shared_blocks(void **state)
+TEST(shared_blocks)
 {
-    (void)state;
     const made_layer layers[] = {
         {T3R_LAYER_CONV, 0, {T3R_SOURCE_FEATURES, T3R_SOURCE_NONE}, 1, 1, 1, T3R_FEATURES},
         {T3R_LAYER_CONV, 0, {1, T3R_SOURCE_NONE}, 1, 1, 1, T3R_FEATURES},
@@ -177,15 +168,4 @@ static void shared_blocks(void **state)
     assert_int_equal(t3r_weights_layer(file, 0).weights, t3r_weights_layer(file, 1).weights);
     check_head(file, bytes);
     free(file);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(made_heads),
-        cmocka_unit_test(every_kind_of_layer),
-        cmocka_unit_test(shipped_heads),
-        cmocka_unit_test(shared_blocks),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

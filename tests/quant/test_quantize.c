@@ -37,9 +37,8 @@ static void quantize(quantized_head *out, const float_head *head, const uint32_t
 }
 
 /* Against the definition: the nearest mantissa of 31 bits, at least half of the range. */
-static void test_multiplier(void **state)
+TEST(test_multiplier)
 {
-    (void)state;
     uint64_t seed = 1;
     int32_t multiplier;
     int8_t shift;
@@ -63,9 +62,8 @@ static void test_multiplier(void **state)
 
 /* Every weight and every bias is within half a step, and the multiplier is exactly the ratio of the steps, also in
  * the 16 bits that int16 activations leave it. */
-static void test_layers(void **state)
+TEST(test_layers)
 {
-    (void)state;
     for (uint64_t seed = 0; seed < 5; seed++) {
         for (int v = 0; v < 4; v++) {
             float_head head;
@@ -114,9 +112,8 @@ static void test_layers(void **state)
 }
 
 /* Channels that are dead, tiny, huge, or all bias give a sound file or a refusal. */
-static void test_extremes(void **state)
+TEST(test_extremes)
 {
-    (void)state;
     static const float factors[] = {0, 1e-38f, 1e-20f, 1e-6f, 1e6f, 1e20f, 1e38f};
     int refused = 0, made = 0;
     for (int v = 0; v < 4; v++) {
@@ -153,9 +150,8 @@ static void test_extremes(void **state)
 }
 
 /* 16-bit weights and int8 activations: a wide layer would overflow 32 bits at full scale, so it is scaled down. */
-static void test_accumulators(void **state)
+TEST(test_accumulators)
 {
-    (void)state;
     float_head head;
     quantized_head out;
     sample_head(&head, 3);
@@ -176,9 +172,8 @@ static void test_accumulators(void **state)
     float_head_free(&head);
 }
 
-static void test_missing_range(void **state)
+TEST(test_missing_range)
 {
-    (void)state;
     float_head head;
     quantized_head out;
     char error[256] = "";
@@ -188,12 +183,4 @@ static void test_missing_range(void **state)
     assert_int_equal(quantize_head(&out, &head, 8, 8, error, sizeof error), -1);
     assert_non_null(strstr(error, "layer 3 has no range"));
     float_head_free(&head);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_multiplier), cmocka_unit_test(test_layers),
-                                       cmocka_unit_test(test_extremes), cmocka_unit_test(test_accumulators),
-                                       cmocka_unit_test(test_missing_range)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -43,9 +43,8 @@ static void refuse(const char *header, size_t data_bytes, const char *why)
     free(file);
 }
 
-static void test_reads(void **state)
+TEST(test_reads)
 {
-    (void)state;
     size_t count;
     uint8_t *file = file_of("{\"__metadata__\":{\"trim3r\":\"a text\"}," TENSOR("b", "[2,1]", "4", "12") "," TENSOR(
                                 "a", "[]", "0", "4") "," TENSOR("none", "[3,0]", "4", "4") "}   ",
@@ -75,9 +74,8 @@ static void test_reads(void **state)
     free(file);
 }
 
-static void test_frame(void **state)
+TEST(test_frame)
 {
-    (void)state;
     size_t count;
     uint8_t *file = file_of("{" TENSOR("a", "[1]", "0", "4") "}", 4, &count);
     for (size_t cut = 0; cut < count; cut++) {
@@ -96,9 +94,8 @@ static void test_frame(void **state)
     refuse("{}", 3, "3 bytes behind the last tensor");
 }
 
-static void test_tensors(void **state)
+TEST(test_tensors)
 {
-    (void)state;
     refuse("{\"a\":5}", 0, "tensor 'a': not an object");
     refuse("{\"a\":{\"shape\":[1],\"data_offsets\":[0,4]}}", 4, "dtype is not F32");
     refuse("{\"a\":{\"dtype\":\"F16\",\"shape\":[2],\"data_offsets\":[0,4]}}", 4, "dtype is not F32");
@@ -123,18 +120,10 @@ static void test_tensors(void **state)
     refuse("{" TENSOR("\\u0007\\u00fc", "[2]", "0", "4") "}", 4, "tensor '?\?\?'");
 }
 
-static void test_metadata(void **state)
+TEST(test_metadata)
 {
-    (void)state;
     refuse("{\"__metadata__\":\"text\"}", 0, "__metadata__: not an object");
     refuse("{\"__metadata__\":{\"a\":1}}", 0, "'a' is not a string");
     refuse("{\"__metadata__\":{\"a\":\"x\",\"a\":\"y\"}}", 0, "'a' stands there twice");
     refuse("{\"__metadata__\":{},\"__metadata__\":{}}", 0, "'__metadata__' stands there twice");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_reads), cmocka_unit_test(test_frame),
-                                       cmocka_unit_test(test_tensors), cmocka_unit_test(test_metadata)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -85,9 +85,8 @@ static void refuse_layer(uint32_t n, size_t at, uint32_t bytes, uint64_t value, 
     refuse_row(n, at, bytes, value, text);
 }
 
-static void test_reads(void **state)
+TEST(test_reads)
 {
-    (void)state;
     static const uint32_t variants[4][2] = {{8, 8}, {8, 16}, {16, 8}, {16, 16}};
     for (int v = 0; v < 4; v++) {
         sample_file file = make(variants[v][0], variants[v][1]);
@@ -115,9 +114,8 @@ static void test_reads(void **state)
     }
 }
 
-static void test_damage(void **state)
+TEST(test_damage)
 {
-    (void)state;
     sample_file file = make(8, 8);
     for (size_t cut = 0; cut < file.count; cut++) {
         sample_file part = copy_of(file.bytes, cut);
@@ -132,9 +130,8 @@ static void test_damage(void **state)
     free(file.bytes);
 }
 
-static void test_header(void **state)
+TEST(test_header)
 {
-    (void)state;
     refuse_header(WEIGHT_AT_MAGIC, 4, 0, "not a weight file");
     refuse_header(WEIGHT_AT_FORMAT, 2, 2, "another format");
     refuse_header(WEIGHT_AT_EPOCH, 2, T3R_BITS_EPOCH + 1, "made for bits epoch");
@@ -170,9 +167,8 @@ static void test_header(void **state)
     free(file.bytes);
 }
 
-static void test_layers(void **state)
+TEST(test_layers)
 {
-    (void)state;
     refuse_layer(1, LAYER_AT_KIND, 1, 3, "unknown kind");
     refuse_layer(1, LAYER_AT_LEVEL, 1, 5, "level not in");
     refuse_layer(1, LAYER_AT_LEVEL, 1, 0, "stride 2 does not lead");
@@ -224,9 +220,8 @@ static size_t block_at(uint32_t weight_bits, uint32_t activation_bits, enum weig
     return at;
 }
 
-static void test_numbers(void **state)
+TEST(test_numbers)
 {
-    (void)state;
     refuse_header(block_at(8, 8, BLOCK_MULTIPLIER) + 20, 4, (1 << 30) - 1, "a multiplier or shift");
     refuse_header(block_at(8, 8, BLOCK_MULTIPLIER), 4, 1u << 31, "a multiplier or shift");
     refuse_header(block_at(8, 8, BLOCK_SHIFT) + 5, 1, 16, "a multiplier or shift");
@@ -249,9 +244,8 @@ static void test_numbers(void **state)
 
 /* Fields of many values, sealed again: the rules of layers, written once for firmware and once for the host, accept the
  * same files. */
-static void test_agreement(void **state)
+TEST(test_agreement)
 {
-    (void)state;
     static const uint32_t variants[4][2] = {{8, 8}, {8, 16}, {16, 8}, {16, 16}};
     static const uint8_t values[] = {0, 1, 2, 3, 4, 5, 6, 7, 9, 10, 16, 64, 127, 128, 129, 254, 255};
     const size_t table = T3R_WEIGHTS_HEADER_BYTES + 6 * T3R_WEIGHTS_LAYER_BYTES;
@@ -283,12 +277,4 @@ static void test_agreement(void **state)
     }
     assert_true(taken > 1000);
     assert_true(refused > 10000);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_reads),   cmocka_unit_test(test_damage),
-                                       cmocka_unit_test(test_header),  cmocka_unit_test(test_layers),
-                                       cmocka_unit_test(test_numbers), cmocka_unit_test(test_agreement)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

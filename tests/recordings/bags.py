@@ -140,7 +140,7 @@ def robot(packing):
     for i in range(count):
         ns = START + 10 * MS + i * 33 * MS
         messages += [compressed("/cam/color/image_raw/compressed", ns, "colour_optical", "rgb8; png compressed bgr8",
-                                frames.png(colour_rows(i))),
+                                frames.picture(colour_rows(i))),
                      camera_info("/cam/color/camera_info", ns, "colour_optical", WIDTH, HEIGHT, 60.0)]
         if i % 2 == 0:
             z = np.full(depth_side[::-1], 2000, "<u2")

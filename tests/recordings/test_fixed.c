@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* platform/messages/fixed_double.c and platform/host/fixed_text.c against exact cases. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "host/fixed_text.h"
 #include "messages/fixed_double.h"
+#include "test.h"
 
 static uint32_t float_bits(float x)
 {
@@ -33,9 +29,8 @@ static void refuse(double value, uint32_t fraction_bits)
     assert_int_equal(fixed, 77);
 }
 
-static void rounds_halves_to_even(void **state)
+TEST(rounds_halves_to_even)
 {
-    (void)state;
     static const struct {
         double value;
         int64_t rounded;
@@ -56,9 +51,8 @@ static void rounds_halves_to_even(void **state)
     check(4503599627370497.5, 0, 4503599627370498);
 }
 
-static void holds_the_range(void **state)
+TEST(holds_the_range)
 {
-    (void)state;
     check(0x1p62, 0, INT64_C(1) << 62);
     check(0x1.fffffffffffffp62, 0, INT64_C(0x7ffffffffffffc00));
     check(-0x1.fffffffffffffp62, 0, -INT64_C(0x7ffffffffffffc00));
@@ -78,9 +72,8 @@ static void holds_the_range(void **state)
     check(-0x1p-62, 62, -1);
 }
 
-static void agrees_with_libm(void **state)
+TEST(agrees_with_libm)
 {
-    (void)state;
     uint64_t seed = 1;
     for (uint32_t i = 0; i < 200000; i++) {
         seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
@@ -93,9 +86,8 @@ static void agrees_with_libm(void **state)
     }
 }
 
-static void reads_floats(void **state)
+TEST(reads_floats)
 {
-    (void)state;
     int64_t fixed = 0;
     static const float values[] = {0.0f, -0.0f, 1.5f, -2.25f, 1e-45f, 1.17549421e-38f, 65504.0f, 0.1f, 3.5e-13f};
     for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
@@ -107,9 +99,8 @@ static void reads_floats(void **state)
     assert_int_equal(t3r_fixed_from_float(float_bits(8388608.0f), 40, &fixed), -1);
 }
 
-static void writes_short_decimals(void **state)
+TEST(writes_short_decimals)
 {
-    (void)state;
     static const struct {
         const char *text;
         uint64_t value_q40;
@@ -141,9 +132,8 @@ static void writes_short_decimals(void **state)
     assert_string_equal(text, "16777215.999999999999");
 }
 
-static void refuses_other_text(void **state)
+TEST(refuses_other_text)
 {
-    (void)state;
     static const char *const texts[] = {"",
                                         ".",
                                         "1.",
@@ -164,14 +154,4 @@ static void refuses_other_text(void **state)
         assert_int_equal(t3r_q40_from_text(t3r_text_of(texts[i]), &value), -1);
         assert_int_equal(value, 5);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rounds_halves_to_even), cmocka_unit_test(holds_the_range),
-        cmocka_unit_test(agrees_with_libm),      cmocka_unit_test(reads_floats),
-        cmocka_unit_test(writes_short_decimals), cmocka_unit_test(refuses_other_text),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

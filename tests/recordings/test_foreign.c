@@ -2,18 +2,14 @@
 /* Recordings that others make: big-endian CDR, other encodings, other topics, stamps that do not match, chunks. */
 #include <lz4frame.h>
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zstd.h>
-#include <cmocka.h>
 
 #include "bag.h"
 #include "mcap/crc32.h"
+#include "test.h"
 
 #define MS INT64_C(1000000)
 
@@ -81,9 +77,8 @@ static void refuse_frame(const t3r_recording *recording, uint32_t index, const c
     }
 }
 
-static void either_byte_order_reads_the_same(void **state)
+TEST(either_byte_order_reads_the_same)
 {
-    (void)state;
     static const uint8_t depth_little[] = {0x34, 0x12, 0, 0, 1, 0, 0xff, 0xff};
     static const uint8_t depth_big[] = {0x12, 0x34, 0, 0, 0, 1, 0xff, 0xff};
     for (uint32_t big = 0; big < 2; big++) {
@@ -119,9 +114,8 @@ static void either_byte_order_reads_the_same(void **state)
     }
 }
 
-static void metres_become_steps(void **state)
+TEST(metres_become_steps)
 {
-    (void)state;
     static const float metres[12] = {0.0f,    1.0f,    NAN,     INFINITY, -1.0f,  0.0005f,
                                      0.0015f, 65.535f, 65.536f, 2.0004f,  1e-20f, 0.0004f};
     /* 0.0005f lies above half a step, 0.0015f above one and a half. */
@@ -155,9 +149,8 @@ static void metres_become_steps(void **state)
     }
 }
 
-static void pairs_by_stamp_then_by_nearness(void **state)
+TEST(pairs_by_stamp_then_by_nearness)
 {
-    (void)state;
     bag b;
     bag_start(&b);
     uint16_t pose = bag_channel(&b, "/tracker/pose", transform_type); /* the only one: it need not share the prefix */
@@ -236,9 +229,8 @@ static t3r_recording *with_info(bag *b, bag_info info)
     return parse(b);
 }
 
-static void bad_intrinsics_name_field_and_frame(void **state)
+TEST(bad_intrinsics_name_field_and_frame)
 {
-    (void)state;
     bag_info bad[16];
     static const char *const reasons[16] = {"K[0] (fx) is not a number in [8, 16384)",
                                             "K[0] (fx)",
@@ -288,9 +280,8 @@ static void bad_intrinsics_name_field_and_frame(void **state)
     }
 }
 
-static void distortion_models_are_told_apart(void **state)
+TEST(distortion_models_are_told_apart)
 {
-    (void)state;
     bag_info infos[6];
     static const t3r_distortion expected[6] = {T3R_DISTORTION_NONE,    T3R_DISTORTION_NONE,   T3R_DISTORTION_RADTAN,
                                                T3R_DISTORTION_FISHEYE, T3R_DISTORTION_RADTAN, T3R_DISTORTION_NONE};
@@ -317,9 +308,8 @@ static void distortion_models_are_told_apart(void **state)
     }
 }
 
-static void bad_images_and_poses_name_field_and_frame(void **state)
+TEST(bad_images_and_poses_name_field_and_frame)
 {
-    (void)state;
     enum { IMAGES = 9, POSES = 3 };
     bag b;
     bag_start(&b);
@@ -379,9 +369,8 @@ static void bad_images_and_poses_name_field_and_frame(void **state)
     bag_free(&b);
 }
 
-static void malformed_messages_are_refused(void **state)
+TEST(malformed_messages_are_refused)
 {
-    (void)state;
     static const struct {
         const char *type;
         const char *bytes;
@@ -412,9 +401,8 @@ static void malformed_messages_are_refused(void **state)
     }
 }
 
-static void wrong_records_are_refused(void **state)
+TEST(wrong_records_are_refused)
 {
-    (void)state;
     static const struct {
         uint8_t opcode;
         const char *bytes;
@@ -451,9 +439,8 @@ static void wrong_records_are_refused(void **state)
     }
 }
 
-static void unknown_records_and_topics_are_passed_over(void **state)
+TEST(unknown_records_and_topics_are_passed_over)
 {
-    (void)state;
     bag b;
     bag_start(&b);
     t3r_mcap_record(&b.out, 0x90, 3);
@@ -479,9 +466,8 @@ static void unknown_records_and_topics_are_passed_over(void **state)
     bag_free(&b);
 }
 
-static void metadata_are_checked(void **state)
+TEST(metadata_are_checked)
 {
-    (void)state;
     static const char *const bad[][4] = {
         {"trim3r", "depth_unit", "0", "depth_unit"},           {"trim3r", "depth_unit", "1e-3", "depth_unit"},
         {"trim3r", "depth_unit", "-1", "depth_unit"},          {"trim3r", "depth_unit", "65536", "depth_unit"},
@@ -576,9 +562,8 @@ static void chunk_free(chunk *c)
 
 static const char *const compressions[3] = {"", "lz4", "zstd"};
 
-static void chunks_are_read(void **state)
+TEST(chunks_are_read)
 {
-    (void)state;
     for (uint32_t i = 0; i < 3; i++) {
         chunk c = make_chunk(compressions[i], 3), repeated = make_chunk(compressions[i], 2);
         bag b;
@@ -598,9 +583,8 @@ static void chunks_are_read(void **state)
     }
 }
 
-static void broken_chunks_are_refused(void **state)
+TEST(broken_chunks_are_refused)
 {
-    (void)state;
     for (uint32_t i = 0; i < 3; i++) {
         for (uint32_t way = 0; way < 6; way++) {
             chunk c = make_chunk(compressions[i], 3);
@@ -645,9 +629,8 @@ static void broken_chunks_are_refused(void **state)
     chunk_free(&c);
 }
 
-static void a_cut_chunk_reads_to_its_last_whole_message(void **state)
+TEST(a_cut_chunk_reads_to_its_last_whole_message)
 {
-    (void)state;
     for (uint32_t i = 0; i < 3; i++) {
         chunk c = make_chunk(compressions[i], 3);
         bag b;
@@ -688,22 +671,4 @@ static int fill(void **state)
     return 0;
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(either_byte_order_reads_the_same),
-        cmocka_unit_test(metres_become_steps),
-        cmocka_unit_test(pairs_by_stamp_then_by_nearness),
-        cmocka_unit_test(bad_intrinsics_name_field_and_frame),
-        cmocka_unit_test(distortion_models_are_told_apart),
-        cmocka_unit_test(bad_images_and_poses_name_field_and_frame),
-        cmocka_unit_test(malformed_messages_are_refused),
-        cmocka_unit_test(wrong_records_are_refused),
-        cmocka_unit_test(unknown_records_and_topics_are_passed_over),
-        cmocka_unit_test(metadata_are_checked),
-        cmocka_unit_test(chunks_are_read),
-        cmocka_unit_test(broken_chunks_are_refused),
-        cmocka_unit_test(a_cut_chunk_reads_to_its_last_whole_message),
-    };
-    return cmocka_run_group_tests(tests, fill, NULL);
-}
+ALL_TESTS_WITH(fill, NULL)

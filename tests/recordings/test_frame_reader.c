@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The reader for firmware gives the frames that the reader with a heap gives, and ends where a file is cut. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "bag.h"
 #include "messages/pixel_layout.h"
 #include "recording/frame_reader.h"
 #include "sample.h"
+#include "test.h"
 
 enum { ROOM = 512 }; /* an image of the sample */
 
@@ -142,9 +138,8 @@ static uint32_t check_both(bag_bytes *bytes)
     return count;
 }
 
-static void frames_are_those_of_the_other_reader(void **state)
+TEST(frames_are_those_of_the_other_reader)
 {
-    (void)state;
     for (uint32_t format = 0; format < T3R_PIXEL_FORMAT_COUNT; format++) {
         bag_bytes chunked = sample((t3r_pixel_format)format, SAMPLE_NONE);
         bag_bytes unchunked = sample((t3r_pixel_format)format, SAMPLE_UNCHUNKED);
@@ -155,9 +150,8 @@ static void frames_are_those_of_the_other_reader(void **state)
     }
 }
 
-static void cut_anywhere_reads_whole_frames(void **state)
+TEST(cut_anywhere_reads_whole_frames)
 {
-    (void)state;
     bag_bytes bytes = sample(T3R_PIXEL_RGB24, SAMPLE_UNCHUNKED);
     uint32_t before = 0;
     for (size_t count = 8; count <= bytes.count; count++) {
@@ -190,9 +184,8 @@ static void refuse(bag_bytes *bytes, size_t colour_room, const char *expected)
     assert_int_equal(t3r_frame_reader_next(&r.reader, &frame), T3R_CAPTURE_FAILED); /* and so it stays */
 }
 
-static void what_it_cannot_read_is_named(void **state)
+TEST(what_it_cannot_read_is_named)
 {
-    (void)state;
     bag_bytes zstd = sample(T3R_PIXEL_RGB24, SAMPLE_ZSTD), plain = sample(T3R_PIXEL_RGB24, SAMPLE_NONE);
     refuse(&zstd, ROOM, "its chunks are compressed; trim3r import --compression none unpacks them");
     refuse(&plain, 64, "an image is larger than its buffer");
@@ -206,9 +199,8 @@ static void what_it_cannot_read_is_named(void **state)
     bag_bytes_free(&plain);
 }
 
-static void depth_is_passed_over_without_a_buffer(void **state)
+TEST(depth_is_passed_over_without_a_buffer)
 {
-    (void)state;
     bag_bytes bytes = sample(T3R_PIXEL_GREY, SAMPLE_NONE);
     reading r;
     t3r_capture_frame frame;
@@ -220,9 +212,8 @@ static void depth_is_passed_over_without_a_buffer(void **state)
 }
 
 /* Depth in metres and big-endian depth, each behind its colour image. */
-static void foreign_depth_becomes_steps_in_its_place(void **state)
+TEST(foreign_depth_becomes_steps_in_its_place)
 {
-    (void)state;
     static const uint8_t colour[4 * 4];
     const float metres[6] = {0.5f, 1.25f, -1, 70, 0.0015f, 2};
     const uint8_t swapped[12] = {0x01, 0xf4, 0x04, 0xe2, 0, 0, 0xff, 0xff, 0, 1, 0x07, 0xd0};
@@ -242,16 +233,4 @@ static void foreign_depth_becomes_steps_in_its_place(void **state)
         assert_int_equal(check_both(&b.bytes), 2);
         bag_free(&b);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(frames_are_those_of_the_other_reader),
-        cmocka_unit_test(cut_anywhere_reads_whole_frames),
-        cmocka_unit_test(what_it_cannot_read_is_named),
-        cmocka_unit_test(depth_is_passed_over_without_a_buffer),
-        cmocka_unit_test(foreign_depth_becomes_steps_in_its_place),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

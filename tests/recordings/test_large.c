@@ -1,11 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Recordings that unpack to more than memory should hold: they are read, and what is seen stays where it was. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <cmocka.h>
-
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,6 +8,7 @@
 #include "mcap/spill.h"
 #include "recording/recording.h"
 #include "scratch.h"
+#include "test.h"
 
 /* 166 MB of pictures, in a file of a quarter of that: more than T3R_LIMIT_UNPACKED_HEAP. */
 enum { FRAMES = 20, WIDTH = 1920, HEIGHT = 1440, ROW_BYTES = WIDTH * 3, NOISE_BYTES = ROW_BYTES / 4 };
@@ -69,7 +64,7 @@ static int make_recording(void **state)
     return 0;
 }
 
-static void reads_what_exceeds_memory(void **state)
+TEST(reads_what_exceeds_memory)
 {
     const uint8_t *places[FRAMES];
     char error[256] = "";
@@ -94,7 +89,7 @@ static void reads_what_exceeds_memory(void **state)
 }
 
 /* Without room for it, the reason says so. */
-static void says_that_there_is_no_room(void **state)
+TEST(says_that_there_is_no_room)
 {
     char error[256] = "";
     char *kept = getenv("TMPDIR") == NULL ? NULL : strdup(getenv("TMPDIR"));
@@ -110,9 +105,8 @@ static void says_that_there_is_no_room(void **state)
     free(kept);
 }
 
-static void spills(void **state)
+TEST(spills)
 {
-    (void)state;
     t3r_spill spill = {0};
     uint8_t *a = t3r_spill_take(&spill, 100);
     uint8_t *b = t3r_spill_take(&spill, (size_t)100 << 20); /* a part of its own */
@@ -130,12 +124,4 @@ static void spills(void **state)
     assert_true(spill.parts == NULL && spill.file == 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_what_exceeds_memory),
-        cmocka_unit_test(says_that_there_is_no_room),
-        cmocka_unit_test(spills),
-    };
-    return cmocka_run_group_tests(tests, make_recording, scratch_teardown);
-}
+ALL_TESTS_WITH(make_recording, scratch_teardown)

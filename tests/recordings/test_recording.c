@@ -1,14 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Recordings of our own: what is written is what is read, wherever the file is cut, and never after it was changed. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
 #include "bag.h"
 #include "capture/capture.h"
@@ -17,6 +12,7 @@
 #include "messages/fixed_double.h"
 #include "messages/pixel_layout.h"
 #include "sample.h"
+#include "test.h"
 
 static bag_bytes sample(t3r_pixel_format format, uint32_t storage)
 {
@@ -102,9 +98,8 @@ static void check_readable(const t3r_recording *recording, uint32_t frames, t3r_
     }
 }
 
-static void round_trip_of_every_format(void **state)
+TEST(round_trip_of_every_format)
 {
-    (void)state;
     for (uint32_t i = 0; i < T3R_PIXEL_FORMAT_COUNT * SAMPLE_STORAGES; i++) {
         uint32_t format = i / SAMPLE_STORAGES;
         bag_bytes bytes = sample((t3r_pixel_format)format, i % SAMPLE_STORAGES);
@@ -142,9 +137,8 @@ static void round_trip_of_every_format(void **state)
     }
 }
 
-static void frame_out_of_range_is_refused(void **state)
+TEST(frame_out_of_range_is_refused)
 {
-    (void)state;
     bag_bytes bytes = sample(T3R_PIXEL_RGB24, SAMPLE_NONE);
     t3r_recording *recording = parse(bytes.data, bytes.count);
     t3r_capture_frame frame;
@@ -234,17 +228,15 @@ static void check_cuts(uint32_t storage)
     bag_bytes_free(&bytes);
 }
 
-static void cut_anywhere_reads_the_whole_messages(void **state)
+TEST(cut_anywhere_reads_the_whole_messages)
 {
-    (void)state;
     check_cuts(SAMPLE_UNCHUNKED);
     check_cuts(SAMPLE_NONE);
 }
 
 /* Of a chunk that was cut, whatever could be unpacked. */
-static void cut_anywhere_reads_what_can_be_unpacked(void **state)
+TEST(cut_anywhere_reads_what_can_be_unpacked)
 {
-    (void)state;
     for (uint32_t storage = SAMPLE_ZSTD; storage <= SAMPLE_LZ4; storage++) {
         bag_bytes bytes = sample(T3R_PIXEL_YUYV, storage);
         uint32_t frames = 0;
@@ -265,9 +257,8 @@ static void cut_anywhere_reads_what_can_be_unpacked(void **state)
     }
 }
 
-static void zeros_behind_a_cut_are_no_records(void **state)
+TEST(zeros_behind_a_cut_are_no_records)
 {
-    (void)state;
     bag_bytes bytes = sample(T3R_PIXEL_GREY, SAMPLE_NONE);
     size_t kept = bytes.count / 2;
     memset(bytes.data + kept, 0, bytes.count - kept);
@@ -296,17 +287,15 @@ static void check_changes(uint32_t storage)
     bag_bytes_free(&bytes);
 }
 
-static void every_changed_byte_is_noticed(void **state)
+TEST(every_changed_byte_is_noticed)
 {
-    (void)state;
     for (uint32_t storage = 0; storage < SAMPLE_STORAGES; storage++) {
         check_changes(storage);
     }
 }
 
-static void foreign_and_empty_files_are_refused(void **state)
+TEST(foreign_and_empty_files_are_refused)
 {
-    (void)state;
     static const struct {
         const char *bytes;
         size_t count;
@@ -329,9 +318,8 @@ static void foreign_and_empty_files_are_refused(void **state)
     }
 }
 
-static void a_failing_sink_fails_the_recorder(void **state)
+TEST(a_failing_sink_fails_the_recorder)
 {
-    (void)state;
     for (uint32_t storage = 0; storage < SAMPLE_STORAGES; storage++) {
         bag_bytes bytes = sample(T3R_PIXEL_NV12, storage);
         size_t count = bytes.count;
@@ -347,9 +335,8 @@ static void a_failing_sink_fails_the_recorder(void **state)
 }
 
 /* A sink that cannot be read back gets what --unchunked writes. */
-static void without_reading_back_there_are_no_chunks(void **state)
+TEST(without_reading_back_there_are_no_chunks)
 {
-    (void)state;
     bag_bytes plain = sample(T3R_PIXEL_RGB24, SAMPLE_UNCHUNKED), written;
     bag_bytes_start(&written);
     t3r_sink sink = bag_sink(&written);
@@ -369,9 +356,8 @@ static int read_nothing(void *user, uint64_t offset, void *data, size_t count)
     return 0;
 }
 
-static void a_sink_that_lies_fails_the_recorder(void **state)
+TEST(a_sink_that_lies_fails_the_recorder)
 {
-    (void)state;
     bag_bytes written;
     bag_bytes_start(&written);
     t3r_sink sink = bag_sink(&written);
@@ -380,9 +366,8 @@ static void a_sink_that_lies_fails_the_recorder(void **state)
     bag_bytes_free(&written);
 }
 
-static void the_same_frames_give_the_same_bytes(void **state)
+TEST(the_same_frames_give_the_same_bytes)
 {
-    (void)state;
     for (uint32_t storage = 0; storage < SAMPLE_STORAGES; storage++) {
         bag_bytes one = sample(T3R_PIXEL_NV12, storage), two = sample(T3R_PIXEL_NV12, storage);
         assert_int_equal(one.count, two.count);
@@ -393,9 +378,8 @@ static void the_same_frames_give_the_same_bytes(void **state)
 }
 
 /* What packs to less than a reader takes from so small a file is stored as it is. */
-static void a_flat_picture_stays_readable(void **state)
+TEST(a_flat_picture_stays_readable)
 {
-    (void)state;
     enum { SIDE = 1024 };
     uint8_t *grey = calloc(SIDE, SIDE);
     bag_bytes bytes;
@@ -428,9 +412,8 @@ static void a_flat_picture_stays_readable(void **state)
     free(grey);
 }
 
-static void the_recorder_refuses_bad_arguments(void **state)
+TEST(the_recorder_refuses_bad_arguments)
 {
-    (void)state;
     assert_true(t3r_recorder_bytes() <= T3R_RECORDER_BYTES);
     uint64_t memory[T3R_RECORDER_BYTES / 8];
     t3r_recorder *recorder = (t3r_recorder *)memory;
@@ -489,9 +472,8 @@ static void the_recorder_refuses_bad_arguments(void **state)
     bag_bytes_free(&bytes);
 }
 
-static void replay_hands_out_the_frames(void **state)
+TEST(replay_hands_out_the_frames)
 {
-    (void)state;
     char path[] = "recording-test-XXXXXX";
     int descriptor = mkstemp(path);
     assert_true(descriptor >= 0);
@@ -531,9 +513,8 @@ static void replay_hands_out_the_frames(void **state)
 }
 
 /* A pose that is set takes the place of the recorded one; another frame keeps its own. */
-static void a_set_pose_wins(void **state)
+TEST(a_set_pose_wins)
 {
-    (void)state;
     static const int64_t position_q32[3] = {INT64_C(5) << 40, -7, 0};
     static const int32_t rotation_q30[4] = {3, 1 << 29, -5, 1 << 28};
     bag_bytes bytes = sample(T3R_PIXEL_RGB24, SAMPLE_NONE);
@@ -550,26 +531,4 @@ static void a_set_pose_wins(void **state)
     check_frame(&frame, 0, T3R_PIXEL_RGB24);
     t3r_recording_close(recording);
     bag_bytes_free(&bytes);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip_of_every_format),
-        cmocka_unit_test(frame_out_of_range_is_refused),
-        cmocka_unit_test(cut_anywhere_reads_the_whole_messages),
-        cmocka_unit_test(cut_anywhere_reads_what_can_be_unpacked),
-        cmocka_unit_test(zeros_behind_a_cut_are_no_records),
-        cmocka_unit_test(every_changed_byte_is_noticed),
-        cmocka_unit_test(foreign_and_empty_files_are_refused),
-        cmocka_unit_test(a_failing_sink_fails_the_recorder),
-        cmocka_unit_test(without_reading_back_there_are_no_chunks),
-        cmocka_unit_test(a_sink_that_lies_fails_the_recorder),
-        cmocka_unit_test(the_same_frames_give_the_same_bytes),
-        cmocka_unit_test(a_flat_picture_stays_readable),
-        cmocka_unit_test(the_recorder_refuses_bad_arguments),
-        cmocka_unit_test(replay_hands_out_the_frames),
-        cmocka_unit_test(a_set_pose_wins),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

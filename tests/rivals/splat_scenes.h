@@ -13,7 +13,7 @@
 
 #include <cmocka.h>
 
-#include "drawing.h"
+#include "oracle/float64/drawing.h"
 #include "study/rivals/splat_view.h"
 
 /* The frame of the scenes: scene units are world units, their origin the world's. */

@@ -4,6 +4,7 @@
 
 #include "splat_scenes.h"
 #include "study/rivals/finetune.h"
+#include "test.h"
 
 enum { SIDE = 32, VALUES = SIDE * SIDE * 3, VIEWS = 2, COUNT = 60 };
 
@@ -59,9 +60,8 @@ static double psnr(const scene *s)
     return 10 * log10(255.0 * 255 * VIEWS * VALUES / squares);
 }
 
-static void finds_back(void **state)
+TEST(finds_back)
 {
-    (void)state;
     scene *s = calloc(1, sizeof *s);
     assert_non_null(s);
     make_scene(s);
@@ -81,9 +81,8 @@ static void finds_back(void **state)
     free(s);
 }
 
-static void same_every_time(void **state)
+TEST(same_every_time)
 {
-    (void)state;
     scene *s = calloc(2, sizeof *s);
     assert_non_null(s);
     for (int i = 0; i < 2; i++) {
@@ -97,9 +96,8 @@ static void same_every_time(void **state)
 }
 
 /* Every parameter moves by its own rate in the first step of Adam, or stays where nothing depends on it. */
-static void first_step(void **state)
+TEST(first_step)
 {
-    (void)state;
     static uint8_t black[VALUES];
     splat_camera camera = middle_camera(SIDE, SIDE, SIDE);
     finetune_target target = {camera, black};
@@ -120,14 +118,4 @@ static void first_step(void **state)
     assert_true(fabs(after[SPLAT_LOGIT] - before[SPLAT_LOGIT] + 4e-3) < 1e-8);
     assert_memory_equal(parameters_of(&model, 1), &before[SPLAT_PARAMETERS], SPLAT_PARAMETERS * sizeof(double));
     splat_model_free(&model);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finds_back),
-        cmocka_unit_test(same_every_time),
-        cmocka_unit_test(first_step),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

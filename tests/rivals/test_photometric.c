@@ -2,6 +2,7 @@
 /* The loss of fine-tuning against its definition, the slow way, and its derivatives against differences. */
 #include "splat_scenes.h"
 #include "study/rivals/photometric.h"
+#include "test.h"
 
 enum { WIDTH = 19, HEIGHT = 14, VALUES = WIDTH * HEIGHT * 3 };
 
@@ -54,9 +55,8 @@ static double loss_slowly(const uint8_t *target, const float *rgb, double simila
     return (1 - similarity) * difference + similarity * (1 - likeness);
 }
 
-static void against_definition(void **state)
+TEST(against_definition)
 {
-    (void)state;
     static const double shares[] = {0, 0.2, 1};
     uint8_t target[VALUES];
     float rgb[VALUES], gradient[VALUES];
@@ -74,9 +74,8 @@ static void against_definition(void **state)
     photometric_close(&p);
 }
 
-static void derivatives(void **state)
+TEST(derivatives)
 {
-    (void)state;
     static const double shares[] = {0, 0.2, 1};
     uint8_t target[VALUES];
     float rgb[VALUES], gradient[VALUES];
@@ -99,13 +98,4 @@ static void derivatives(void **state)
         }
     }
     photometric_close(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(against_definition),
-        cmocka_unit_test(derivatives),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

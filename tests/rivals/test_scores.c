@@ -5,6 +5,7 @@
 #include "splat_scenes.h"
 #include "study/rivals/rival.h"
 #include "study/rivals/score.h"
+#include "test.h"
 
 enum { SIDE = 33 };
 
@@ -55,9 +56,8 @@ static splat_model two_and_one(void)
     return model;
 }
 
-static void eagles(void **state)
+TEST(eagles)
 {
-    (void)state;
     double pixels[2], weights[2], score[3];
     two_balls(2.5, 0.8, 0.4, pixels, weights);
     splat_camera camera = middle_camera(FOCAL, SIDE, SIDE);
@@ -74,9 +74,8 @@ static void eagles(void **state)
     splat_model_free(&model);
 }
 
-static void lightgaussian(void **state)
+TEST(lightgaussian)
 {
-    (void)state;
     double pixels[2], weights[2], score[3];
     two_balls(2.5, 0.8, 0.4, pixels, weights);
     splat_camera camera = middle_camera(FOCAL, SIDE, SIDE);
@@ -93,9 +92,8 @@ static void lightgaussian(void **state)
     splat_model_free(&model);
 }
 
-static void efficientgs(void **state)
+TEST(efficientgs)
 {
-    (void)state;
     double pixels[2], weights[2], score[3];
     two_balls(2.5, 0.8, 0.4, pixels, weights);
     splat_camera camera = middle_camera(FOCAL, SIDE, SIDE);
@@ -128,9 +126,8 @@ static void efficientgs(void **state)
 
 /* ---- PUP ------------------------------------------------------------------------------------------------------ */
 
-static void log_determinants(void **state)
+TEST(log_determinants)
 {
-    (void)state;
     double matrix[6][6] = {{0}}, sum = 0;
     for (int i = 0; i < 6; i++) {
         matrix[i][i] = pow(10, 3 * i - 9);
@@ -175,9 +172,8 @@ static void add_slowly(splat_model *model, uint32_t gaussian, const splat_camera
     }
 }
 
-static void pup(void **state)
+TEST(pup)
 {
-    (void)state;
     dice d = {3};
     splat_model model = random_model(&d, PUP_COUNT + 1, FOCAL, SIDE, SIDE);
     set_ball(&model, PUP_COUNT, 0, 0, -1, 0.1, 0.9); /* nobody sees it */
@@ -213,9 +209,8 @@ static void pup(void **state)
 
 /* ---- random, and choosing ------------------------------------------------------------------------------------- */
 
-static void random_scores(void **state)
+TEST(random_scores)
 {
-    (void)state;
     enum { COUNT = 10000 };
     static double first[COUNT], other[COUNT];
     splat_model model = {COUNT, NULL};
@@ -235,9 +230,8 @@ static void random_scores(void **state)
     assert_memory_equal(first, other, sizeof first);
 }
 
-static void choosing(void **state)
+TEST(choosing)
 {
-    (void)state;
     const double score[7] = {1, 3, -HUGE_VAL, 3, 2, 3, -HUGE_VAL};
     static const uint32_t wanted[8][7] = {
         {0}, {1}, {1, 3}, {1, 3, 5}, {1, 3, 4, 5}, {0, 1, 3, 4, 5}, {0, 1, 2, 3, 4, 5}, {0, 1, 2, 3, 4, 5, 6}};
@@ -248,14 +242,4 @@ static void choosing(void **state)
         assert_memory_equal(kept, wanted[count], count * sizeof *kept);
         free(kept);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(eagles),           cmocka_unit_test(lightgaussian), cmocka_unit_test(efficientgs),
-        cmocka_unit_test(log_determinants), cmocka_unit_test(pup),           cmocka_unit_test(random_scores),
-        cmocka_unit_test(choosing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

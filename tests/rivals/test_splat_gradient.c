@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "splat_scenes.h"
+#include "test.h"
 
 /* The cut at 1/255 has no derivative: here it lies where it cannot be seen. */
 #define UNSEEN 1e-6
@@ -71,9 +72,8 @@ static void compare(splat_model *model, const splat_camera *camera, uint64_t see
     }
 }
 
-static void plain_view(void **state)
+TEST(plain_view)
 {
-    (void)state;
     splat_camera camera = middle_camera(20, WIDTH, HEIGHT);
     for (uint64_t seed = 1; seed <= 5; seed++) {
         dice d = {seed};
@@ -83,9 +83,8 @@ static void plain_view(void **state)
     }
 }
 
-static void turned_view(void **state)
+TEST(turned_view)
 {
-    (void)state;
     const double position[3] = {0.7, -0.4, -0.3}, at[3] = {0, 0, 1.5};
     t3r_camera from = camera_towards(22, WIDTH, HEIGHT, position, at);
     from.fy_q16 += 3 << 16;
@@ -97,9 +96,8 @@ static void turned_view(void **state)
 }
 
 /* At the cap of alpha neither place nor shape nor opacity shows. */
-static void capped(void **state)
+TEST(capped)
 {
-    (void)state;
     static float rgb[9 * 9 * 3], weights[9 * 9 * 3];
     splat_camera camera = middle_camera(10, 9, 9);
     splat_model model = plain_model(1);
@@ -115,14 +113,4 @@ static void capped(void **state)
     assert_true(fabs(g.colour[0] - 81 * 0.99) < 1e-3);
     splat_view_close(&view);
     splat_model_free(&model);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plain_view),
-        cmocka_unit_test(turned_view),
-        cmocka_unit_test(capped),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

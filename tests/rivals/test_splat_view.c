@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "splat_scenes.h"
+#include "test.h"
 
 #define LEAST_DB 50.0
 
@@ -63,9 +64,8 @@ static void compare(const char *name, const t3r_scene_frame *frame, const t3r_ga
     drawing_free(&want);
 }
 
-static void random_scenes(void **state)
+TEST(random_scenes)
 {
-    (void)state;
     static const recipe recipes[] = {
         {"small round", 20000, 256, 256, 250, 0.5, 4, 0.001, 0.02, 1, 0.05},
         {"discs", 20000, 256, 256, 250, 0.5, 4, 0.002, 0.04, 30, 0.1},
@@ -86,9 +86,8 @@ static void random_scenes(void **state)
 }
 
 /* Turned, with unequal focal lengths, and at map coordinates in units a 64th as large. */
-static void moved_cameras(void **state)
+TEST(moved_cameras)
 {
-    (void)state;
     static const recipe r = {"ball", 8000, 200, 160, 200, 0.5, 1, 0.005, 0.05, 20, 0.1};
     t3r_gaussian *gaussians = cook(&r, 77);
     dice d = {78};
@@ -130,9 +129,8 @@ static void gather(void *user, const splat_row *row)
 }
 
 /* What a walk tells adds up to the picture. */
-static void walk_is_the_picture(void **state)
+TEST(walk_is_the_picture)
 {
-    (void)state;
     enum { WIDTH = 45, HEIGHT = 29 };
     static float drawn[WIDTH * HEIGHT * 3], walked[WIDTH * HEIGHT * 3];
     dice d = {4};
@@ -150,9 +148,8 @@ static void walk_is_the_picture(void **state)
 }
 
 /* To parameters and back: within the rounding of the record. */
-static void model_round_trip(void **state)
+TEST(model_round_trip)
 {
-    (void)state;
     static const recipe r = {"round trip", 2000, 64, 64, 60, 0.5, 4, 0.001, 0.2, 100, 0.001};
     t3r_gaussian *gaussians = cook(&r, 5);
     splat_model model;
@@ -182,9 +179,8 @@ static void model_round_trip(void **state)
 }
 
 /* Nothing that an optimiser may come to draws outside memory or ends in a trap. */
-static void wild_parameters(void **state)
+TEST(wild_parameters)
 {
-    (void)state;
     static const double wild[] = {0, -0.0, 1e-300, 1e300, -1e300, 700, -700, INFINITY, -INFINITY, NAN};
     enum { SIDE = 20, KINDS = sizeof wild / sizeof wild[0] };
     static float rgb[SIDE * SIDE * 3];
@@ -202,13 +198,4 @@ static void wild_parameters(void **state)
         }
     }
     splat_model_free(&model);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(random_scenes),    cmocka_unit_test(moved_cameras),   cmocka_unit_test(walk_is_the_picture),
-        cmocka_unit_test(model_round_trip), cmocka_unit_test(wild_parameters),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

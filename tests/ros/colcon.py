@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 
-from common import check, done, run, skip
+from checks import check, done, run, skip
 
 package, stand_in = map(pathlib.Path, sys.argv[1:3])
 whole = sys.argv[3:] == ["whole"]

@@ -12,7 +12,8 @@ import sys
 import tempfile
 import time
 
-from common import EVERY, FRAMES, GAUSSIANS, SIDE, check, check_clouds, check_hashes, check_points, done, skip, walk
+from checks import check, done, skip
+from common import EVERY, FRAMES, GAUSSIANS, SIDE, check_clouds, check_hashes, check_points, walk
 
 trim3r, node, play = sys.argv[1:]
 master = shutil.which("rosmaster")

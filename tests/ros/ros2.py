@@ -6,7 +6,8 @@ refused with a reason and change nothing."""
 import sys
 import tempfile
 
-from common import check, check_clouds, check_hashes, check_points, done, run, skip, walk
+from checks import check, done, run, skip
+from common import check_clouds, check_hashes, check_points, walk
 
 trim3r, drive = sys.argv[1:]
 if drive == "none":

@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Messages of a camera, in any order and of any content, to frames: pairs by time, bounded queues, reasons. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "pictures/png_bytes.h"
 #include "ros/frame_feed.h"
+#include "test.h"
 
 enum { SIDE = 16 };
 #define MS INT64_C(1000000)
@@ -144,9 +140,8 @@ static void send_pose(heard *h, int64_t ms, double x, const char *child, int64_t
     frame_feed_pose(h->feed, &pose, now_ms * MS);
 }
 
-static void settings_are_checked(void **state)
+TEST(settings_are_checked)
 {
-    (void)state;
     char error[128];
     frame_feed_settings s = frame_feed_defaults();
     s.queue = 1;
@@ -174,9 +169,8 @@ static void put_order(int number, int order[FRAME_FEED_TOPICS])
     }
 }
 
-static void any_order_makes_a_frame(void **state)
+TEST(any_order_makes_a_frame)
 {
-    (void)state;
     for (int number = 0; number < 24; number++) {
         int order[FRAME_FEED_TOPICS];
         heard h;
@@ -208,9 +202,8 @@ static void any_order_makes_a_frame(void **state)
     }
 }
 
-static void the_nearest_pose_counts(void **state)
+TEST(the_nearest_pose_counts)
 {
-    (void)state;
     heard h;
     begin(&h, false, 8);
     send_info(&h);
@@ -235,9 +228,8 @@ static void the_nearest_pose_counts(void **state)
     finish(&h);
 }
 
-static void patience_ends(void **state)
+TEST(patience_ends)
 {
-    (void)state;
     heard h;
     begin(&h, true, 8);
     send_info(&h);
@@ -262,9 +254,8 @@ static void patience_ends(void **state)
     finish(&h);
 }
 
-static void queues_are_bounded(void **state)
+TEST(queues_are_bounded)
 {
-    (void)state;
     for (uint32_t queue = 2; queue <= 32; queue += 10) {
         heard h;
         begin(&h, true, queue);
@@ -288,9 +279,8 @@ static void queues_are_bounded(void **state)
     }
 }
 
-static void time_goes_on(void **state)
+TEST(time_goes_on)
 {
-    (void)state;
     heard h;
     begin(&h, true, 8);
     h.found = FRAME_FEED_FOUND;
@@ -309,9 +299,8 @@ static void time_goes_on(void **state)
     finish(&h);
 }
 
-static void wrong_messages_have_a_reason(void **state)
+TEST(wrong_messages_have_a_reason)
 {
-    (void)state;
     heard h;
     begin(&h, true, 8);
     h.found = FRAME_FEED_FOUND;
@@ -349,9 +338,8 @@ static void wrong_messages_have_a_reason(void **state)
     finish(&h);
 }
 
-static void lines_are_held_back(void **state)
+TEST(lines_are_held_back)
 {
-    (void)state;
     heard h;
     begin(&h, true, 8);
     for (int i = 0; i < 100; i++) { /* three seconds of frames without intrinsics */
@@ -370,9 +358,8 @@ static void lines_are_held_back(void **state)
     finish(&h);
 }
 
-static void compressed_images_are_decoded(void **state)
+TEST(compressed_images_are_decoded)
 {
-    (void)state;
     heard h;
     size_t count;
     begin(&h, true, 8);
@@ -401,20 +388,4 @@ static void compressed_images_are_decoded(void **state)
     assert_int_equal(h.topic, FRAME_FEED_COLOUR);
     free(png);
     finish(&h);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(settings_are_checked),
-        cmocka_unit_test(any_order_makes_a_frame),
-        cmocka_unit_test(the_nearest_pose_counts),
-        cmocka_unit_test(patience_ends),
-        cmocka_unit_test(queues_are_bounded),
-        cmocka_unit_test(time_goes_on),
-        cmocka_unit_test(wrong_messages_have_a_reason),
-        cmocka_unit_test(lines_are_held_back),
-        cmocka_unit_test(compressed_images_are_decoded),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,14 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Settings that cannot be used are refused with a reason; which frames become keyframes. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "ros/keyframe_map.h"
 #include "ros/point_cloud.h"
+#include "test.h"
 
 enum { SIDE = 32 };
 
@@ -34,9 +30,8 @@ static void refused(keyframe_map_settings s, const char *why)
     }
 }
 
-static void settings_are_checked(void **state)
+TEST(settings_are_checked)
 {
-    (void)state;
     keyframe_map_settings s = small();
     s.every = 0;
     refused(s, "every");
@@ -113,9 +108,8 @@ static uint32_t keyframes_of(const keyframe_map_settings *s, int step_mm)
     return seen;
 }
 
-static void keyframes_are_chosen(void **state)
+TEST(keyframes_are_chosen)
 {
-    (void)state;
     keyframe_map_settings s = small();
     assert_int_equal(keyframes_of(&s, 10), 2); /* every third */
     s.every = 1;
@@ -125,10 +119,4 @@ static void keyframes_are_chosen(void **state)
     s.overlap_percent = 70;
     assert_int_equal(keyframes_of(&s, 0), 1); /* a camera that stands still */
     assert_true(keyframes_of(&s, 200) > 2);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(settings_are_checked), cmocka_unit_test(keyframes_are_chosen)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

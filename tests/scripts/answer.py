@@ -6,7 +6,8 @@ import os
 import re
 import sys
 
-from common import check, done, need_opencv, run
+from checks import check, done, run
+from common import need_opencv
 
 tools, docs = sys.argv[1:3]
 scripts = os.path.join(tools, "study", "scripts")

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the scripts of this folder share."""
-import os
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-from checks import check, done, near, run, skip  # noqa: E402, F401
+from checks import check, done, near, run, skip  # noqa: F401
 
 
 def need_opencv():

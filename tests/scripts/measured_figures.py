@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-from common import check, done
+from checks import check, done
 
 sys.path.insert(0, sys.argv[1])
 sys.dont_write_bytecode = True

@@ -11,7 +11,7 @@ import re
 import sys
 import tempfile
 
-from common import check, done
+from checks import check, done
 
 scripts, docs = sys.argv[1:3]
 sys.path.insert(0, scripts)

@@ -6,7 +6,7 @@ import sys
 import tempfile
 import xml.etree.ElementTree
 
-from common import check, done, run
+from checks import check, done, run
 
 trim3r, speed = map(os.path.abspath, sys.argv[1:3])
 NAMES = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs", "efficientgs+finetune", "analytic", "tiny")

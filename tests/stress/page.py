@@ -4,14 +4,12 @@
 the table of the same run has them, what was refused, every picture there, light and dark, a phone; no errors, no
 requests. With FOLDER, what it looks like goes there."""
 import csv
-import os
 import re
 import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-import browser  # noqa: E402
-from checks import check, done, near, run, skip  # noqa: E402
+import browser
+from checks import check, done, near, run, skip
 
 trim3r = sys.argv[1]
 looks = sys.argv[2] if len(sys.argv) > 2 else None

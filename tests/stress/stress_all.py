@@ -5,10 +5,8 @@ no invariant breaks, and with sanitizers nothing is found. ours: with noisy capt
 Gaussians as SuperClusters up; rivals: as published, fine-tuned, and as points for our head; settings: budgets in other
 ways, `--auto`, depth by stereo."""
 import json
-import os
 import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 from checks import check, done, run
 
 trim3r, part = sys.argv[1:]

@@ -7,7 +7,6 @@ import os
 import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 from checks import check, done, run, skip
 
 TRIM3R, DATA = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])

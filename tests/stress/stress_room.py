@@ -9,7 +9,6 @@ import re
 import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 from checks import check, done, near, run
 
 trim3r = sys.argv[1]

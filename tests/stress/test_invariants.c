@@ -1,15 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Every invariant, broken on purpose: it must be reported, and `trim3r stress` must exit with status 1. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "plane.h"
 #include "study/stress/invariant.h"
@@ -17,12 +11,12 @@
 #include "study/stress/report.h"
 #include "study/stress/stability.h"
 #include "study/stress/verdict.h"
+#include "test.h"
 
 /* ---- a scene ----------------------------------------------------------------------------------------------------- */
 
-static void scenes_out_of_bounds(void **state)
+TEST(scenes_out_of_bounds)
 {
-    (void)state;
     t3r_gaussian g[2] = {{.factor = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .opacity_q15 = 32767}, {.factor = {0}}};
     t3r_scene scene = {.gaussians = g, .count = 2};
     assert_null(stress_broken_invariant(&scene, 2, false));
@@ -40,9 +34,8 @@ static void scenes_out_of_bounds(void **state)
 }
 
 /* The extremes that in_range accepts are finite; anything that is not is reported. */
-static void shapes_that_no_file_holds(void **state)
+TEST(shapes_that_no_file_holds)
 {
-    (void)state;
     static const int16_t entries[] = {0, 1, -1, INT16_MAX, INT16_MIN};
     enum { ENTRIES = sizeof entries / sizeof *entries };
     for (int exponent = -60; exponent <= 15; exponent += 75) {
@@ -86,7 +79,7 @@ static void cell(plane *f, const perturbation *p)
 }
 
 /* A target without pixels that count has no score. */
-static void scores_that_are_no_numbers(void **state)
+TEST_WITH(scores_that_are_no_numbers, open_plane, plane_close)
 {
     plane *f = *state;
     cell(f, NULL);
@@ -99,7 +92,7 @@ static void scores_that_are_no_numbers(void **state)
 
 /* For unperturbed frames, a too small arena is a refusal: nothing guarantees that it suffices. If it sufficed for
  * those, it must suffice for perturbed ones. */
-static void arenas_too_small_for_perturbed_frames(void **state)
+TEST_WITH(arenas_too_small_for_perturbed_frames, open_plane, plane_close)
 {
     plane *f = *state;
     const perturbation *noise = stress_perturbation(0);
@@ -117,9 +110,8 @@ static void arenas_too_small_for_perturbed_frames(void **state)
 /* ---- rows -------------------------------------------------------------------------------------------------------- */
 
 /* An arena that grew, or changed for the same budget, is reported; a rival's arena is that of all points. */
-static void arenas_that_change(void **state)
+TEST(arenas_that_change)
 {
-    (void)state;
     stress_row base = {.method = &method_trim3r}, row;
     base.value[STRESS_ARENA_BYTES] = base.value[STRESS_GAUSSIANS] = 1000;
     const struct {
@@ -153,9 +145,8 @@ static stress_row still_row(double gaussians, double changed, double motion)
 }
 
 /* Bounds: at 1, 4 and 100 Gaussians a SuperCluster, just within and just beyond. */
-static void still_scenes_that_do_not_stay(void **state)
+TEST(still_scenes_that_do_not_stay)
 {
-    (void)state;
     const double noise = 0.125;
     const struct {
         const method *method;
@@ -183,9 +174,8 @@ static void still_scenes_that_do_not_stay(void **state)
 }
 
 /* The report of a broken invariant: a line, its cell and reason, and the exit status. */
-static void exit_status_of_a_broken_invariant(void **state)
+TEST(exit_status_of_a_broken_invariant)
 {
-    (void)state;
     const stress_contest contest = {.methods = {&method_trim3r}, .method_count = 1, .keep = {10}, .keep_count = 1};
     const stress_outputs to = {.worst = 1};
     stress_row row = still_row(1000, 0, 0);
@@ -214,17 +204,4 @@ static void exit_status_of_a_broken_invariant(void **state)
     assert_non_null(strstr(told, "BROKEN  room: unperturbed, trim3r at 10 %: the budget is not met\n"));
     assert_non_null(strstr(told, "1 rows: 0 measured, 0 refused with a reason, 1 with a broken invariant"));
     free(told);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(scenes_out_of_bounds),
-        cmocka_unit_test(shapes_that_no_file_holds),
-        cmocka_unit_test_setup_teardown(scores_that_are_no_numbers, open_plane, plane_close),
-        cmocka_unit_test_setup_teardown(arenas_too_small_for_perturbed_frames, open_plane, plane_close),
-        cmocka_unit_test(arenas_that_change),
-        cmocka_unit_test(still_scenes_that_do_not_stay),
-        cmocka_unit_test(exit_status_of_a_broken_invariant)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,17 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Each perturbation's guarantee, on frames that show it; at strength 0 none changes anything. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "study/stress/perturbation.h"
 #include "study/stress/random.h"
+#include "test.h"
 
 enum { WIDTH = 48, HEIGHT = 40, PIXELS = WIDTH * HEIGHT };
 
@@ -74,9 +69,8 @@ static size_t depth_count(const stress_view *view)
 
 /* ---- all of them ------------------------------------------------------------------------------------------------- */
 
-static void strength_zero_is_identity(void **state)
+TEST(strength_zero_is_identity)
 {
-    (void)state;
     const perturbation *p;
     for (uint32_t i = 0; (p = stress_perturbation(i)) != NULL; i++) {
         pair it = perturbed(p->apply, 0);
@@ -108,9 +102,8 @@ static double distance(const stress_capture *a, const stress_capture *b)
 }
 
 /* Context views change, more with each grade (except kinds); the target does not, except that "huge" moves it too. */
-static void grades_rise_and_targets_stay(void **state)
+TEST(grades_rise_and_targets_stay)
 {
-    (void)state;
     const perturbation *p;
     for (uint32_t i = 0; (p = stress_perturbation(i)) != NULL; i++) {
         double last = 0;
@@ -138,9 +131,8 @@ static void grades_rise_and_targets_stay(void **state)
 
 /* ---- colour ------------------------------------------------------------------------------------------------------ */
 
-static void noise_has_its_deviation(void **state)
+TEST(noise_has_its_deviation)
 {
-    (void)state;
     pair it = perturbed(perturb_noise, 12);
     double sum = 0, squares = 0;
     for (size_t i = 0; i < PIXELS * 3; i++) {
@@ -155,9 +147,8 @@ static void noise_has_its_deviation(void **state)
 }
 
 /* A point's light is spread like a Gaussian, and none is lost. */
-static void blur_spreads_a_point(void **state)
+TEST(blur_spreads_a_point)
 {
-    (void)state;
     stress_capture c;
     assert_true(stress_capture_open(&c, WIDTH, HEIGHT, 1, 0.001));
     uint32_t x = 20, y = 18;
@@ -179,9 +170,8 @@ static void blur_spreads_a_point(void **state)
     stress_capture_free(&c);
 }
 
-static void gains_part_the_views(void **state)
+TEST(gains_part_the_views)
 {
-    (void)state;
     pair it = perturbed(perturb_exposure, 1);
     pair white = perturbed(perturb_white, 1);
     double up = exp2(0.5 / 2.2);
@@ -198,9 +188,8 @@ static void gains_part_the_views(void **state)
 
 /* ---- depth ------------------------------------------------------------------------------------------------------- */
 
-static void depth_noise_is_relative(void **state)
+TEST(depth_noise_is_relative)
 {
-    (void)state;
     pair it = perturbed(perturb_depth_noise, 2);
     double squares = 0;
     for (size_t i = 0; i < PIXELS; i++) {
@@ -222,9 +211,8 @@ static void depth_noise_is_relative(void **state)
     stress_capture_free(&c);
 }
 
-static void lattice_keeps_its_points(void **state)
+TEST(lattice_keeps_its_points)
 {
-    (void)state;
     pair it = perturbed(perturb_lattice, 3);
     for (size_t i = 0; i < PIXELS; i++) {
         bool stays = i % WIDTH % 3 == 0 && i / WIDTH % 3 == 0;
@@ -234,9 +222,8 @@ static void lattice_keeps_its_points(void **state)
 }
 
 /* At least the share, and at most one disc more; all else is unchanged. */
-static void blobs_take_their_share(void **state)
+TEST(blobs_take_their_share)
 {
-    (void)state;
     pair it = perturbed(perturb_blobs, 30);
     for (int v = 0; v < 2; v++) {
         double before = (double)depth_count(&it.before.view[v]), after = (double)depth_count(&it.after.view[v]);
@@ -252,9 +239,8 @@ static void blobs_take_their_share(void **state)
     release(&it);
 }
 
-static void shares_of_pixels(void **state)
+TEST(shares_of_pixels)
 {
-    (void)state;
     pair it = perturbed(perturb_dropouts, 60);
     double left = (double)stress_capture_valid(&it.after) / stress_capture_valid(&it.before);
     assert_true(fabs(left - 0.4) < 0.04);
@@ -273,9 +259,8 @@ static void shares_of_pixels(void **state)
     release(&far);
 }
 
-static void depth_scale_multiplies(void **state)
+TEST(depth_scale_multiplies)
 {
-    (void)state;
     pair it = perturbed(perturb_depth_scale, 5);
     for (size_t i = 0; i < PIXELS; i++) {
         assert_true(fabs(it.after.view[0].depth[i] - it.before.view[0].depth[i] * 1.05) <= 0.5);
@@ -285,9 +270,8 @@ static void depth_scale_multiplies(void **state)
 
 /* ---- cameras ----------------------------------------------------------------------------------------------------- */
 
-static void pose_turns_and_moves(void **state)
+TEST(pose_turns_and_moves)
 {
-    (void)state;
     pair it = perturbed(perturb_pose, 3);
     for (int v = 0; v < 2; v++) {
         const t3r_recorded_camera *a = &it.before.view[v].camera, *b = &it.after.view[v].camera;
@@ -308,9 +292,8 @@ static void pose_turns_and_moves(void **state)
     release(&it);
 }
 
-static void intrinsics_lie(void **state)
+TEST(intrinsics_lie)
 {
-    (void)state;
     pair it = perturbed(perturb_intrinsics, 5);
     assert_true(fabs(it.after.view[1].camera.fx - 42) < 1e-9 && fabs(it.after.view[1].camera.fy - 44.1) < 1e-9);
     release(&it);
@@ -318,9 +301,8 @@ static void intrinsics_lie(void **state)
 
 /* Level ramps: a yaw moves what is seen by f tan(angle) where the ray is near the axis, up in the first rows, down in
  * the last; a plane's depth at the axis stays what it is but for the cosine. */
-static void rolling_shutter_shears(void **state)
+TEST(rolling_shutter_shears)
 {
-    (void)state;
     stress_capture c = sample();
     for (size_t i = 0; i < PIXELS; i++) {
         memset(&c.view[0].rgb[i * 3], (int)(i % WIDTH * 5), 3);
@@ -340,9 +322,8 @@ static void rolling_shutter_shears(void **state)
 
 /* ---- frames ------------------------------------------------------------------------------------------------------ */
 
-static void rows_of_one_colour(void **state)
+TEST(rows_of_one_colour)
 {
-    (void)state;
     pair it = perturbed(perturb_white_frame, 25);
     for (size_t i = 0; i < PIXELS * 3; i++) {
         assert_int_equal(it.after.view[1].rgb[i], i < PIXELS * 3 / 4 ? 255 : it.before.view[1].rgb[i]);
@@ -355,9 +336,8 @@ static void rows_of_one_colour(void **state)
     release(&it);
 }
 
-static void identical_views(void **state)
+TEST(identical_views)
 {
-    (void)state;
     pair it = perturbed(perturb_identical, 1);
     assert_true(same_view(&it.after.view[1], &it.before.view[0]));
     release(&it);
@@ -371,9 +351,8 @@ static void identical_views(void **state)
     release(&it);
 }
 
-static void mirrored_twice_is_itself(void **state)
+TEST(mirrored_twice_is_itself)
 {
-    (void)state;
     for (double kind = 1; kind <= 3; kind++) {
         pair it = perturbed(perturb_mirrored, kind);
         assert_int_equal(it.after.view[1].rgb[3], it.before.view[1].rgb[(WIDTH - 2) * 3]);
@@ -388,9 +367,8 @@ static void mirrored_twice_is_itself(void **state)
 
 /* ---- recorded again ---------------------------------------------------------------------------------------------- */
 
-static void a_recording_of_it_is_the_same(void **state)
+TEST(a_recording_of_it_is_the_same)
 {
-    (void)state;
     stress_capture c = sample(), back;
     uint8_t *bytes;
     t3r_recording *recording = stress_capture_recording(&c, &bytes);
@@ -412,28 +390,4 @@ static void a_recording_of_it_is_the_same(void **state)
     free(bytes);
     stress_capture_free(&back);
     stress_capture_free(&c);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(strength_zero_is_identity),
-        cmocka_unit_test(grades_rise_and_targets_stay),
-        cmocka_unit_test(noise_has_its_deviation),
-        cmocka_unit_test(blur_spreads_a_point),
-        cmocka_unit_test(gains_part_the_views),
-        cmocka_unit_test(depth_noise_is_relative),
-        cmocka_unit_test(lattice_keeps_its_points),
-        cmocka_unit_test(blobs_take_their_share),
-        cmocka_unit_test(shares_of_pixels),
-        cmocka_unit_test(depth_scale_multiplies),
-        cmocka_unit_test(pose_turns_and_moves),
-        cmocka_unit_test(intrinsics_lie),
-        cmocka_unit_test(rolling_shutter_shears),
-        cmocka_unit_test(rows_of_one_colour),
-        cmocka_unit_test(identical_views),
-        cmocka_unit_test(mirrored_twice_is_itself),
-        cmocka_unit_test(a_recording_of_it_is_the_same),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The synthetic scenes: the target shows what the two context views show, except where something is in front of it. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "study/stress/scene.h"
+#include "test.h"
 
 enum { WIDTH = 72, HEIGHT = 60 };
 
@@ -41,9 +36,8 @@ static double agreement(const stress_capture *c, int v, double *difference)
     return (double)agreed / (double)landed;
 }
 
-static void views_agree(void **state)
+TEST(views_agree)
 {
-    (void)state;
     const stress_scene *scene;
     for (uint32_t i = 0; (scene = stress_scene_at(i)) != NULL; i++) {
         bool mirror = strcmp(scene->name, "scene-mirror") == 0;
@@ -74,9 +68,8 @@ static double roughness(const stress_scene *scene, double strength)
     return sum / (WIDTH * HEIGHT);
 }
 
-static void patterns_are_as_fine_as_said(void **state)
+TEST(patterns_are_as_fine_as_said)
 {
-    (void)state;
     for (uint32_t i = 0; i < 4; i++) {
         const stress_scene *scene = stress_scene_at(i);
         if (strcmp(scene->name, "scene-wall") == 0) {
@@ -88,9 +81,8 @@ static void patterns_are_as_fine_as_said(void **state)
 }
 
 /* A bar, nearer than its surroundings, has the width stated. */
-static void bars_have_their_width(void **state)
+TEST(bars_have_their_width)
 {
-    (void)state;
     const stress_scene *scene = stress_scene_at(2);
     assert_string_equal(scene->name, "scene-bars");
     stress_capture c;
@@ -101,11 +93,4 @@ static void bars_have_their_width(void **state)
     }
     assert_true(fabs((double)before / (WIDTH * HEIGHT) - 0.25) < 0.05); /* one in four */
     stress_capture_free(&c);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(views_agree), cmocka_unit_test(patterns_are_as_fine_as_said),
-                                       cmocka_unit_test(bars_have_their_width)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

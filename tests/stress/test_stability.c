@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Cells of a small scene: measurements must agree with known values. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <cmocka.h>
 
 #include "plane.h"
 #include "study/stress/stability.h"
 #include "study/stress/table.h"
+#include "test.h"
 
 static int open_plane(void **state)
 {
@@ -33,7 +28,7 @@ static void cell(plane *f, const char *name, uint32_t grade)
 /* The noise of a still scene moves a Gaussian without refinement or network along its ray: depth noise of 0.2 % in both
  * captures, 0.954 deviations apart in the median; a rival's mask of random scores stays, as the same pixels have depth.
  */
-static void still_scene(void **state)
+TEST_WITH(still_scene, open_plane, plane_close)
 {
     plane *f = *state;
     cell(f, NULL, 0);
@@ -58,7 +53,7 @@ static void still_scene(void **state)
 
 /* The invariant where it can fail: the shipped head and refinement on every drawn scene, from as many Gaussians as
  * SuperClusters up. A mask that changed by nothing would say that nothing was captured anew. */
-static void learned_and_refined(void **state)
+TEST_WITH(learned_and_refined, open_plane, plane_close)
 {
     plane *f = *state;
     const double keeps[] = {2, 40};
@@ -93,7 +88,7 @@ static void learned_and_refined(void **state)
 
 /* A moved world is the same scene; a budget above the remaining points takes all of them; without points it is
  * refused. */
-static void budgets_and_refusals(void **state)
+TEST_WITH(budgets_and_refusals, open_plane, plane_close)
 {
     plane *f = *state;
     stress_row plain[METHODS];
@@ -122,9 +117,8 @@ static void budgets_and_refusals(void **state)
     }
 }
 
-static void means_of_rows(void **state)
+TEST(means_of_rows)
 {
-    (void)state;
     stress_row rows[3] = {{.what = "noise", .grade = 1, .keep = 10},
                           {.what = "noise", .grade = 1, .keep = 10},
                           {.what = "noise", .grade = 2, .keep = 10}};
@@ -137,13 +131,4 @@ static void means_of_rows(void **state)
     assert_int_equal(refused, 1);
     rows[0].keep = 20;
     assert_true(isnan(stress_mean(rows, 3, &rows[1], STRESS_PSNR_LOST, NULL)));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(still_scene, open_plane, plane_close),
-                                       cmocka_unit_test_setup_teardown(learned_and_refined, open_plane, plane_close),
-                                       cmocka_unit_test_setup_teardown(budgets_and_refusals, open_plane, plane_close),
-                                       cmocka_unit_test(means_of_rows)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,20 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Shared by the unit tests: cmocka's includes and repeatable noise. */
+/* Shared by the unit tests: their main() and repeatable noise. */
 #ifndef T3R_TESTS_UNIT_H
 #define T3R_TESTS_UNIT_H
 
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 #include "noise.h"
+#include "test.h"
 
 /* Exactly count x bytes, so that a sanitizer sees the first one beyond. */
 static inline void *unit_array(size_t count, size_t bytes)

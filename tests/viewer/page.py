@@ -7,7 +7,9 @@ import json
 import sys
 import tempfile
 
-from common import browser, check, done, need_page, run, skip
+import browser
+from checks import check, done, run, skip
+from common import need_page
 
 TRIM3R = sys.argv[1]
 looks = sys.argv[2] if len(sys.argv) > 2 else None

@@ -10,7 +10,8 @@ import sys
 import tempfile
 import time
 
-from common import check, done, need_page, run
+from checks import check, done, run
+from common import need_page
 
 TRIM3R = sys.argv[1]
 

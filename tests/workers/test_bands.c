@@ -74,9 +74,8 @@ static void accumulate(const t3r_binning *bin, uint32_t begin, const t3r_refine_
     }
 }
 
-static void every_share_counts_once(void **state)
+TEST(every_share_counts_once)
 {
-    (void)state;
     uint64_t seed = 20;
     for (uint32_t round = 0; round < 60; round++) {
         const uint32_t workers[] = {1, 2, 3, 8, T3R_MAX_WORKERS}, rooms[] = {0, 5, 60, SPLATS};
@@ -121,10 +120,4 @@ static void every_share_counts_once(void **state)
             assert_int_equal(own[i].curvature[14], 3 * sum);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(every_share_counts_once)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,9 +12,8 @@ static t3r_splat splats[SPLATS];
 static t3r_tile_span spans[SPLATS];
 static uint32_t order[SPLATS], table[TILES], lists[ENTRIES];
 
-static void depths_are_ordered(void **state)
+TEST(depths_are_ordered)
 {
-    (void)state;
     static uint32_t keys[2][SPLATS], indices[2][SPLATS], given[SPLATS], histogram[T3R_RADIX_DIGITS * T3R_RADIX];
     const uint32_t shared[] = {0, 0xffffffff, 0xff000000, 0x00ff0000, 0x0000ff00, 0x000000ff, 0xff00ff00, 0x00ff00ff};
     uint64_t seed = 3;
@@ -80,9 +79,8 @@ static void judge_list(uint32_t tile, const uint32_t *list, uint32_t length)
     assert_int_equal(found, length);
 }
 
-static void lists_hold_what_reaches_a_tile(void **state)
+TEST(lists_hold_what_reaches_a_tile)
 {
-    (void)state;
     uint64_t seed = 7;
     place_splats(&seed);
     for (uint32_t i = 0; i < SPLATS; i++) { /* in depth order */
@@ -114,11 +112,4 @@ static void lists_hold_what_reaches_a_tile(void **state)
         }
         assert_true(round % 2 == 0 ? passes == 1 : passes > 1);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(depths_are_ordered),
-                                       cmocka_unit_test(lists_hold_what_reaches_a_tile)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

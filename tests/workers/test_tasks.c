@@ -49,9 +49,8 @@ static void expect_in_order(const t3r_workers *workers, uint32_t count)
     }
 }
 
-static void without_a_hook(void **state)
+TEST(without_a_hook)
 {
-    (void)state;
     uint32_t hooked = 0;
     const t3r_hooks none = {.user = &hooked}, hooks = {.user = &hooked, .parallel_for = backwards};
     const t3r_workers alone[] = {{NULL, 1}, {NULL, 4}, {&none, 4}, {&hooks, 1}};
@@ -67,9 +66,8 @@ static void without_a_hook(void **state)
 }
 
 /* A single task is not worth the hook; two are. */
-static void by_a_hook(void **state)
+TEST(by_a_hook)
 {
-    (void)state;
     uint32_t hooked = 0;
     const t3r_hooks hooks = {.user = &hooked, .parallel_for = backwards};
     for (uint32_t count = 2; count <= T3R_MAX_WORKERS; count++) {
@@ -86,9 +84,8 @@ static void by_a_hook(void **state)
 }
 
 /* Two bands a worker, and none without a row unless there is no row at all. */
-static void rows_by_a_hook(void **state)
+TEST(rows_by_a_hook)
 {
-    (void)state;
     uint32_t hooked = 0;
     const t3r_hooks hooks = {.user = &hooked, .parallel_for = backwards};
     for (uint32_t count = 2; count <= T3R_MAX_WORKERS; count++) {
@@ -106,9 +103,8 @@ static void rows_by_a_hook(void **state)
     }
 }
 
-static void shares(void **state)
+TEST(shares)
 {
-    (void)state;
     const uint32_t totals[] = {0, 1, 31, 32, 33, 1000, (1u << 26) - 1};
     for (size_t i = 0; i < sizeof totals / sizeof totals[0]; i++) {
         for (uint32_t tasks = 1; tasks <= 2 * T3R_MAX_WORKERS; tasks++) {
@@ -122,15 +118,4 @@ static void shares(void **state)
             assert_int_equal(reached, totals[i]);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(without_a_hook),
-        cmocka_unit_test(by_a_hook),
-        cmocka_unit_test(rows_by_a_hook),
-        cmocka_unit_test(shares),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -166,9 +166,8 @@ static t3r_config settings(t3r_head head)
     return config;
 }
 
-static void heads(void **state)
+TEST(heads)
 {
-    (void)state;
     static const t3r_head all[] = {T3R_HEAD_ANALYTIC, T3R_HEAD_LEARNED};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         const t3r_config config = settings(all[i]);
@@ -177,44 +176,33 @@ static void heads(void **state)
 }
 
 /* One view: fewer views than workers. */
-static void single_view(void **state)
+TEST(single_view)
 {
-    (void)state;
     t3r_config config = settings(T3R_HEAD_LEARNED);
     config.views = 1;
     check_ways(&config);
 }
 
 /* Few Gaussians: wide splats, which reach over several bands of tiles, more than their room holds. */
-static void wide_splats(void **state)
+TEST(wide_splats)
 {
-    (void)state;
     t3r_config config = settings(T3R_HEAD_ANALYTIC);
     config.max_gaussians = config.gaussians = 120;
     check_ways(&config);
 }
 
-static void stereo(void **state)
+TEST(stereo)
 {
-    (void)state;
     t3r_config config = settings(T3R_HEAD_ANALYTIC);
     config.depth = T3R_DEPTH_STEREO;
     check_ways(&config);
 }
 
-static void stream(void **state)
+TEST(stream)
 {
-    (void)state;
     t3r_config config = settings(T3R_HEAD_LEARNED);
     config.stream = 1;
     check_ways(&config);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(heads),  cmocka_unit_test(single_view), cmocka_unit_test(wide_splats),
-        cmocka_unit_test(stereo), cmocka_unit_test(stream),
-    };
-    return cmocka_run_group_tests(tests, draw_frames, NULL);
-}
+ALL_TESTS_WITH(draw_frames, NULL)

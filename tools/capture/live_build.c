@@ -43,32 +43,9 @@ static uint32_t most_gaussians(const live_build *build)
 static int open_arena(live_build *build)
 {
     reconstruction *r = &build->r;
-    t3r_plan_info plan;
     reconstruction_configure(r, &build->options);
     r->config.gaussians = r->config.max_gaussians = most_gaussians(build);
-    r->config.workers = build->options.processor.threads;
-    t3r_status status = t3r_plan(&r->config, &plan);
-    if (status != T3R_OK) {
-        return reconstruction_error(status, "settings", &r->config, 0);
-    }
-    uint64_t bytes = build->options.arena == ARENA_BYTES ? build->options.arena_bytes
-                     : build->options.arena == ARENA_MIN ? plan.min_bytes
-                                                         : plan.bytes;
-    if (bytes < plan.min_bytes) {
-        return reconstruction_error(T3R_ERR_ARENA, "arena", &r->config, (size_t)bytes);
-    }
-    if (bytes > SIZE_MAX || posix_memalign(&r->arena, T3R_ARENA_ALIGN, (size_t)bytes) != 0) {
-        r->arena = NULL;
-        return cli_error(CLI_BAD_INPUT, "no memory for an arena of %" PRIu64 " bytes", bytes);
-    }
-    r->arena_bytes = (size_t)bytes;
-    if (build->options.processor.threads > 1) {
-        r->threads = t3r_threads_start(build->options.processor.threads);
-        if (r->threads == NULL) {
-            return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", build->options.processor.threads);
-        }
-    }
-    return CLI_OK;
+    return reconstruction_allocate(r, &build->options);
 }
 
 static int open_build(live_build *build, uint32_t views, const t3r_capture_frame *like)

@@ -2,8 +2,6 @@
 #include "capture/options.h"
 
 #include <argp.h>
-#include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/options/file_options.h"
@@ -11,8 +9,7 @@
 #include "scene/scene_options.h"
 
 enum {
-    KEY_SOURCE = 0x1000,
-    KEY_DEPTH_SOURCE,
+    KEY_DEPTH_SOURCE = 0x1000,
     KEY_DEPTH_SIZE,
     KEY_DEPTH_UNIT,
     KEY_SIZE,
@@ -24,28 +21,19 @@ enum {
     KEY_PAIR,
     KEY_REPEAT,
     KEY_INTRINSICS,
-    KEY_FISHEYE,
-    KEY_POSES,
-    KEY_POSE_TOPIC,
     KEY_OFFSET,
     KEY_MAX_BYTES,
-    KEY_SYNC,
     KEY_FRAMES,
     KEY_SECONDS,
     KEY_RECONNECT,
-    KEY_BUILD,
-    KEY_EVERY,
-    KEY_LOCAL,
-    KEY_HASH,
-    KEY_LIST,
-    KEY_QUIET,
-    KEY_JSON
+    KEY_EVERY
 };
 
 static const struct argp_option options[] = {
-    {"source", KEY_SOURCE, "SOURCE", OPTION_READS | OPTION_FOLDER | OPTION_OR_DEVICE,
+    {"source", OPTION_TO(capture_options, source), "SOURCE", OPTION_READS | OPTION_FOLDER | OPTION_OR_DEVICE,
      "camera: v4l2:/dev/video0, libcamera:0, opencv:URL or replay:REC.mcap (needed)", 0},
-    {"list", KEY_LIST, NULL, 0, "list the adapters of this build, those that it lacks, and the devices found", 0},
+    {"list", OPTION_TO(capture_options, list), NULL, 0,
+     "list the adapters of this build, those that it lacks, and the devices found", 0},
     {"size", KEY_SIZE, "WxH", 0, "size of colour; the nearest that the device has (640x480)", 0},
     {"rate", KEY_RATE, "FPS", 0, "frames a second (the device's)", 0},
     {"format", KEY_FORMAT, "FOURCC", 0,
@@ -65,12 +53,13 @@ static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "The camera:", 2},
     {"intrinsics", KEY_INTRINSICS, "LIST", 0,
      "fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels of the captured size, (0, 0) being the centre of the top-left pixel", 0},
-    {"fisheye", KEY_FISHEYE, NULL, 0, "read the intrinsics as those of a fisheye lens, with k1,k2,k3,k4 at the end", 0},
-    {"poses", KEY_POSES, "FILE", OPTION_READS,
+    {"fisheye", OPTION_TO(capture_options, fisheye), NULL, 0,
+     "read the intrinsics as those of a fisheye lens, with k1,k2,k3,k4 at the end", 0},
+    {"poses", OPTION_TO(capture_options, poses), "FILE", OPTION_READS,
      "poses over time, camera to world, to interpolate: lines of TUM, a table of EuRoC, or a ROS 2 bag (MCAP) with "
      "PoseStamped or TransformStamped",
      0},
-    {"pose-topic", KEY_POSE_TOPIC, "TOPIC", 0, "topic of the bag (the only one with poses)", 0},
+    {"pose-topic", OPTION_TO(capture_options, pose_topic), "TOPIC", 0, "topic of the bag (the only one with poses)", 0},
     {"clock-offset", KEY_OFFSET, "S|estimate[:S]", 0,
      "seconds that the poses' clock is ahead of the camera's (0), or estimate: found from how the picture moves, "
      "within a second of S; S is 0 where the times overlap, else what brings their starts together",
@@ -79,21 +68,22 @@ static const struct argp_option options[] = {
     {"output", 'o', "REC.mcap", OPTION_WRITES(FILE_RECORDING),
      "recording to write; an existing file is overwritten, unless it is being read", 0},
     {"max-bytes", KEY_MAX_BYTES, "BYTES[K|M|G]", 0, "most bytes of a file; the next one is REC-1.mcap and so on", 0},
-    {"sync", KEY_SYNC, NULL, 0, "write every message to the disk at once: a power loss then costs one message at most",
-     0},
+    {"sync", OPTION_TO(capture_options, sync), NULL, 0,
+     "write every message to the disk at once: a power loss then costs one message at most", 0},
     {"frames", KEY_FRAMES, "N", 0, "stop after N frames", 0},
     {"seconds", KEY_SECONDS, "S", 0, "stop after S seconds", 0},
-    {"build", KEY_BUILD, "SCENE.ply", OPTION_WRITES(FILE_SCENE),
+    {"build", OPTION_TO(capture_options, scene), "SCENE.ply", OPTION_WRITES(FILE_SCENE),
      "scene to write: Gaussians of the context frames (--context, in their order of arrival, 0 and 1) as soon as they "
      "are there",
      0},
     {"every", KEY_EVERY, "N", 0,
      "distance in frames of further builds, each of a frame and the one N before it; SCENE.ply is that of the last one",
      0},
-    {"local", KEY_LOCAL, NULL, 0, "write positions from the first context camera's centre", 0},
-    {"hash", KEY_HASH, NULL, 0, "print the hash of all frames: a replay of the recording has the same", 0},
-    {"quiet", KEY_QUIET, NULL, 0, "show no progress line", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"local", OPTION_TO(capture_options, local), NULL, 0, "write positions from the first context camera's centre", 0},
+    {"hash", OPTION_TO(capture_options, hash), NULL, 0,
+     "print the hash of all frames: a replay of the recording has the same", 0},
+    {"quiet", OPTION_TO(capture_options, quiet), NULL, 0, "show no progress line", 0},
+    {"json", OPTION_TO(capture_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -141,21 +131,7 @@ static void parse_offset(struct argp_state *state, const char *text, capture_opt
 static void parse_intrinsics(struct argp_state *state, const char *text, capture_options *o)
 {
     double numbers[9] = {0};
-    uint32_t count = 0;
-    for (const char *at = text; count < 9; at++) {
-        char *end;
-        numbers[count] = strtod(at, &end);
-        if (end == at || !(numbers[count] > -1e6 && numbers[count] < 1e6)) {
-            count = 0;
-            break;
-        }
-        count++;
-        at = end;
-        if (*at != ',') {
-            count = *at == '\0' ? count : 0;
-            break;
-        }
-    }
+    const uint32_t count = numbers_of_text(text, numbers, 9);
     if (count != 4 && count != 8 && count != 9) {
         argp_error(state, "--intrinsics takes fx,fy,cx,cy, with k1,k2,p1,p2,k3 behind them or not, not '%s'", text);
     }
@@ -209,7 +185,7 @@ static void check_uses(struct argp_state *state, const capture_options *o)
 {
     size_t length = strcspn(o->source, ":");
     for (size_t i = 0; i < sizeof uses / sizeof uses[0]; i++) {
-        if ((o->given >> (uses[i].key - KEY_SOURCE) & 1) == 0) {
+        if ((o->given >> (uses[i].key - KEY_DEPTH_SOURCE) & 1) == 0) {
             continue;
         }
         if (is_among(o->source, length, "replay v4l2 libcamera opencv") &&
@@ -263,90 +239,60 @@ static void check(struct argp_state *state, capture_options *o)
     }
 }
 
-/* A switch (bool), a text, a count (uint32_t), a decimal number (double), or two sides (uint32_t) one after the other.
- */
-typedef enum value_kind { FLAG, TEXT, COUNT, DECIMAL, SIZE } value_kind;
-
-/* Options whose value is one field; the others stand in parse(). */
-static const struct {
-    int key;
-    value_kind kind;
-    size_t field;
-    double low, high; /* of COUNT and DECIMAL */
-} values[] = {
-#define AT(field) offsetof(capture_options, field)
-    {KEY_SOURCE, TEXT, AT(source), 0, 0},
-    {KEY_LIST, FLAG, AT(list), 0, 0},
-    {KEY_SIZE, SIZE, AT(settings.width), 0, 0},
-    {KEY_FORMAT, TEXT, AT(settings.format), 0, 0},
-    {KEY_BACKEND, TEXT, AT(settings.backend), 0, 0},
-    {KEY_BUFFERS, COUNT, AT(settings.buffers), 2, 32},
-    {KEY_REPEAT, COUNT, AT(settings.repeat), 1, UINT32_MAX},
-    {KEY_DEPTH_SOURCE, TEXT, AT(settings.depth), 0, 0},
-    {KEY_DEPTH_SIZE, SIZE, AT(settings.depth_width), 0, 0},
-    {KEY_PAIR, COUNT, AT(settings.pair_ms), 1, 1000},
-    {KEY_STALL, COUNT, AT(settings.stall_ms), 1, 3600000},
-    {KEY_RECONNECT, DECIMAL, AT(reconnect_seconds), 0, 1e6},
-    {KEY_FISHEYE, FLAG, AT(fisheye), 0, 0},
-    {KEY_POSES, TEXT, AT(poses), 0, 0},
-    {KEY_POSE_TOPIC, TEXT, AT(pose_topic), 0, 0},
-    {'o', TEXT, AT(output), 0, 0},
-    {KEY_SYNC, FLAG, AT(sync), 0, 0},
-    {KEY_FRAMES, COUNT, AT(frames), 1, UINT32_MAX},
-    {KEY_SECONDS, DECIMAL, AT(seconds), 0, 1e9},
-    {KEY_BUILD, TEXT, AT(scene), 0, 0},
-    {KEY_EVERY, COUNT, AT(every), 1, 1000000},
-    {KEY_LOCAL, FLAG, AT(local), 0, 0},
-    {KEY_HASH, FLAG, AT(hash), 0, 0},
-    {KEY_QUIET, FLAG, AT(quiet), 0, 0},
-    {KEY_JSON, FLAG, AT(json), 0, 0},
-#undef AT
-};
-
-/* Returns false for an option that is not among values[]. */
-static bool read_value(int key, const char *text, struct argp_state *state)
-{
-    size_t i = 0;
-    while (i < sizeof values / sizeof values[0] && values[i].key != key) {
-        i++;
-    }
-    if (i == sizeof values / sizeof values[0]) {
-        return false;
-    }
-    void *field = (char *)state->input + values[i].field;
-    uint32_t *whole = field;
-    switch (values[i].kind) {
-    case FLAG:
-        *(bool *)field = true;
-        break;
-    case TEXT:
-        *(const char **)field = text;
-        break;
-    case COUNT:
-        *whole = option_number(state, name_of(key), text, (uint32_t)values[i].low, (uint32_t)values[i].high);
-        break;
-    case DECIMAL:
-        *(double *)field = option_decimal(state, name_of(key), text, values[i].low, values[i].high);
-        break;
-    case SIZE:
-        option_size(state, name_of(key), text, 2, &whole[0], &whole[1]);
-        break;
-    }
-    return true;
-}
-
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     capture_options *o = state->input;
     t3r_capture_settings *s = &o->settings;
-    if (key >= KEY_SOURCE && key <= KEY_JSON) {
-        o->given |= UINT64_C(1) << (key - KEY_SOURCE);
+    if (key >= KEY_DEPTH_SOURCE && key <= KEY_EVERY) {
+        o->given |= UINT64_C(1) << (key - KEY_DEPTH_SOURCE);
     }
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->build;
         state->child_inputs[1] = &o->build;
         state->child_inputs[2] = &o->stored;
+        return 0;
+    case 'o':
+        o->output = arg;
+        return 0;
+    case KEY_SIZE:
+        option_size(state, "size", arg, 2, &s->width, &s->height);
+        return 0;
+    case KEY_FORMAT:
+        s->format = arg;
+        return 0;
+    case KEY_BACKEND:
+        s->backend = arg;
+        return 0;
+    case KEY_BUFFERS:
+        s->buffers = option_number(state, "buffers", arg, 2, 32);
+        return 0;
+    case KEY_REPEAT:
+        s->repeat = option_number(state, "repeat", arg, 1, UINT32_MAX);
+        return 0;
+    case KEY_DEPTH_SOURCE:
+        s->depth = arg;
+        return 0;
+    case KEY_DEPTH_SIZE:
+        option_size(state, "depth-size", arg, 2, &s->depth_width, &s->depth_height);
+        return 0;
+    case KEY_PAIR:
+        s->pair_ms = option_number(state, "pair", arg, 1, 1000);
+        return 0;
+    case KEY_STALL:
+        s->stall_ms = option_number(state, "stall", arg, 1, 3600000);
+        return 0;
+    case KEY_RECONNECT:
+        o->reconnect_seconds = option_decimal(state, "reconnect", arg, 0, 1e6);
+        return 0;
+    case KEY_FRAMES:
+        o->frames = option_number(state, "frames", arg, 1, UINT32_MAX);
+        return 0;
+    case KEY_SECONDS:
+        o->seconds = option_decimal(state, "seconds", arg, 0, 1e9);
+        return 0;
+    case KEY_EVERY:
+        o->every = option_number(state, "every", arg, 1, 1000000);
         return 0;
     case KEY_RATE:
         s->rate_millihertz = (uint32_t)(option_decimal(state, "rate", arg, 0, 10000) * 1000 + 0.5);
@@ -370,7 +316,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         check(state, o);
         return 0;
     default:
-        return read_value(key, arg, state) ? 0 : ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 

@@ -17,7 +17,7 @@
 #define MESSAGE_BYTES 2048
 #define WARNING "warning:"
 
-static const char *command_name, *command_summary;
+static const char *command_name;
 
 static struct {
     char *text; /* NULL: errors go to stderr */
@@ -35,20 +35,14 @@ static struct {
     } outer;
 } progress;
 
-void cli_set_command(const char *name, const char *summary)
+void cli_set_command(const char *name)
 {
     command_name = name;
-    command_summary = summary;
 }
 
 const char *cli_command(void)
 {
     return command_name;
-}
-
-const char *cli_command_summary(void)
-{
-    return command_summary;
 }
 
 void cli_keep_errors(char *text, size_t bytes)

@@ -14,10 +14,9 @@ int cli_error(int code, const char *format, ...) __attribute__((format(printf, 2
 /* Makes cli_error() write its messages, without the names before them, into text[] instead of stderr, each replacing
  * the one before; NULL: stderr again. For callers that treat an error as a result. */
 void cli_keep_errors(char *text, size_t bytes);
-/* Sets the command's name for messages, and its summary; called by main. */
-void cli_set_command(const char *name, const char *summary);
+/* Sets the command's name for messages; called by main. */
+void cli_set_command(const char *name);
 const char *cli_command(void);
-const char *cli_command_summary(void);
 
 /* Draws a progress line on stderr, only when stderr is a terminal and the work is long (over half a second). */
 void cli_progress(const char *what, uint32_t done, uint32_t total);

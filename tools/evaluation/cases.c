@@ -211,8 +211,8 @@ static int fill_context(evaluation_case *what, const view_place *places, uint32_
     if (code != CLI_OK) {
         return code;
     }
-    char untold[1];
-    cli_keep_errors(alone ? NULL : untold, sizeof untold);
+    char dropped[1];
+    cli_keep_errors(alone ? NULL : dropped, sizeof dropped);
     code = find_depth(what, &first, settings, &depth);
     cli_keep_errors(NULL, 0);
     if (code != CLI_OK) {

@@ -269,6 +269,7 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, evalua
     for (int i = 0; i < EVALUATION_VALUE_COUNT; i++) {
         row->value[i] = NAN;
     }
+    row->value[EVALUATION_BITS_EPOCH] = T3R_BITS_EPOCH;
     evaluation_name_case(row, what);
     row->allocate = row->wavelet = row->ablation = "";
     row->depth = what->planar                  ? "plane"
@@ -355,21 +356,21 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, evaluation_views *v
     memcpy(options.context, what->context, sizeof options.context);
 
     reconstruction built, loaded = {0};
-    reconstruction_account told;
+    reconstruction_account account;
     int code = evaluation_name_row(row, what, budget, settings);
     if (code == CLI_OK && options.scene != NULL) {
         return measure_scene(row, render, views, what, &options);
     }
     if (code == CLI_OK) {
-        code = options.method->build(&views->source, what->recording, what->path, &options, &built, &told);
+        code = options.method->build(&views->source, what->recording, what->path, &options, &built, &account);
     }
     if (code != CLI_OK) {
         return code;
     }
-    reconstruction_warn_of_budget(&options, told.requested, built.scene.count);
+    reconstruction_warn_of_budget(&options, account.requested, built.scene.count);
     row->value[EVALUATION_GAUSSIANS] = built.scene.count;
-    row->value[EVALUATION_BUILD_MS] = told.seconds * 1000;
-    row->value[EVALUATION_ARENA_BYTES] = (double)told.arena_bytes;
+    row->value[EVALUATION_BUILD_MS] = account.seconds * 1000;
+    row->value[EVALUATION_ARENA_BYTES] = (double)account.arena_bytes;
     row->value[EVALUATION_SCENE_BYTES] = (double)built.scene.count * T3R_GAUSSIAN_BYTES;
     if (from_file) {
         code = through_file(&loaded, &built, views, &options);

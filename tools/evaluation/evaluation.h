@@ -72,6 +72,7 @@ typedef enum evaluation_value {
     EVALUATION_ARENA_BYTES,
     EVALUATION_SCENE_BYTES, /* the Gaussians as the arena holds them */
     EVALUATION_PLANAR_PSNR, /* all pixels of a planar case, dB */
+    EVALUATION_BITS_EPOCH,
     EVALUATION_VALUE_COUNT
 } evaluation_value;
 

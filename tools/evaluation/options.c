@@ -14,25 +14,7 @@
 #include "reconstruction/options/poses_option.h"
 #include "scene/scene_options.h"
 
-enum {
-    KEY_CONTEXT = 0x200,
-    KEY_TARGET,
-    KEY_VIEWS,
-    KEY_KEEP,
-    KEY_GAUSSIANS,
-    KEY_PRUNE,
-    KEY_SCENE,
-    KEY_HEADS,
-    KEY_PLANAR,
-    KEY_SIZE,
-    KEY_CSV,
-    KEY_IMAGES,
-    KEY_HTML,
-    KEY_FROM_FILE,
-    KEY_JSON,
-    KEY_JOBS,
-    KEY_RESUME
-};
+enum { KEY_CONTEXT = 0x200, KEY_TARGET, KEY_VIEWS, KEY_KEEP, KEY_GAUSSIANS, KEY_HEADS, KEY_SIZE, KEY_JOBS };
 
 static void parse_heads(struct argp_state *state, evaluation_options *o, const char *text)
 {
@@ -153,38 +135,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         option_counts(state, "gaussians", arg, T3R_MAX_GAUSSIANS, o->gaussians, EVALUATION_BUDGETS_MOST,
                       &o->gaussians_count);
         return 0;
-    case KEY_PRUNE:
-        o->settings.points_of = arg;
-        return 0;
-    case KEY_SCENE:
-        o->settings.scene = arg;
-        return 0;
     case KEY_HEADS:
         parse_heads(state, o, arg);
         return 0;
-    case KEY_PLANAR:
-        o->planar = true;
-        return 0;
     case KEY_SIZE:
         option_size(state, "size", arg, T3R_MIN_SIDE, &o->width, &o->height);
-        return 0;
-    case KEY_CSV:
-        o->to.csv = arg;
-        return 0;
-    case KEY_IMAGES:
-        o->to.images = arg;
-        return 0;
-    case KEY_HTML:
-        o->to.page = arg;
-        return 0;
-    case KEY_FROM_FILE:
-        o->from_file = true;
-        return 0;
-    case KEY_JSON:
-        o->to.json = true;
-        return 0;
-    case KEY_RESUME:
-        o->to.resume = true;
         return 0;
     case KEY_JOBS:
         o->processes = strcmp(arg, "all") == 0 ? process_pool_processors()
@@ -197,7 +152,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         check_options(state, o);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 
@@ -213,11 +168,11 @@ static const struct argp_option options[] = {
      0},
     {"gaussians", KEY_GAUSSIANS, "Z,Z,...", 0,
      "numbers of Gaussians, one row each, behind those of --keep: all valid points where there are fewer", 0},
-    {"prune", KEY_PRUNE, "SCENE.ply", OPTION_READS,
+    {"prune", OPTION_TO(evaluation_options, settings.points_of), "SCENE.ply", OPTION_READS,
      "scene, made elsewhere of the views of --context, to prune: percents are of its Gaussians; trim3r makes new ones "
      "of points among their means; where a view has no depth, the mask is of the means",
      0},
-    {"scene", KEY_SCENE, "SCENE", OPTION_READS,
+    {"scene", OPTION_TO(evaluation_options, settings.scene), "SCENE", OPTION_READS,
      "scene file, of trim3r or made elsewhere, to score as it is: nothing is built; it stands in the recording's "
      "world, and the frames of --context, or of the triplets, make the mask alone; where one has no depth, the mask is "
      "of the "
@@ -225,27 +180,29 @@ static const struct argp_option options[] = {
      0},
     {"heads", KEY_HEADS, "H,H,...", OPTION_READS | OPTION_LIST | OPTION_OR_WORD,
      "heads to compare, as --head takes them: rows of the method trim3r for each", 0},
-    {"planar", KEY_PLANAR, NULL, 0,
+    {"planar", OPTION_TO(evaluation_options, planar), NULL, 0,
      "take images as arguments: each is one view on a plane of constant depth, drawn again from the same camera", 0},
     {"size", KEY_SIZE, "WxH", 0, "size to which --planar crops and averages images (256x256)", 0},
-    {"from-file", KEY_FROM_FILE, NULL, 0, "write each scene as .ply, read it back and draw that", 0},
+    {"from-file", OPTION_TO(evaluation_options, from_file), NULL, 0,
+     "write each scene as .ply, read it back and draw that", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
-    {"csv", KEY_CSV, "FILE", OPTION_WRITES(FILE_TABLE),
+    {"csv", OPTION_TO(evaluation_options, to.csv), "FILE", OPTION_WRITES(FILE_TABLE),
      "table to write; each row appears when it is made, or without --resume all at the end where a table stands", 0},
-    {"images", KEY_IMAGES, "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
+    {"images", OPTION_TO(evaluation_options, to.images), "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
      "folder to write pictures into: DIR/<target>/<method>_<keep>.png, target.png, mask.png, context_a.png, ...; with "
      "--heads <head> is in the name, and settings that are not the default come before <keep>, as in "
      "trim3r_refine-0_10.png; the column picture names each",
      0},
-    {"html", KEY_HTML, "PAGE.html", OPTION_WRITES(FILE_PAGE),
+    {"html", OPTION_TO(evaluation_options, to.page), "PAGE.html", OPTION_WRITES(FILE_PAGE),
      "page to write, with the pictures side by side; it needs no other file", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout: rows, means over the cases, refused cases", 0},
+    {"json", OPTION_TO(evaluation_options, to.json), NULL, 0,
+     "print one JSON object on stdout: rows, means over the cases, refused cases", 0},
     {NULL, 0, NULL, 0, "How the work is done:", 3},
     {"jobs", KEY_JOBS, "N", 0,
      "processes that share the cases, 1..256, or all: one for each processor (1); times are then those of a busy "
      "machine",
      0},
-    {"resume", KEY_RESUME, NULL, 0,
+    {"resume", OPTION_TO(evaluation_options, to.resume), NULL, 0,
      "skip rows that are in --csv already, and add the others to it; a table older than the program or a recording is "
      "refused",
      0},
@@ -294,6 +251,7 @@ const struct argp evaluation_argp = {
            "  render_ms     the target view\n"
            "  scene_bytes   the Gaussians as the arena holds them, 44 bytes each\n"
            "  picture       the name of the render within --images\n"
+           "  bits_epoch    of the program: results of other epochs have other bits\n"
            "The mask: the pixels that all points of the raw depth, drawn with the plain analytic head, leave a "
            "transmittance below 0.3.\n"
            "\n"

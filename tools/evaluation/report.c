@@ -175,14 +175,14 @@ void evaluation_report_refuse(evaluation_report *report, const evaluation_case *
         report->row_count--;
     }
     report->known_count = report->known_count < report->row_count ? report->known_count : report->row_count;
-    cJSON *told = cJSON_CreateObject();
-    cJSON_AddStringToObject(told, "scene", names.scene);
+    cJSON *item = cJSON_CreateObject();
+    cJSON_AddStringToObject(item, "scene", names.scene);
     if (!planar) {
-        cJSON_AddStringToObject(told, "context", names.context);
-        cJSON_AddStringToObject(told, "target", names.target);
+        cJSON_AddStringToObject(item, "context", names.context);
+        cJSON_AddStringToObject(item, "target", names.target);
     }
-    cJSON_AddStringToObject(told, "reason", reason);
-    cJSON_AddItemToArray(report->refused, told);
+    cJSON_AddStringToObject(item, "reason", reason);
+    cJSON_AddItemToArray(report->refused, item);
     (void)cli_error(CLI_OK, "left out: %s%s%s%s%s%s", planar ? "" : "context ", names.context,
                     planar ? "" : ", target ", names.target, planar ? "" : ": ", reason);
     report->row_total -= report->rows_each;
@@ -251,16 +251,16 @@ static void page_table(html_page *page, const char *heading, const evaluation_ro
 
 static void page_refused(html_page *page, const cJSON *refused)
 {
-    const cJSON *told, *cell;
+    const cJSON *item, *cell;
     html_page_table(page, "Refused", "", false);
     cJSON_ArrayForEach(cell, refused->child)
     {
         html_page_table_cell(page, cell->string);
     }
     html_page_table_end_row(page);
-    cJSON_ArrayForEach(told, refused)
+    cJSON_ArrayForEach(item, refused)
     {
-        cJSON_ArrayForEach(cell, told)
+        cJSON_ArrayForEach(cell, item)
         {
             html_page_table_cell(page, cell->valuestring);
         }

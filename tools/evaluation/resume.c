@@ -86,6 +86,10 @@ static int add_row(evaluation_resume *resume, const csv_reader *reader, bool wit
     if (!evaluation_row_read(row, cells)) {
         return cli_error(CLI_BAD_INPUT, "%s:%" PRIu32 ": not a row of eval", reader->name, reader->line);
     }
+    if (row->value[EVALUATION_BITS_EPOCH] != T3R_BITS_EPOCH) {
+        return cli_error(CLI_BAD_INPUT, "%s:%" PRIu32 ": a row of bits epoch %s, not %d: it cannot be resumed",
+                         reader->name, reader->line, last, T3R_BITS_EPOCH);
+    }
     if (with_picture && row->picture[0] == '\0') {
         return cli_error(CLI_BAD_INPUT, "%s:%" PRIu32 ": the row has no picture: it cannot be resumed with --images",
                          reader->name, reader->line);

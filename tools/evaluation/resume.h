@@ -15,9 +15,9 @@ typedef struct evaluation_resume {
 } evaluation_resume;
 
 /* Reads the table; no file is an empty one. `with_pictures`: every row must name its render. The file is held to the
- * program's columns, and must be younger than the program, the `inputs` and the `scene` file (NULL: none), or its
- * rows may be of others. What follows its last newline is a row that was cut off, and is cut from the file. An exit
- * status of cli.h; evaluation_resume_close() in any case. */
+ * program's columns and bits epoch, and must be younger than the program, the `inputs` and the `scene` file (NULL:
+ * none), or its rows may be of others. What follows its last newline is a row that was cut off, and is cut from the
+ * file. An exit status of cli.h; evaluation_resume_close() in any case. */
 int evaluation_resume_open(evaluation_resume *resume, const char *path, char *const *inputs, uint32_t input_count,
                            const char *scene, bool with_pictures);
 /* The row of the same case, contestant, budget and settings, or NULL. */

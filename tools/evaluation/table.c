@@ -8,7 +8,7 @@
 #include "cli/text/style.h"
 #include "host/text.h"
 
-typedef enum shown { NEVER, ALWAYS, RECORDING, PLANAR, TOLD } shown; /* TOLD: shown if there is a text */
+typedef enum shown { NEVER, ALWAYS, RECORDING, PLANAR, GIVEN } shown; /* GIVEN: shown if there is a text */
 
 /* Texts of a row count down from -1. */
 enum {
@@ -47,7 +47,7 @@ static const column columns[EVALUATION_COLUMNS] = {
     {"refine", REFINE, 0, 0, NEVER},
     {"allocate", ALLOCATE, 0, 9, ALWAYS},
     {"depth", DEPTH, 0, 0, NEVER},
-    {"ablation", ABLATION, 0, 22, TOLD},
+    {"ablation", ABLATION, 0, 22, GIVEN},
     {"wavelet", WAVELET, 0, 0, NEVER},
     {"levels", LEVELS, 0, 0, NEVER},
     {"clusters", CLUSTERS, 0, 0, NEVER},
@@ -68,6 +68,7 @@ static const column columns[EVALUATION_COLUMNS] = {
     {"scene_bytes", EVALUATION_SCENE_BYTES, 0, 0, NEVER},
     {"planar_psnr", EVALUATION_PLANAR_PSNR, 4, 12, PLANAR},
     {"picture", PICTURE, 0, 0, NEVER},
+    {"bits_epoch", EVALUATION_BITS_EPOCH, 0, 0, NEVER},
 };
 
 const char *evaluation_column_name(uint32_t index)
@@ -256,9 +257,9 @@ uint32_t evaluation_means(const evaluation_row *rows, uint32_t count, bool by_sc
     return found;
 }
 
-static bool at_a_glance(const column *c, bool planar, bool told)
+static bool at_a_glance(const column *c, bool planar, bool given)
 {
-    return c->shown == ALWAYS || c->shown == (planar ? PLANAR : RECORDING) || (c->shown == TOLD && told);
+    return c->shown == ALWAYS || c->shown == (planar ? PLANAR : RECORDING) || (c->shown == GIVEN && given);
 }
 
 bool evaluation_glance(const evaluation_row *row, uint32_t index, bool planar, char *text, size_t bytes)

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "import/viewpoint.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,8 +10,10 @@
 #include "core/camera.h"
 #include "geometry/quaternion.h"
 #include "host/file_bytes.h"
+#include "host/grow.h"
 #include "host/reason.h"
 #include "import/folders/transforms_json.h"
+#include "import/poses/pose_lines.h"
 #include "mcap/reader_limits.h"
 
 #define MAX_POSES_BYTES ((size_t)16 << 20) /* a single pose is parsed twice and printed between */
@@ -147,29 +148,41 @@ int viewpoint_read_pose(const char *path, viewpoint_list *out, char *error, size
 
 /* ---- trajectories --------------------------------------------------------------------------------------------- */
 
-static int read_line(char *line, const viewpoint *lens, viewpoint *view, char *reason, size_t reason_bytes)
+/* Returns NULL, or what is wrong with the line. */
+static const char *read_line(char *line, const viewpoint *lens, viewpoint *view)
 {
-    double value[8];
-    char *at = line;
-    for (int i = 0; i < 8; i++) {
-        char *end;
-        value[i] = strtod(at, &end);
-        if (end == at || !isfinite(value[i])) {
-            snprintf(reason, reason_bytes, "number %d of `stamp tx ty tz qx qy qz qw` is missing or not finite", i + 1);
-            return -1;
-        }
-        at = end;
-    }
-    if (at[strspn(at, " \t\r")] != '\0') {
-        snprintf(reason, reason_bytes, "more than eight numbers");
-        return -1;
-    }
+    double stamp;
+    rigid pose;
     *view = *lens;
-    if (set_pose(&view->camera, &value[1], (double[4]){value[7], value[4], value[5], value[6]}) != 0) {
-        snprintf(reason, reason_bytes, "a quaternion without length or a position of 2^30 or more");
-        return -1;
+    if (!pose_lines_number(&line, &stamp) || !isfinite(stamp) || !pose_lines_pose(&line, false, &pose)) {
+        return "not 'stamp tx ty tz qx qy qz qw'";
     }
-    return 0;
+    if (line[strspn(line, " \t\r")] != '\0') {
+        return "more than eight numbers";
+    }
+    return set_pose(&view->camera, pose.position, pose.rotation) == 0
+               ? NULL
+               : "a quaternion without length or a position of 2^30 or more";
+}
+
+/* Returns NULL, or what is wrong with line lines->number. */
+static const char *read_lines(pose_lines *lines, const viewpoint *lens, viewpoint_list *out)
+{
+    size_t room = 0;
+    const char *wrong = NULL;
+    for (char *line; wrong == NULL && (line = pose_lines_next(lines)) != NULL;) {
+        if (out->count == T3R_LIMIT_POSES) {
+            return T3R_LIMIT_TEXT("more than ", T3R_LIMIT_POSES, " poses");
+        }
+        viewpoint *grown = t3r_grow(out->items, out->count, &room, sizeof *grown);
+        if (grown == NULL) {
+            return "out of memory";
+        }
+        out->items = grown;
+        wrong = read_line(line, lens, &out->items[out->count]);
+        out->count += wrong == NULL;
+    }
+    return wrong == NULL && out->count == 0 ? "no pose in the file" : wrong;
 }
 
 int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint_list *out, char *error,
@@ -181,48 +194,12 @@ int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint
     if (text == NULL) {
         return -1;
     }
-    uint32_t room = 0, line_number = 0;
-    int result = 0;
-    char reason[160] = "";
-    char *next = text;
-    while (result == 0 && next < text + count) {
-        char *line = next;
-        char *end = memchr(line, '\n', (size_t)(text + count - line));
-        next = end != NULL ? end + 1 : text + count;
-        if (end != NULL) {
-            *end = '\0';
-        }
-        line_number++;
-        line += strspn(line, " \t\r");
-        if (*line == '\0' || *line == '#') {
-            continue;
-        }
-        if (out->count == T3R_LIMIT_POSES) {
-            snprintf(reason, sizeof reason, "more than %d poses", T3R_LIMIT_POSES);
-            result = -1;
-            break;
-        }
-        if (out->count == room) {
-            room = room == 0 ? 64 : room * 2; /* a line has at least 16 bytes, so there are below 2^23 */
-            viewpoint *grown = realloc(out->items, room * sizeof *grown);
-            if (grown == NULL) {
-                snprintf(reason, sizeof reason, "out of memory");
-                result = -1;
-                break;
-            }
-            out->items = grown;
-        }
-        result = read_line(line, lens, &out->items[out->count], reason, sizeof reason);
-        out->count += result == 0;
-    }
-    if (result == 0 && out->count == 0) {
-        snprintf(reason, sizeof reason, "no pose in the file");
-        result = -1;
-    }
+    pose_lines lines = {.rest = text};
+    const char *wrong = read_lines(&lines, lens, out);
     free(text);
-    if (result != 0) {
-        t3r_reason(error, error_bytes, "%s: line %" PRIu32 ": %s", path, line_number, reason);
-        viewpoint_list_free(out);
+    if (wrong == NULL) {
+        return 0;
     }
-    return result;
+    viewpoint_list_free(out);
+    return t3r_reason(error, error_bytes, "%s: line %zu: %s", path, lines.number, wrong);
 }

@@ -45,7 +45,7 @@ _Static_assert(TRIALS <= PRICE_FIT_TIMES, "a fit holds the trials");
 typedef struct trial {
     t3r_config config;
     chosen_head head;
-    t3r_work_counts work;
+    work_counts work;
     t3r_runtime *runtime;
     void *arena;
     bench_views views;
@@ -83,7 +83,7 @@ static t3r_status open_runtime(trial *t, const processor_options *processor)
         (void)t3r_set_hooks(t->runtime, &hooks);
         status = chosen_head_bind(&t->head, t->runtime, (t3r_ablation){0});
     }
-    return status == T3R_OK ? t3r_count_work(&t->config, plan.bytes, t->head.weights, t->head.bytes, &t->work) : status;
+    return status == T3R_OK ? work_count(&t->config, plan.bytes, t->head.weights, &t->work) : status;
 }
 
 static int room_error(t3r_status status)
@@ -137,23 +137,20 @@ static int run_trial(trial *t)
 
 /* ---- prices ------------------------------------------------------------------------------------------------------ */
 
-#define STAGE_OF(NAME, name, stage) [T3R_WORK_##NAME] = T3R_STAGE_##stage,
-static const t3r_stage stage_of[] = {T3R_WORKS(STAGE_OF)};
-
 static uint32_t rounded(double price)
 {
     return price >= UINT32_MAX ? UINT32_MAX : (uint32_t)(price + 0.5);
 }
 
 /* Fits the prices of a stage's kinds of work. Returns the largest error. */
-static double fit_stage(const trial *trials, t3r_stage stage, t3r_prices *prices)
+static double fit_stage(const trial *trials, t3r_stage stage, work_prices *prices)
 {
     price_fit fit = {0};
-    t3r_work kinds[PRICE_FIT_KINDS];
+    work_kind kinds[PRICE_FIT_KINDS];
     double found[PRICE_FIT_KINDS];
-    for (int work = 0; work < T3R_WORK_COUNT; work++) {
-        if (stage_of[work] == stage) {
-            kinds[fit.kinds++] = (t3r_work)work;
+    for (int work = 0; work < WORK_KIND_COUNT; work++) {
+        if (work_stage((work_kind)work) == stage) {
+            kinds[fit.kinds++] = (work_kind)work;
         }
     }
     for (uint32_t i = 0; i < TRIALS; i++) {
@@ -184,7 +181,7 @@ static int run_all(trial *trials, uint32_t rounds)
     return code;
 }
 
-int calibrate(const processor_options *processor, uint32_t rounds, t3r_prices *prices, double errors[T3R_STAGE_COUNT])
+int calibrate(const processor_options *processor, uint32_t rounds, work_prices *prices, double errors[T3R_STAGE_COUNT])
 {
     trial *trials = calloc(TRIALS, sizeof *trials);
     t3r_threads *threads = NULL;

@@ -2,6 +2,7 @@
 #include "planning/fitting.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 
 #include "cli/cli.h"
@@ -9,6 +10,7 @@
 #include "cli/tables/json_output.h"
 #include "host/cpu.h"
 #include "planning/calibrate.h"
+#include "planning/choices.h"
 #include "reconstruction/chosen_head.h"
 #include "reconstruction/reconstruction_error.h"
 
@@ -45,42 +47,31 @@ int fitting_machine(const fitting_options *o, uint32_t threads, machine *m)
 typedef struct fitting_choices {
     chosen_head heads[HEADS];
     uint32_t head_count;
-    t3r_choice items[HEADS * T3R_MAX_CHOICES];
+    choice items[HEADS * CHOICES_MOST];
     uint32_t count;
 } fitting_choices;
 
-static const char *head_name(const fitting_choices *list, const t3r_choice *choice)
-{
-    for (uint32_t i = 0; i < list->head_count; i++) {
-        if (list->heads[i].head == choice->head && list->heads[i].weights == choice->weights) {
-            return list->heads[i].name;
-        }
-    }
-    return "";
-}
-
 /* Finds the choices of every head that was opened. */
-static int find(fitting_choices *list, const t3r_config *config, const t3r_limits *limits)
+static int find(fitting_choices *list, const t3r_config *config, const choice_limits *limits)
 {
     list->count = 0;
     for (uint32_t i = 0; i < list->head_count; i++) {
-        t3r_config with_head = *config;
-        chosen_head_configure(&list->heads[i], &with_head);
-        const t3r_status status = t3r_plan_choices(&with_head, list->heads[i].weights, list->heads[i].bytes, limits,
-                                                   list->items, &list->count);
+        const t3r_status status = choices_add(config, &list->heads[i], limits, list->items, &list->count);
         if (status != T3R_OK) {
-            with_head.gaussians = with_head.max_gaussians = 1;
-            with_head.refine = 0;
-            return reconstruction_error(status, "settings", &with_head, 0);
+            t3r_config least = *config;
+            chosen_head_configure(&list->heads[i], &least);
+            least.gaussians = least.max_gaussians = 1;
+            least.refine = 0;
+            return reconstruction_error(status, "settings", &least, 0);
         }
     }
     return CLI_OK;
 }
 
 /* Reports the smallest and the fastest settings when nothing fits. */
-static int refuse(fitting_choices *list, const t3r_config *config, const t3r_limits *limits)
+static int refuse(fitting_choices *list, const t3r_config *config, const choice_limits *limits)
 {
-    t3r_limits any = *limits;
+    choice_limits any = *limits;
     any.bytes = 0;
     any.most = 0;
     const int code = find(list, config, &any);
@@ -88,25 +79,25 @@ static int refuse(fitting_choices *list, const t3r_config *config, const t3r_lim
         return code != CLI_OK ? code : cli_error(CLI_BUDGET_TOO_SMALL, "no arena holds these settings");
     }
     size_t bytes = SIZE_MAX;
-    uint64_t price = UINT64_MAX;
+    double price = HUGE_VAL;
     for (uint32_t i = 0; i < list->count; i++) {
         bytes = list->items[i].min_bytes < bytes ? list->items[i].min_bytes : bytes;
-        price = list->items[i].price < price ? list->items[i].price : price;
+        price = fmin(price, list->items[i].price);
     }
     if (limits->prices == NULL) {
         return cli_error(CLI_BUDGET_TOO_SMALL, "nothing fits: the smallest arena is of %zu bytes", bytes);
     }
     return cli_error(CLI_BUDGET_TOO_SMALL,
                      "nothing fits: the smallest arena is of %zu bytes, and the fastest build takes %.3g ms", bytes,
-                     (double)price * 1e-6);
+                     price * 1e-6);
 }
 
-static double percent_of(const t3r_choice *choice, const t3r_config *config)
+static double percent_of(const choice *c, const t3r_config *config)
 {
-    return 100.0 * choice->gaussians / ((double)config->width * config->height * config->views);
+    return 100.0 * c->gaussians / ((double)config->width * config->height * config->views);
 }
 
-static void print_json(const fitting_choices *list, const t3r_config *config, const t3r_limits *limits)
+static void print_json(const fitting_choices *list, const t3r_config *config, const choice_limits *limits)
 {
     cJSON *root = cJSON_CreateObject();
     json_add_integer(root, "width", config->width);
@@ -114,23 +105,24 @@ static void print_json(const fitting_choices *list, const t3r_config *config, co
     json_add_integer(root, "views", config->views);
     cJSON *choices = cJSON_AddArrayToObject(root, "choices");
     for (uint32_t i = 0; i < list->count; i++) {
-        const t3r_choice *c = &list->items[i];
+        const choice *c = &list->items[i];
         cJSON *item = cJSON_CreateObject();
-        cJSON_AddStringToObject(item, "head", head_name(list, c));
+        cJSON_AddStringToObject(item, "head", c->head->name);
         json_add_integer(item, "gaussians", c->gaussians);
         json_add_integer(item, "refine", c->refine);
-        cJSON_AddNumberToObject(item, "expected_loss_db", c->loss_q4 / 16.0);
+        cJSON_AddNumberToObject(item, "expected_loss_db", c->loss);
         json_add_integer(item, "min_bytes", (int64_t)c->min_bytes);
         json_add_integer(item, "arena_bytes", (int64_t)c->full_bytes);
         if (limits->prices != NULL) {
-            cJSON_AddNumberToObject(item, "build_ms", (double)c->price * 1e-6);
+            cJSON_AddNumberToObject(item, "build_ms", c->price * 1e-6);
         }
         cJSON_AddItemToArray(choices, item);
     }
     json_print(root);
 }
 
-static void print_text(const fitting_choices *list, const t3r_config *config, const t3r_limits *limits, bool markdown)
+static void print_text(const fitting_choices *list, const t3r_config *config, const choice_limits *limits,
+                       bool markdown)
 {
     const bool timed = limits->prices != NULL;
     const uint32_t shown = list->count < SHOWN_MOST ? list->count : SHOWN_MOST;
@@ -141,12 +133,12 @@ static void print_text(const fitting_choices *list, const t3r_config *config, co
         printf("head        gaussians  keep %%  passes  loss dB  arena bytes%s\n", timed ? "   build ms" : "");
     }
     for (uint32_t i = 0; i < shown; i++) {
-        const t3r_choice *c = &list->items[i];
+        const choice *c = &list->items[i];
         printf(markdown ? "| %s | %" PRIu32 " | %.3g | %" PRIu32 " | %.1f | %zu |"
                         : "%-10s %10" PRIu32 " %7.3g %7" PRIu32 " %8.1f %12zu",
-               head_name(list, c), c->gaussians, percent_of(c, config), c->refine, c->loss_q4 / 16.0, c->full_bytes);
+               c->head->name, c->gaussians, percent_of(c, config), c->refine, c->loss, c->full_bytes);
         if (timed) {
-            printf(markdown ? " %.3g |" : " %10.3g", (double)c->price * 1e-6);
+            printf(markdown ? " %.3g |" : " %10.3g", c->price * 1e-6);
         }
         putchar('\n');
     }
@@ -180,9 +172,9 @@ int fitting_list(const fitting_options *o, const t3r_config *config, const char 
     static fitting_choices list;
     machine m = {.threads = 1};
     const bool timed = o->nanoseconds != 0 || o->machine != NULL;
-    const t3r_limits limits = {
+    const choice_limits limits = {
         .bytes = (size_t)o->bytes,
-        .most = o->nanoseconds,
+        .most = (double)o->nanoseconds,
         .prices = timed ? &m.prices : NULL,
         .gaussians = config->gaussians,
         .refine = config->refine,

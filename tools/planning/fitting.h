@@ -19,7 +19,7 @@ typedef struct fitting_options {
  * Returns CLI_OK, or an exit status of cli.h after a message. */
 int fitting_machine(const fitting_options *options, uint32_t threads, machine *m);
 
-/* Prints the list; what the configuration leaves open is 0 Gaussians and T3R_ANY_REFINE. head: NULL = each. An
+/* Prints the list; what the configuration leaves open is 0 Gaussians and CHOICES_ANY_REFINE. head: NULL = each. An
  * exit status of cli.h; CLI_BUDGET_TOO_SMALL where nothing fits. */
 int fitting_list(const fitting_options *options, const t3r_config *config, const char *head, bool json, bool markdown);
 

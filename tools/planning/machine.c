@@ -35,15 +35,15 @@ static int number_of(const cJSON *object, const char *key, double low, double hi
 
 static bool is_work(const char *name)
 {
-    for (int work = 0; work < T3R_WORK_COUNT; work++) {
-        if (strcmp(name, t3r_work_name((t3r_work)work)) == 0) {
+    for (int work = 0; work < WORK_KIND_COUNT; work++) {
+        if (strcmp(name, work_name((work_kind)work)) == 0) {
             return true;
         }
     }
     return false;
 }
 
-static int prices_of(const cJSON *root, t3r_prices *prices, char *error, size_t error_bytes)
+static int prices_of(const cJSON *root, work_prices *prices, char *error, size_t error_bytes)
 {
     const cJSON *object = cJSON_GetObjectItemCaseSensitive(root, "picoseconds"), *item;
     if (!cJSON_IsObject(object)) {
@@ -56,8 +56,8 @@ static int prices_of(const cJSON *root, t3r_prices *prices, char *error, size_t 
                               item->string);
         }
     }
-    for (int work = 0; work < T3R_WORK_COUNT; work++) {
-        if (number_of(object, t3r_work_name((t3r_work)work), 0, UINT32_MAX, &prices->milli[work], error, error_bytes) !=
+    for (int work = 0; work < WORK_KIND_COUNT; work++) {
+        if (number_of(object, work_name((work_kind)work), 0, UINT32_MAX, &prices->milli[work], error, error_bytes) !=
             0) {
             return -1;
         }
@@ -123,8 +123,8 @@ static char *text_of(const machine *m)
     json_add_integer(root, "threads", m->threads);
     cJSON_AddStringToObject(root, "cpu_used", m->cpu);
     cJSON *prices = cJSON_AddObjectToObject(root, "picoseconds");
-    for (int work = 0; work < T3R_WORK_COUNT; work++) {
-        json_add_integer(prices, t3r_work_name((t3r_work)work), m->prices.milli[work]);
+    for (int work = 0; work < WORK_KIND_COUNT; work++) {
+        json_add_integer(prices, work_name((work_kind)work), m->prices.milli[work]);
     }
     char *text = cJSON_Print(root);
     cJSON_Delete(root);

@@ -5,10 +5,10 @@
 
 #include <cjson/cJSON.h>
 
-#include "trim3r.h"
+#include "planning/work.h"
 
 /* Adds "operations" by stage; with prices (else NULL) also "stages_ms", "build_ms" and "render_ms". */
-void work_table_add_json(cJSON *object, const t3r_work_counts *work, const t3r_prices *prices);
-void work_table_print(const t3r_work_counts *work, const t3r_prices *prices);
+void work_table_add_json(cJSON *object, const work_counts *work, const work_prices *prices);
+void work_table_print(const work_counts *work, const work_prices *prices);
 
 #endif

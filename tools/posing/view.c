@@ -6,7 +6,7 @@
 
 #include "host/reason.h"
 
-#define EDGE 0.05 /* depths around a corner that differ by more of the nearest one are of two surfaces */
+#define EDGE 0.05 /* depths around a feature that differ by more of the nearest one are of two surfaces */
 
 /* A frame after the runtime's image stage: undistorted, at the size that is worked on. */
 typedef struct developed {
@@ -75,30 +75,33 @@ static double depth_at(const developed *d, double x, double y, double unit)
     return unit / inverse;
 }
 
-static int find(const developed *d, pose_view *out, double unit)
+static int find(const developed *d, pose_view *out, double unit, char *error, size_t error_bytes)
 {
     size_t pixels = (size_t)d->width * d->height;
+    pose_features *f = &out->features;
     uint8_t *grey = malloc(pixels);
-    out->corners = malloc(CORNERS_MOST * sizeof *out->corners);
-    out->rays = malloc(CORNERS_MOST * sizeof *out->rays);
-    out->depth = malloc(CORNERS_MOST * sizeof *out->depth);
-    int status = grey != NULL && out->corners != NULL && out->rays != NULL && out->depth != NULL ? 0 : -1;
+    f->rays = malloc(FEATURES_MOST * sizeof *f->rays);
+    f->depth = malloc(FEATURES_MOST * sizeof *f->depth);
+    f->descriptors = malloc(FEATURES_MOST * sizeof *f->descriptors);
+    int status = grey != NULL && f->rays != NULL && f->depth != NULL && f->descriptors != NULL
+                     ? 0
+                     : t3r_reason(error, error_bytes, "out of memory");
     for (size_t i = 0; i < pixels && status == 0; i++) {
         const uint8_t *p = d->rgb + 3 * i;
         grey[i] = (uint8_t)((77 * p[0] + 150 * p[1] + 29 * p[2] + 128) >> 8);
     }
     if (status == 0) {
-        status = corners_find(grey, d->width, d->height, out->corners, &out->count);
+        status = out->module->find(grey, d->width, d->height, f, error, error_bytes);
     }
     free(grey);
     double fx = ldexp(d->camera.fx_q16, -16), fy = ldexp(d->camera.fy_q16, -16);
     double cx = ldexp(d->camera.cx_q16, -16), cy = ldexp(d->camera.cy_q16, -16);
-    out->focal = (fx + fy) / 2;
-    for (uint32_t i = 0; i < out->count && status == 0; i++) {
-        double x = out->corners[i].x_q8 / 256.0, y = out->corners[i].y_q8 / 256.0;
-        out->rays[i][0] = (x - cx) / fx;
-        out->rays[i][1] = (y - cy) / fy;
-        out->depth[i] = out->measured ? depth_at(d, x, y, unit) : 0;
+    f->focal = (fx + fy) / 2;
+    for (uint32_t i = 0; i < f->count && status == 0; i++) {
+        double x = f->rays[i][0], y = f->rays[i][1];
+        f->rays[i][0] = (x - cx) / fx;
+        f->rays[i][1] = (y - cy) / fy;
+        f->depth[i] = out->measured ? depth_at(d, x, y, unit) : 0;
     }
     return status;
 }
@@ -108,9 +111,11 @@ int pose_view_make(const t3r_frame *frame, const t3r_camera *camera, pose_view *
     *out = (pose_view){.measured = frame->depth != NULL};
     developed d = {0};
     int status = develop(frame, camera, &d, error, error_bytes);
-    out->enlarged = (double)d.width / frame->width;
-    if (status == 0 && find(&d, out, ldexp((double)frame->depth_unit_q40, -40)) != 0) {
-        status = t3r_reason(error, error_bytes, "out of memory");
+    out->features.enlarged = (double)d.width / frame->width;
+    if (status == 0) {
+        out->module = pose_module_load(error, error_bytes);
+        status =
+            out->module != NULL ? find(&d, out, ldexp((double)frame->depth_unit_q40, -40), error, error_bytes) : -1;
     }
     free(d.rgb);
     free(d.depth);
@@ -119,8 +124,8 @@ int pose_view_make(const t3r_frame *frame, const t3r_camera *camera, pose_view *
 
 void pose_view_free(pose_view *view)
 {
-    free(view->corners);
-    free(view->rays);
-    free(view->depth);
+    free(view->features.rays);
+    free(view->features.depth);
+    free(view->features.descriptors);
     *view = (pose_view){0};
 }

@@ -38,18 +38,18 @@ static double distance_between(const int64_t a_q32[3], const int64_t b_q32[3])
     return sqrt(squared);
 }
 
-int aligned_poses_of(const t3r_recording *recording, const char *path, const reconstruction_account *told,
+int aligned_poses_of(const t3r_recording *recording, const char *path, const reconstruction_account *account,
                      pose_correction corrections[T3R_MAX_VIEWS])
 {
-    for (uint32_t v = 0; v < told->context_count; v++) {
+    for (uint32_t v = 0; v < account->context_count; v++) {
         t3r_capture_frame frame;
-        const int code = recorded_frame_read(recording, path, told->context[v], &frame);
+        const int code = recorded_frame_read(recording, path, account->context[v], &frame);
         if (code != CLI_OK) {
             return code;
         }
-        const t3r_camera *given = &frame.camera, *built = &told->camera[v];
+        const t3r_camera *given = &frame.camera, *built = &account->camera[v];
         corrections[v] = (pose_correction){0};
-        if (told->has_cameras) {
+        if (account->has_cameras) {
             corrections[v].degrees = degrees_between(given->rotation_q30, built->rotation_q30);
             corrections[v].distance = distance_between(given->position_q32, built->position_q32);
         }
@@ -57,24 +57,24 @@ int aligned_poses_of(const t3r_recording *recording, const char *path, const rec
     return CLI_OK;
 }
 
-void aligned_poses_add_json(cJSON *object, const reconstruction_account *told, const pose_correction *corrections)
+void aligned_poses_add_json(cJSON *object, const reconstruction_account *account, const pose_correction *corrections)
 {
-    cJSON *list = told->has_cameras ? cJSON_AddArrayToObject(object, "aligned") : NULL;
-    for (uint32_t v = 0; v < told->context_count && list != NULL; v++) {
+    cJSON *list = account->has_cameras ? cJSON_AddArrayToObject(object, "aligned") : NULL;
+    for (uint32_t v = 0; v < account->context_count && list != NULL; v++) {
         cJSON *one = cJSON_CreateObject();
-        cJSON_AddNumberToObject(one, "frame", told->context[v]);
+        cJSON_AddNumberToObject(one, "frame", account->context[v]);
         cJSON_AddNumberToObject(one, "degrees", corrections[v].degrees);
         cJSON_AddNumberToObject(one, "distance", corrections[v].distance);
-        pose_add_json(one, &told->camera[v]);
+        pose_add_json(one, &account->camera[v]);
         cJSON_AddItemToArray(list, one);
     }
 }
 
-void aligned_poses_print(const reconstruction_account *told, const pose_correction *corrections)
+void aligned_poses_print(const reconstruction_account *account, const pose_correction *corrections)
 {
-    for (uint32_t v = 0; v < told->context_count; v++) {
+    for (uint32_t v = 0; v < account->context_count; v++) {
         if (corrections[v].degrees > 0 || corrections[v].distance > 0) {
-            printf("pose of frame %" PRIu32 " corrected by %.2f degrees and %.4f units\n", told->context[v],
+            printf("pose of frame %" PRIu32 " corrected by %.2f degrees and %.4f units\n", account->context[v],
                    corrections[v].degrees, corrections[v].distance);
         }
     }

@@ -14,13 +14,13 @@ typedef struct pose_correction {
 } pose_correction;
 
 /* Computes a correction per context view; all zero if the scene has no views. Returns an exit status of cli.h. */
-int aligned_poses_of(const t3r_recording *recording, const char *path, const reconstruction_account *told,
+int aligned_poses_of(const t3r_recording *recording, const char *path, const reconstruction_account *account,
                      pose_correction corrections[T3R_MAX_VIEWS]);
 
 /* Adds "aligned": one object per view with the correction and the pose built with. Nothing if the scene has no
  * views. */
-void aligned_poses_add_json(cJSON *object, const reconstruction_account *told, const pose_correction *corrections);
+void aligned_poses_add_json(cJSON *object, const reconstruction_account *account, const pose_correction *corrections);
 /* Prints a line on stdout for each view whose pose was corrected. */
-void aligned_poses_print(const reconstruction_account *told, const pose_correction *corrections);
+void aligned_poses_print(const reconstruction_account *account, const pose_correction *corrections);
 
 #endif

@@ -11,22 +11,23 @@
 
 int colmap_start_write(const colmap_start *start, whole_folder *folder, const char *name)
 {
-    const reconstruction_account *told = start->told;
+    const reconstruction_account *account = start->account;
     colmap_view views[T3R_MAX_VIEWS] = {0};
     char error[ERROR_BYTES] = "";
     int code = CLI_OK;
-    for (uint32_t v = 0; v < told->context_count && code == CLI_OK; v++) {
-        views[v] = (colmap_view){.frame = told->context[v], .width = told->width, .height = told->height};
-        views[v].rgb = malloc((size_t)told->width * told->height * 3);
-        code = views[v].rgb == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
-                                    : developed_frame(start->recording, start->path, told->context[v], told->width,
-                                                      told->height, views[v].rgb, NULL, &views[v].camera);
-        if (told->has_cameras) { /* the points are where the aligned poses put them */
-            views[v].camera = told->camera[v];
+    for (uint32_t v = 0; v < account->context_count && code == CLI_OK; v++) {
+        views[v] = (colmap_view){.frame = account->context[v], .width = account->width, .height = account->height};
+        views[v].rgb = malloc((size_t)account->width * account->height * 3);
+        code = views[v].rgb == NULL
+                   ? cli_error(CLI_BAD_INPUT, "out of memory")
+                   : developed_frame(start->recording, start->path, account->context[v], account->width,
+                                     account->height, views[v].rgb, NULL, &views[v].camera);
+        if (account->has_cameras) { /* the points are where the aligned poses put them */
+            views[v].camera = account->camera[v];
         }
     }
     colmap_model model = {.views = views,
-                          .view_count = told->context_count,
+                          .view_count = account->context_count,
                           .scene = start->scene,
                           .local = start->local,
                           .sourced = start->sourced};
@@ -34,7 +35,7 @@ int colmap_start_write(const colmap_start *start, whole_folder *folder, const ch
                            whole_folder_commit(folder, error, sizeof error) != 0)) {
         code = cli_error(CLI_BAD_INPUT, "--colmap %s: %s", name, error);
     }
-    for (uint32_t v = 0; v < told->context_count; v++) {
+    for (uint32_t v = 0; v < account->context_count; v++) {
         free(views[v].rgb);
     }
     return code;

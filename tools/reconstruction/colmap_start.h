@@ -13,8 +13,8 @@ typedef struct colmap_start {
     const t3r_recording *recording;
     const char *path; /* of the recording, for messages */
     const t3r_scene *scene;
-    const reconstruction_account *told; /* the views, with the poses built with */
-    bool local, sourced;                /* as in colmap_model */
+    const reconstruction_account *account; /* the views, with the poses built with */
+    bool local, sourced;                   /* as in colmap_model */
 } colmap_start;
 
 /* Writes the model into a folder that was begun, and commits it; `name` is the folder's, for messages. Returns an exit

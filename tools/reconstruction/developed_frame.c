@@ -8,14 +8,9 @@
 #include "cli/files/recorded_frame.h"
 #include "reconstruction/reconstruction_error.h"
 
-int developed_frame(const t3r_recording *recording, const char *path, uint32_t index, uint32_t width, uint32_t height,
-                    uint8_t *rgb, uint16_t *depth, t3r_camera *camera)
+int developed_capture(const t3r_capture_frame *frame, const char *path, uint32_t index, uint32_t width, uint32_t height,
+                      uint8_t *rgb, uint16_t *depth, t3r_camera *camera)
 {
-    t3r_capture_frame frame;
-    int code = recorded_frame_read(recording, path, index, &frame);
-    if (code != CLI_OK) {
-        return code;
-    }
     /* in an arena of its own, because one that holds a scene cannot take frames */
     t3r_config config = t3r_default_config(width, height, 1, 1);
     t3r_runtime *runtime;
@@ -28,10 +23,18 @@ int developed_frame(const t3r_recording *recording, const char *path, uint32_t i
     }
     status = t3r_init(&runtime, arena, plan.min_bytes, &config);
     if (status == T3R_OK) {
-        status = t3r_develop(runtime, &frame.frame, &frame.camera, rgb, depth, camera);
+        status = t3r_develop(runtime, &frame->frame, &frame->camera, rgb, depth, camera);
     }
     free(arena);
     return status == T3R_OK
                ? CLI_OK
                : cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, index, t3r_error_text(status));
+}
+
+int developed_frame(const t3r_recording *recording, const char *path, uint32_t index, uint32_t width, uint32_t height,
+                    uint8_t *rgb, uint16_t *depth, t3r_camera *camera)
+{
+    t3r_capture_frame frame;
+    int code = recorded_frame_read(recording, path, index, &frame);
+    return code == CLI_OK ? developed_capture(&frame, path, index, width, height, rgb, depth, camera) : code;
 }

@@ -13,5 +13,8 @@
  * Returns an exit status of cli.h. */
 int developed_frame(const t3r_recording *recording, const char *path, uint32_t index, uint32_t width, uint32_t height,
                     uint8_t *rgb, uint16_t *depth, t3r_camera *camera);
+/* Develops a frame that was read; `index` is its number in messages. */
+int developed_capture(const t3r_capture_frame *frame, const char *path, uint32_t index, uint32_t width, uint32_t height,
+                      uint8_t *rgb, uint16_t *depth, t3r_camera *camera);
 
 #endif

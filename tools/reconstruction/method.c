@@ -4,12 +4,12 @@
 #include "cli/cli.h"
 
 static int build(method_source *source, const t3r_recording *recording, const char *path,
-                 const reconstruction_options *options, reconstruction *made, reconstruction_account *told)
+                 const reconstruction_options *options, reconstruction *made, reconstruction_account *account)
 {
     (void)source;
     const int code = reconstruction_build(made, recording, path, options);
     if (code == CLI_OK) {
-        *told = reconstruction_told(made);
+        *account = reconstruction_account_of(made);
     }
     return code;
 }

@@ -27,9 +27,9 @@ typedef struct method {
     const char *name;
     bool allocates; /* it chooses points by the settings' allocation */
     bool refines;   /* it refines what the head makes of them */
-    /* Makes *made, to be closed, at the budget of `options`, and fills *told. An exit status of cli.h. */
+    /* Makes *made, to be closed, at the budget of `options`, and fills *account. An exit status of cli.h. */
     int (*build)(method_source *source, const t3r_recording *recording, const char *path,
-                 const reconstruction_options *options, reconstruction *made, reconstruction_account *told);
+                 const reconstruction_options *options, reconstruction *made, reconstruction_account *account);
 } method;
 
 /* reconstruction_build() */

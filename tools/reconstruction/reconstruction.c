@@ -14,6 +14,7 @@
 #include "core/hash.h"
 #include "core/scene_frame.h"
 #include "host/cpu.h"
+#include "reconstruction/developed_frame.h"
 #include "reconstruction/importance_pictures.h"
 #include "reconstruction/reconstruction_error.h"
 #include "reconstruction/scene_append.h"
@@ -41,9 +42,9 @@ void reconstruction_warn_of_budget(const reconstruction_options *options, uint32
     }
 }
 
-reconstruction_account reconstruction_told(const reconstruction *r)
+reconstruction_account reconstruction_account_of(const reconstruction *r)
 {
-    reconstruction_account told = {
+    reconstruction_account account = {
         .width = r->config.width,
         .height = r->config.height,
         .context_count = r->context_count,
@@ -52,15 +53,15 @@ reconstruction_account reconstruction_told(const reconstruction *r)
         .arena_bytes = r->arena_bytes,
         .seconds = r->add_views_seconds + r->build_seconds,
     };
-    memcpy(told.head, r->head.name, sizeof told.head);
-    memcpy(told.bits, r->head.bits, sizeof told.bits);
-    memcpy(told.crc, r->head.crc, sizeof told.crc);
-    memcpy(told.context, r->context, sizeof told.context);
-    told.has_cameras = r->runtime != NULL && told.context_count > 0;
-    for (uint32_t v = 0; v < told.context_count && told.has_cameras; v++) {
-        told.has_cameras = t3r_view_camera(r->runtime, v, &told.camera[v]) == T3R_OK;
+    memcpy(account.head, r->head.name, sizeof account.head);
+    memcpy(account.bits, r->head.bits, sizeof account.bits);
+    memcpy(account.crc, r->head.crc, sizeof account.crc);
+    memcpy(account.context, r->context, sizeof account.context);
+    account.has_cameras = r->runtime != NULL && account.context_count > 0;
+    for (uint32_t v = 0; v < account.context_count && account.has_cameras; v++) {
+        account.has_cameras = t3r_view_camera(r->runtime, v, &account.camera[v]) == T3R_OK;
     }
-    return told;
+    return account;
 }
 
 uint32_t reconstruction_budget(uint32_t valid_points, double keep_percent)
@@ -121,8 +122,7 @@ t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *
 
 /* ---- the arena -------------------------------------------------------------------------------------------- */
 
-/* Allocates an arena of the requested size, initialises the runtime in it, and binds hooks. */
-static int open_arena(reconstruction *r, const reconstruction_options *options)
+int reconstruction_allocate(reconstruction *r, const reconstruction_options *options)
 {
     t3r_plan_info plan;
     r->config.workers = options->processor.threads;
@@ -141,15 +141,25 @@ static int open_arena(reconstruction *r, const reconstruction_options *options)
         return cli_error(CLI_BAD_INPUT, "no memory for an arena of %" PRIu64 " bytes", bytes);
     }
     r->arena_bytes = (size_t)bytes;
-    status = t3r_init(&r->runtime, r->arena, r->arena_bytes, &r->config);
-    if (status != T3R_OK) {
-        return reconstruction_error(status, "arena", &r->config, r->arena_bytes);
-    }
     if (options->processor.threads > 1) {
         r->threads = t3r_threads_start(options->processor.threads);
         if (r->threads == NULL) {
             return cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads", options->processor.threads);
         }
+    }
+    return CLI_OK;
+}
+
+/* Allocates an arena, initialises the runtime in it, and binds hooks. */
+static int open_arena(reconstruction *r, const reconstruction_options *options)
+{
+    int code = reconstruction_allocate(r, options);
+    if (code != CLI_OK) {
+        return code;
+    }
+    t3r_status status = t3r_init(&r->runtime, r->arena, r->arena_bytes, &r->config);
+    if (status != T3R_OK) {
+        return reconstruction_error(status, "arena", &r->config, r->arena_bytes);
     }
     t3r_hooks hooks = reconstruction_hooks(r, options);
     hooks.progress = show_progress;
@@ -234,37 +244,19 @@ static int count_matched_points(const reconstruction *r, const t3r_capture_frame
 static int count_measured_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path,
                                  reconstruction_points *points)
 {
-    t3r_config config = t3r_default_config(r->config.width, r->config.height, 1, 1);
-    size_t pixels = (size_t)config.width * config.height;
-    t3r_plan_info plan;
-    t3r_status status = t3r_plan(&config, &plan);
-    if (status != T3R_OK) {
-        return reconstruction_error(status, "settings", &config, 0);
-    }
-    t3r_runtime *runtime;
-    void *arena = NULL;
+    const uint32_t width = r->config.width, height = r->config.height;
+    const size_t pixels = (size_t)width * height;
     uint8_t *rgb = malloc(pixels * 3);
     uint16_t *depth = malloc(pixels * 2);
-    int code = CLI_OK;
+    int code = rgb != NULL && depth != NULL ? CLI_OK : cli_error(CLI_BAD_INPUT, "out of memory");
     *points = (reconstruction_points){.valid = 0};
-    if (rgb == NULL || depth == NULL || posix_memalign(&arena, T3R_ARENA_ALIGN, plan.min_bytes) != 0) {
-        arena = NULL;
-        code = cli_error(CLI_BAD_INPUT, "out of memory");
-    } else if ((status = t3r_init(&runtime, arena, plan.min_bytes, &config)) != T3R_OK) {
-        code = reconstruction_error(status, "settings", &config, plan.min_bytes);
-    }
     for (uint32_t v = 0; v < r->context_count && code == CLI_OK; v++) {
         t3r_camera camera;
-        status = t3r_develop(runtime, &frames[v].frame, &frames[v].camera, rgb, depth, &camera);
-        if (status != T3R_OK) {
-            code = frame_error(path, r->context[v], status);
-            break;
-        }
-        for (size_t i = 0; i < pixels; i++) {
+        code = developed_capture(&frames[v], path, r->context[v], width, height, rgb, depth, &camera);
+        for (size_t i = 0; i < pixels && code == CLI_OK; i++) {
             points->valid += depth[i] != 0;
         }
     }
-    free(arena);
     free(depth);
     free(rgb);
     return code;

@@ -103,7 +103,7 @@ typedef struct reconstruction_account {
     double seconds; /* from recorded frames to the scene */
 } reconstruction_account;
 
-reconstruction_account reconstruction_told(const reconstruction *r);
+reconstruction_account reconstruction_account_of(const reconstruction *r);
 /* Warns on stderr when more Gaussians were requested than the `count` that the views give. */
 void reconstruction_warn_of_budget(const reconstruction_options *options, uint32_t requested, uint32_t count);
 
@@ -124,6 +124,8 @@ int reconstruction_live_stream(reconstruction *r, uint32_t width, uint32_t heigh
 /* Configures a build without a recording (live_build.h): the options' configuration for the working size in r->config,
  * r->context_count views and r->head. The next function sets the budget. */
 void reconstruction_configure(reconstruction *r, const reconstruction_options *options);
+/* Allocates an arena of the size that the options request for r->config, and starts their threads. */
+int reconstruction_allocate(reconstruction *r, const reconstruction_options *options);
 /* Sets the budget that the options request, relative to r->valid_points. */
 void reconstruction_request(reconstruction *r, const reconstruction_options *options);
 /* Builds from the views added to r->scene; `planes` are the importance for the allocation `given`, else NULL. */

@@ -143,7 +143,7 @@ frame_feed_counts frame_feed_counts_of(const frame_feed *feed)
 void frame_feed_warn(frame_feed *feed, frame_feed_topic topic, const char *reason, int64_t now_ns)
 {
     uint64_t more;
-    if (!throttle_tells(&feed->warnings[topic], reason, now_ns, &more)) {
+    if (!throttle_passes(&feed->warnings[topic], reason, now_ns, &more)) {
         return;
     }
     char line[FRAME_FEED_REASON_BYTES];

@@ -17,14 +17,14 @@ static bool is_alike(const char *a, const char *b)
     }
 }
 
-bool throttle_tells(throttle *t, const char *text, int64_t now_ns, uint64_t *more)
+bool throttle_passes(throttle *t, const char *text, int64_t now_ns, uint64_t *more)
 {
-    if (t->last[0] != '\0' && is_alike(t->last, text) && now_ns - t->told_ns < THROTTLE_INTERVAL_NS) {
+    if (t->last[0] != '\0' && is_alike(t->last, text) && now_ns - t->last_ns < THROTTLE_INTERVAL_NS) {
         t->held_back++;
         return false;
     }
     *more = t->held_back;
-    *t = (throttle){.told_ns = now_ns};
+    *t = (throttle){.last_ns = now_ns};
     snprintf(t->last, sizeof t->last, "%s", text);
     return true;
 }

@@ -12,11 +12,11 @@
 /* Initialise with zeros. */
 typedef struct throttle {
     char last[THROTTLE_TEXT_BYTES];
-    int64_t told_ns;
+    int64_t last_ns;
     uint64_t held_back; /* lines suppressed since then */
 } throttle;
 
 /* Whether to print this line at that time; *more is the number of lines suppressed since the last one. */
-bool throttle_tells(throttle *t, const char *text, int64_t now_ns, uint64_t *more);
+bool throttle_passes(throttle *t, const char *text, int64_t now_ns, uint64_t *more);
 
 #endif

@@ -23,36 +23,36 @@
 static const double quantile_share[QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
 static const char *const quantile_name[QUANTILES] = {"p5", "p25", "median", "p75", "p95"};
 
-typedef struct scene_told {
+typedef struct scene_summary {
     uint32_t count;
     double low[3], high[3]; /* bounds of the means, world units */
     double opacity;         /* mean */
-} scene_told;
+} scene_summary;
 
-typedef struct all_told {
-    scene_told scene[SCENE_INFO_MOST];
+typedef struct scene_summaries {
+    scene_summary scene[SCENE_INFO_MOST];
     splat_scales scales[SCENE_INFO_MOST];
     double depth;  /* median depth of the first scene's means from the camera, world units; 0 = unknown */
     double pixels; /* size of a world unit at that depth; 0 = unknown */
     scale_bins bins;
-} all_told;
+} scene_summaries;
 
 /* ---- numbers ---------------------------------------------------------------------------------------------------- */
 
-static scene_told tell_scene(const scene_file *scene)
+static scene_summary summarise(const scene_file *scene)
 {
-    scene_told told = {.count = scene->count};
+    scene_summary summary = {.count = scene->count};
     for (uint32_t i = 0; i < scene->count; i++) {
         const t3r_gaussian *g = &scene->gaussians[i];
         for (int axis = 0; axis < 3; axis++) {
             double x = ldexp((double)scene->frame.origin_q32[axis], -32) +
                        ldexp(g->position_q20[axis], scene->frame.exponent - 20);
-            told.low[axis] = i == 0 ? x : fmin(told.low[axis], x);
-            told.high[axis] = i == 0 ? x : fmax(told.high[axis], x);
+            summary.low[axis] = i == 0 ? x : fmin(summary.low[axis], x);
+            summary.high[axis] = i == 0 ? x : fmax(summary.high[axis], x);
         }
-        told.opacity += g->opacity_q15 / 32768.0 / scene->count;
+        summary.opacity += g->opacity_q15 / 32768.0 / scene->count;
     }
-    return told;
+    return summary;
 }
 
 static int ascending(const void *a, const void *b)
@@ -89,7 +89,7 @@ static uint32_t depths_seen(const scene_file *scene, const t3r_capture_frame *fr
     return seen;
 }
 
-static int measure_pixels(const scene_info_request *request, const scene_file *scene, all_told *told)
+static int measure_pixels(const scene_info_request *request, const scene_file *scene, scene_summaries *summary)
 {
     char error[ERROR_BYTES] = "";
     t3r_capture_frame frame;
@@ -107,8 +107,8 @@ static int measure_pixels(const scene_info_request *request, const scene_file *s
             code = cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 " shows no Gaussian of %s", request->recording,
                              request->view, request->scenes[0]);
         } else {
-            told->depth = depths[seen / 2];
-            told->pixels = ldexp(frame.camera.fx_q16, -16) / told->depth;
+            summary->depth = depths[seen / 2];
+            summary->pixels = ldexp(frame.camera.fx_q16, -16) / summary->depth;
         }
     }
     free(depths);
@@ -116,7 +116,7 @@ static int measure_pixels(const scene_info_request *request, const scene_file *s
     return code;
 }
 
-static int tell_all(const scene_info_request *request, all_told *told)
+static int summarise_all(const scene_info_request *request, scene_summaries *summary)
 {
     char error[ERROR_BYTES] = "";
     int code = CLI_OK;
@@ -125,16 +125,16 @@ static int tell_all(const scene_info_request *request, all_told *told)
         if (scene_file_read(request->scenes[i], request->flags, &scene, error, sizeof error) != 0) {
             return cli_error(CLI_BAD_INPUT, "%s", error);
         }
-        told->scene[i] = tell_scene(&scene);
-        if (!splat_scales_of(&told->scales[i], &scene)) {
+        summary->scene[i] = summarise(&scene);
+        if (!splat_scales_of(&summary->scales[i], &scene)) {
             code = cli_error(CLI_BAD_INPUT, "out of memory");
         } else if (i == 0 && request->recording != NULL) {
-            code = measure_pixels(request, &scene, told);
+            code = measure_pixels(request, &scene, summary);
         }
         scene_file_free(&scene);
     }
     if (code == CLI_OK) {
-        told->bins = scale_bins_of(told->scales, request->scene_count);
+        summary->bins = scale_bins_of(summary->scales, request->scene_count);
     }
     return code;
 }
@@ -158,34 +158,34 @@ static void add_quantiles(cJSON *object, const char *key, const splat_scales *sc
     }
 }
 
-static void print_json(const scene_info_request *request, const all_told *told)
+static void print_json(const scene_info_request *request, const scene_summaries *summary)
 {
     cJSON *root = cJSON_CreateObject();
-    if (told->pixels > 0) {
-        cJSON_AddNumberToObject(root, "median_depth", told->depth);
-        cJSON_AddNumberToObject(root, "pixels_per_unit", told->pixels);
+    if (summary->pixels > 0) {
+        cJSON_AddNumberToObject(root, "median_depth", summary->depth);
+        cJSON_AddNumberToObject(root, "pixels_per_unit", summary->pixels);
     }
     double edges[SCALE_BINS_MOST + 1];
-    for (uint32_t b = 0; b <= told->bins.count; b++) {
-        edges[b] = scale_bins_edge(&told->bins, b);
+    for (uint32_t b = 0; b <= summary->bins.count; b++) {
+        edges[b] = scale_bins_edge(&summary->bins, b);
     }
-    add_numbers(root, "scale_edges", edges, told->bins.count + 1);
+    add_numbers(root, "scale_edges", edges, summary->bins.count + 1);
     cJSON *list = cJSON_AddArrayToObject(root, "scenes");
     for (uint32_t i = 0; i < request->scene_count; i++) {
-        const scene_told *scene = &told->scene[i];
+        const scene_summary *scene = &summary->scene[i];
         uint32_t counts[SCALE_BINS_MOST];
-        scale_bins_fill(&told->bins, &told->scales[i], counts);
+        scale_bins_fill(&summary->bins, &summary->scales[i], counts);
         cJSON *item = cJSON_CreateObject();
         cJSON_AddStringToObject(item, "scene", request->scenes[i]);
         json_add_integer(item, "gaussians", scene->count);
         add_numbers(item, "low", scene->low, 3);
         add_numbers(item, "high", scene->high, 3);
         cJSON_AddNumberToObject(item, "mean_opacity", scene->opacity);
-        add_quantiles(item, "scale", &told->scales[i], 1);
-        if (told->pixels > 0) {
-            add_quantiles(item, "scale_pixels", &told->scales[i], told->pixels);
+        add_quantiles(item, "scale", &summary->scales[i], 1);
+        if (summary->pixels > 0) {
+            add_quantiles(item, "scale_pixels", &summary->scales[i], summary->pixels);
         }
-        json_add_integers(item, "scale_counts", counts, told->bins.count);
+        json_add_integers(item, "scale_counts", counts, summary->bins.count);
         cJSON_AddItemToArray(list, item);
     }
     json_print(root);
@@ -201,26 +201,26 @@ static void print_quantiles(const char *title, const splat_scales *scales, doubl
     putchar('\n');
 }
 
-static void print_text(const scene_info_request *request, const all_told *told)
+static void print_text(const scene_info_request *request, const scene_summaries *summary)
 {
     for (uint32_t i = 0; i < request->scene_count; i++) {
-        const scene_told *s = &told->scene[i];
+        const scene_summary *s = &summary->scene[i];
         printf("%s: %" PRIu32 " Gaussians\n", request->scenes[i], s->count);
         printf("  %-9s%.4g..%.4g, %.4g..%.4g, %.4g..%.4g\n", "x, y, z:", s->low[0], s->high[0], s->low[1], s->high[1],
                s->low[2], s->high[2]);
         printf("  %-9s%.3f in the mean\n", "opacity:", s->opacity);
-        print_quantiles("scale:", &told->scales[i], 1);
-        if (told->pixels > 0) {
-            print_quantiles("pixels:", &told->scales[i], told->pixels);
+        print_quantiles("scale:", &summary->scales[i], 1);
+        if (summary->pixels > 0) {
+            print_quantiles("pixels:", &summary->scales[i], summary->pixels);
         }
     }
-    if (told->pixels > 0) {
+    if (summary->pixels > 0) {
         printf("pixels of frame %" PRIu32 " of %s at the median depth, %.4g\n", request->view, request->recording,
-               told->depth);
+               summary->depth);
     }
 }
 
-static int write_svg(const scene_info_request *request, const all_told *told)
+static int write_svg(const scene_info_request *request, const scene_summaries *summary)
 {
     whole_file file;
     char error[ERROR_BYTES] = "";
@@ -229,29 +229,29 @@ static int write_svg(const scene_info_request *request, const all_told *told)
     for (uint32_t i = 0; i < request->scene_count; i++) {
         const char *slash = strrchr(request->scenes[i], '/'), *name = slash != NULL ? slash + 1 : request->scenes[i];
         snprintf(names[i], sizeof names[i], "%.*s", (int)(strrchr(name, '.') - name), name);
-        panels[i] = (scale_panel){names[i], &told->scales[i]};
+        panels[i] = (scale_panel){names[i], &summary->scales[i]};
     }
     if (whole_file_begin(&file, request->svg, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    scale_picture_write(file.stream, panels, request->scene_count, &told->bins, told->pixels);
+    scale_picture_write(file.stream, panels, request->scene_count, &summary->bins, summary->pixels);
     return whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
 int scene_info(const scene_info_request *request)
 {
-    all_told told = {0};
-    int code = tell_all(request, &told);
+    scene_summaries summary = {0};
+    int code = summarise_all(request, &summary);
     if (code == CLI_OK && request->svg != NULL) {
-        code = write_svg(request, &told);
+        code = write_svg(request, &summary);
     }
     if (code == CLI_OK && request->json) {
-        print_json(request, &told);
+        print_json(request, &summary);
     } else if (code == CLI_OK) {
-        print_text(request, &told);
+        print_text(request, &summary);
     }
     for (uint32_t i = 0; i < request->scene_count; i++) {
-        splat_scales_free(&told.scales[i]);
+        splat_scales_free(&summary.scales[i]);
     }
     return code;
 }

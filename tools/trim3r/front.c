@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
-#include "cli/options/man_page.h"
 #include "cli/tables/json_output.h"
 #include "cli/text/edit_distance.h"
 #include "cli/text/style.h"
@@ -74,7 +73,6 @@ static void list_commands(const trim3r_extension *added)
     }
 }
 
-#define SUMMARY "turn a few camera frames into a budgeted set of 3-D Gaussians"
 static const char about[] =
     "Turn a few camera frames into a budgeted set of 3-D Gaussians, and draw views of it, in integers.\n";
 static const char data_flow[] = "  import|capture|room > REC.mcap > build > SCENE.ply > render > view.png\n"
@@ -99,25 +97,6 @@ static void print_help(FILE *out)
             "trim3r COMMAND --help lists a command's options. Exit status: 0 done, 1 bad input, 2 bad usage,\n"
             "3 budget or arena too small. Commands with results know --json: one object on stdout.\n",
             heading, end, data_flow);
-}
-
-/* For man(1); commands have pages of their own. */
-static void print_man_page(void)
-{
-    man_page_begin("trim3r", SUMMARY);
-    man_page_section("SYNOPSIS");
-    puts(".B trim3r\n\\fICOMMAND\\fR [\\fIOPTION\\fR...]");
-    man_page_section("DESCRIPTION");
-    man_page_text(about);
-    man_page_section("COMMANDS");
-    for (uint32_t i = 0; i < commands.count; i++) {
-        char page[64];
-        snprintf(page, sizeof page, "trim3r-%s(1)", commands.list[i].name);
-        man_page_item(page, commands.list[i].summary);
-    }
-    man_page_section("EXAMPLES");
-    man_page_text(data_flow);
-    man_page_end();
 }
 
 /* For completion: a command and what it does, a tab between. */
@@ -178,10 +157,6 @@ static int run(int argc, char **argv)
         print_commands();
         return CLI_OK;
     }
-    if (strcmp(argv[1], "--man-page") == 0) {
-        print_man_page();
-        return CLI_OK;
-    }
     const trim3r_command *command = command_named(argv[1]);
     if (command == NULL) {
         return refuse(argv[1]);
@@ -190,7 +165,7 @@ static int run(int argc, char **argv)
     static char name[32];
     snprintf(name, sizeof name, "trim3r %s", command->name);
     argv[1] = name;
-    cli_set_command(command->name, command->summary);
+    cli_set_command(command->name);
     return command->run(argc - 1, argv + 1);
 }
 

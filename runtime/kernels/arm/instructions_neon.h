@@ -5,7 +5,7 @@
 
 #include <arm_neon.h>
 
-#include "kernels/lanes/inline.h"
+#include "kernels/lanes/vectors/inline.h"
 
 #define OF_LANES(instruction) neon_##instruction
 #define OF_QUAD(instruction) neon_##instruction

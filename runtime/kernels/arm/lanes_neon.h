@@ -16,7 +16,7 @@
 typedef quad lanes; /* of 32 bits */
 typedef quad_there lanes_there;
 
-#include "kernels/lanes/operations.h"
+#include "kernels/lanes/vectors/operations.h"
 
 /* 64 bits of each lane. "even" are lanes 0 and 1 and "odd" 2 and 3: products come so, and kernels don't ask. */
 typedef struct wide {
@@ -83,7 +83,7 @@ T3R_LANES_INLINE lanes high_of(wide x)
     return vuzp2q_s32(x.even, x.odd);
 }
 
-#include "kernels/lanes/masks.h"
+#include "kernels/lanes/vectors/masks.h"
 
 T3R_LANES_INLINE quad load_quad(const void *from)
 {

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 
 #include "core/fixed.h"
-#include "kernels/lanes/inline.h"
+#include "kernels/lanes/vectors/inline.h"
 #include "kernels/scatter_bits.h"
 #include "products.h"
 

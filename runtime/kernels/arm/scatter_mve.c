@@ -7,7 +7,7 @@
 #include <arm_mve.h>
 
 #include "core/fixed.h"
-#include "kernels/lanes/inline.h"
+#include "kernels/lanes/vectors/inline.h"
 #include "kernels/scatter_bits.h"
 
 /* What the pixels of a row add, before it is brought to 16 bits: first the even columns, then the odd ones. */

@@ -6,7 +6,7 @@
 
 #include "lanes_neon.h"
 
-#include "kernels/lanes/pixels_of_eight.h"
+#include "kernels/lanes/vectors/pixels_of_eight.h"
 
 #define SCATTER t3r_scatter_neon
 #define T3R_SCATTER T3R_LANES_TARGET

@@ -5,7 +5,7 @@
 #define T3R_KERNELS_LANES_KEYS_LANES_H
 
 #include "kernels/keys.h"
-#include "logarithm_lanes.h"
+#include "kernels/lanes/vectors/logarithm_lanes.h"
 
 T3R_LANES_TARGET void WANTED_ROW(const uint16_t *restrict texture_q4, uint32_t count, uint32_t gamma_q8,
                                  uint16_t *restrict wanted_q10)

@@ -5,8 +5,8 @@
 #define T3R_KERNELS_LANES_PLACE_LANES_H
 
 #include "core/fixed.h"
+#include "kernels/lanes/vectors/records.h"
 #include "kernels/place.h"
-#include "records.h"
 
 /* Splats by field. */
 typedef struct fields {

@@ -5,9 +5,9 @@
 #ifndef T3R_KERNELS_LANES_PROJECT_LANES_H
 #define T3R_KERNELS_LANES_PROJECT_LANES_H
 
+#include "kernels/lanes/vectors/logarithm_lanes.h"
+#include "kernels/lanes/vectors/records.h"
 #include "kernels/project_parts.h"
-#include "logarithm_lanes.h"
-#include "records.h"
 
 static inline T3R_LANES_TARGET lanes held(lanes x, lanes bound)
 {

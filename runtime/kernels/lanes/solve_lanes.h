@@ -5,8 +5,8 @@
 #define T3R_KERNELS_LANES_SOLVE_LANES_H
 
 #include "core/fixed.h"
+#include "kernels/lanes/vectors/records.h"
 #include "kernels/solve_parts.h"
-#include "records.h"
 
 #define PARAMETERS T3R_REFINE_PARAMETERS
 

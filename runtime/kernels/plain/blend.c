@@ -4,7 +4,7 @@
 #include "core/alpha.h"
 #include "core/fixed.h"
 #include "core/memory.h"
-#include "kernels/lanes/lanes.h"
+#include "kernels/lanes/vectors/lanes.h"
 
 /* Computes alphas from exp(-q / 8), by the polynomial around q = 6, squared three times. Nothing is negative, so one
  * unsigned multiplication is enough. It rounds down; only sums over many splats are rounded to the nearest. */

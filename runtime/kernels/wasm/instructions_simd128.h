@@ -6,7 +6,7 @@
 
 #include <wasm_simd128.h>
 
-#include "kernels/lanes/inline.h"
+#include "kernels/lanes/vectors/inline.h"
 
 typedef v128_t quad;
 

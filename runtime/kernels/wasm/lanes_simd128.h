@@ -55,12 +55,12 @@ T3R_LANES_INLINE int32_t least_of_quad(quad x)
     return wasm_i32x4_extract_lane(wasm_i32x4_min(x, wasm_i32x4_shuffle(x, x, 1, 0, 3, 2)), 0);
 }
 
-#include "kernels/lanes/operations.h"
+#include "kernels/lanes/vectors/operations.h"
 
-#include "kernels/lanes/even_odd.h"
-#include "kernels/lanes/masks.h"
+#include "kernels/lanes/vectors/even_odd.h"
+#include "kernels/lanes/vectors/masks.h"
 
-#include "kernels/lanes/alternating.h"
+#include "kernels/lanes/vectors/alternating.h"
 
 T3R_LANES_INLINE lanes alternating(lanes even, lanes odd)
 {

@@ -6,7 +6,7 @@
 
 #include "lanes_simd128.h"
 
-#include "kernels/lanes/pixels_of_eight.h"
+#include "kernels/lanes/vectors/pixels_of_eight.h"
 
 #define SCATTER t3r_scatter_simd128
 #define T3R_SCATTER T3R_LANES_TARGET

@@ -6,6 +6,6 @@
 #define _MM_MALLOC_H_INCLUDED /* gcc's header would include stdlib.h for an allocator that nothing here calls */
 #include <immintrin.h>
 
-#include "kernels/lanes/inline.h"
+#include "kernels/lanes/vectors/inline.h"
 
 #endif

@@ -8,11 +8,9 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 import tarfile
 
-sys.path[:0] = [os.path.join(os.path.dirname(os.path.abspath(__file__)), up) for up in ("..", "../..")]
-from checks import skip  # noqa: E402
+from checks import skip
 
 # what insmod is given, in the order of their needs
 CAPTURE = [f"media/{name}" for name in (

@@ -98,21 +98,12 @@ static void at_every_step(const plan *p, const uint8_t *weights, size_t weight_b
     assert_memory_equal(scene.gaussians, expected, count * sizeof *expected);
 }
 
-static void builds(void **state)
+TEST(builds)
 {
-    (void)state;
     size_t bytes;
     uint8_t *weights = make_weights(small_shape, small_layers, 8, 8, 1, &bytes);
     for (size_t i = 0; i < sizeof plans / sizeof plans[0]; i++) {
         at_every_step(&plans[i], weights, bytes);
     }
     free(weights);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(builds),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

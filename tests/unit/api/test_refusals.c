@@ -60,19 +60,16 @@ static void add(t3r_runtime *rt)
 }
 
 /* What a program compiled with another header says of itself. */
-static void another_interface(void **state)
+TEST(another_interface)
 {
-    (void)state;
     const uint64_t other = t3r_header_interface() + 1;
     t3r_config config = some_config();
     t3r_plan_info plan;
-    t3r_ram_info ram;
     t3r_runtime *rt = opened(&config);
     size_t least, most;
     assert_int_equal(t3r_plan_as(other, &config, &plan), T3R_ERR_INTERFACE);
     assert_int_equal(t3r_plan_bytes_as(other, &config, &least, &most), T3R_ERR_INTERFACE);
     assert_int_equal(t3r_plan_within_as(other, SIZE_MAX, &config), T3R_ERR_INTERFACE);
-    assert_int_equal(t3r_ram_config_as(other, 1 << 20, &config, &ram), T3R_ERR_INTERFACE);
     assert_int_equal(t3r_attach_as(other, &rt, arena, arena_bytes), T3R_ERR_INTERFACE);
     assert_null(rt);
     assert_int_equal(t3r_init_as(other, &rt, arena, arena_bytes, &config), T3R_ERR_INTERFACE);
@@ -88,9 +85,8 @@ static void another_interface(void **state)
                      T3R_ERR_ARGUMENT);
 }
 
-static void missing_pointers(void **state)
+TEST(missing_pointers)
 {
-    (void)state;
     t3r_config config = some_config();
     size_t bytes;
     static const int16_t coefficients[3];
@@ -106,11 +102,6 @@ static void missing_pointers(void **state)
     assert_int_equal(t3r_head_crc(NULL), 0);
     assert_int_equal(t3r_cluster_count(NULL), 0);
     assert_int_equal(t3r_cluster_batch_count(NULL), 0);
-    static const t3r_work_counts counts = {{1}};
-    static const t3r_prices prices = {{1000}};
-    assert_int_equal(t3r_price_of(&counts, NULL, T3R_STAGE_IMAGE), 0);
-    assert_int_equal(t3r_price_of(NULL, &prices, T3R_STAGE_IMAGE), 0);
-    assert_int_equal(t3r_price_of_build(NULL, &prices), 0);
     assert_int_equal(t3r_refinement_passes(NULL), 0);
     assert_int_equal(t3r_render_passes(NULL), 0);
     t3r_runtime *rt = opened(&config);
@@ -145,9 +136,8 @@ static void missing_pointers(void **state)
     assert_int_equal(t3r_stream_overlap(rt, &camera, SIDE, SIDE, &overlap_q8), T3R_ERR_STATE);
 }
 
-static void memory_that_is_no_arena(void **state)
+TEST(memory_that_is_no_arena)
 {
-    (void)state;
     const t3r_config config = some_config();
     t3r_runtime *rt = opened(&config), *found;
     assert_int_equal(t3r_init(&found, arena + 1, arena_bytes, &config), T3R_ERR_ARENA);
@@ -174,9 +164,8 @@ static void memory_that_is_no_arena(void **state)
 }
 
 /* Numbers of the state, one at a time, in an arena that holds an analysis and a scene. */
-static void states_that_cannot_be(void **state)
+TEST(states_that_cannot_be)
 {
-    (void)state;
     t3r_config config = some_config();
     config.keep_analysis = 1;
     t3r_runtime *rt = opened(&config), *found;
@@ -212,9 +201,8 @@ static void states_that_cannot_be(void **state)
     DAMAGED(((t3r_gaussian *)t3r_buffer_at(damaged, T3R_BUFFER_SCENE))->position_q20[2] = INT32_MAX);
 }
 
-static void warm_states_that_cannot_be(void **state)
+TEST(warm_states_that_cannot_be)
 {
-    (void)state;
     t3r_config config = some_config();
     config.warm = 1;
     t3r_runtime *rt = opened(&config), *found;
@@ -235,9 +223,8 @@ static void warm_states_that_cannot_be(void **state)
     DAMAGED(((t3r_cluster *)t3r_buffer_at(damaged, T3R_BUFFER_KEPT_CLUSTERS))->centre_q19[1] = INT32_MAX);
 }
 
-static void streams_that_cannot_be(void **state)
+TEST(streams_that_cannot_be)
 {
-    (void)state;
     t3r_config config = some_config();
     config.stream = config.warm = 1;
     config.max_gaussians = 2 * BUDGET;
@@ -267,9 +254,8 @@ static void streams_that_cannot_be(void **state)
 }
 #undef DAMAGED
 
-static void scenes_out_of_range(void **state)
+TEST(scenes_out_of_range)
 {
-    (void)state;
     const t3r_config config = some_config();
     t3r_runtime *rt = opened(&config);
     const int64_t most = (INT64_C(1) << 62) - 1;
@@ -290,9 +276,8 @@ static void scenes_out_of_range(void **state)
 }
 
 /* A camera too far from the scene's origin for Q20, by each of the three limits that come one after the other. */
-static void cameras_too_far_away(void **state)
+TEST(cameras_too_far_away)
 {
-    (void)state;
     const struct {
         int64_t position_q32, origin_q32;
         int32_t exponent;
@@ -315,9 +300,8 @@ static void cameras_too_far_away(void **state)
 }
 
 /* Strips without depth, pairs of rows, and colour that comes after all of the depth. */
-static void strips(void **state)
+TEST(strips)
 {
-    (void)state;
     t3r_config config = some_config();
     t3r_runtime *rt = opened(&config);
     t3r_frame frame = some_frame();
@@ -359,20 +343,4 @@ static void strips(void **state)
     assert_int_equal(rt->views, 1);
     t3r_scene scene;
     assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_ERR_STATE); /* stereo takes two */
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(another_interface),
-        cmocka_unit_test(missing_pointers),
-        cmocka_unit_test(memory_that_is_no_arena),
-        cmocka_unit_test(states_that_cannot_be),
-        cmocka_unit_test(warm_states_that_cannot_be),
-        cmocka_unit_test(streams_that_cannot_be),
-        cmocka_unit_test(scenes_out_of_range),
-        cmocka_unit_test(cameras_too_far_away),
-        cmocka_unit_test(strips),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,8 +16,9 @@ static uint8_t rgb[PIXELS * 3], depth[PIXELS * 2];
 static uint16_t importance[PIXELS];
 static const uint16_t *const planes[] = {importance};
 
-static void make_view(void)
+static int make_view(void **state)
 {
+    (void)state;
     uint64_t seed = 7;
     for (uint32_t i = 0; i < PIXELS; i++) {
         uint32_t steps = i % SIDE < 13 ? 1500 : 2000 + i / SIDE * 3;
@@ -28,6 +29,7 @@ static void make_view(void)
         depth[2 * i + 1] = (uint8_t)(steps >> 8);
         importance[i] = (uint16_t)(unit_random(&seed) % 5000);
     }
+    return 0;
 }
 
 static t3r_config good_config(void)
@@ -90,9 +92,8 @@ static void expected_of(const t3r_request *request, kept_scene *expected)
     keep(expected, &scene);
 }
 
-static void every_combination(void **state)
+TEST(every_combination)
 {
-    (void)state;
     static kept_scene plain, expected;
     const t3r_config config = good_config();
     expected_of(&(t3r_request){0}, &plain);
@@ -129,9 +130,8 @@ static void every_combination(void **state)
 }
 
 /* Each allocation and head differs from the configured one: none is taken for another. */
-static void every_allocation_and_head(void **state)
+TEST(every_allocation_and_head)
 {
-    (void)state;
     static kept_scene expected;
     const t3r_config config = good_config();
     for (int allocation = T3R_ALLOCATE_CONFIGURED + 1; allocation < T3R_ALLOCATE_GIVEN; allocation++) {
@@ -150,9 +150,8 @@ static void every_allocation_and_head(void **state)
     }
 }
 
-static void a_refused_request_leaves_all_as_it_was(void **state)
+TEST(a_refused_request_leaves_all_as_it_was)
 {
-    (void)state;
     const t3r_request refused[] = {
         {.gaussians = MOST + 1},
         {.max_loss_q8 = T3R_MAX_LOSS_Q8 + 1},
@@ -180,9 +179,8 @@ static void a_refused_request_leaves_all_as_it_was(void **state)
                         scene.count * sizeof *scene.gaussians);
 }
 
-static void a_bounded_loss_needs_its_settings(void **state)
+TEST(a_bounded_loss_needs_its_settings)
 {
-    (void)state;
     const t3r_request requests[] = {
         {.max_loss_q8 = HALF_DB},
         {.max_loss_q8 = HALF_DB, .importance = planes, .importance_stride_bytes = SIDE * 2},
@@ -201,9 +199,8 @@ static void a_bounded_loss_needs_its_settings(void **state)
 }
 
 /* Switched on, each changes the scene; it outlives a reset; switched off, nothing of it is left. */
-static void ablations(void **state)
+TEST(ablations)
 {
-    (void)state;
     static kept_scene plain;
     const t3r_config config = good_config();
     const t3r_ablation switches[] = {{.shuffle = 1}, {.unadapted = 1}};
@@ -224,15 +221,4 @@ static void ablations(void **state)
     }
 }
 
-int main(void)
-{
-    make_view();
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_combination),
-        cmocka_unit_test(every_allocation_and_head),
-        cmocka_unit_test(a_refused_request_leaves_all_as_it_was),
-        cmocka_unit_test(a_bounded_loss_needs_its_settings),
-        cmocka_unit_test(ablations),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+ALL_TESTS_WITH(make_view, NULL)

@@ -1,11 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The state after errors and cancels: refused calls leave what they promise to leave, and a damaged copy is refused. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "budget/budget.h"
 #include "budget/cluster_texture.h"
@@ -14,6 +9,7 @@
 #include "rgbd_frame.h"
 #include "state/state.h"
 #include "superclusters/superclusters.h"
+#include "test.h"
 
 enum { SIDE = 48, BUDGET = 300 };
 
@@ -82,9 +78,8 @@ static uint64_t hash_of(const t3r_scene *scene)
     return t3r_hash_bytes(T3R_HASH_START, (const uint8_t *)scene->gaussians, scene->count * sizeof *scene->gaussians);
 }
 
-static void cancelled_rebuild_keeps_the_analysis(void **state)
+TEST(cancelled_rebuild_keeps_the_analysis)
 {
-    (void)state;
     t3r_scene scene, again;
     t3r_runtime *rt = analysed(&scene);
     uint64_t before = hash_of(&scene);
@@ -99,9 +94,8 @@ static void cancelled_rebuild_keeps_the_analysis(void **state)
 }
 
 /* In an arena that keeps little of a tile's splats, refinement asks more often than once for each tile and view. */
-static void every_call_of_refinement_may_cancel(void **state)
+TEST(every_call_of_refinement_may_cancel)
 {
-    (void)state;
     enum { TILES = (SIDE / T3R_TILE_SIDE) * (SIDE / T3R_TILE_SIDE), MANY_CALLS = 10000 };
     t3r_scene scene;
     t3r_runtime *rt = analysed(&scene);
@@ -121,9 +115,8 @@ static void every_call_of_refinement_may_cancel(void **state)
     assert_true(hash_of(&scene) == before);
 }
 
-static void refused_view_gives_no_stale_scene(void **state)
+TEST(refused_view_gives_no_stale_scene)
 {
-    (void)state;
     t3r_scene scene;
     t3r_runtime *rt = analysed(&scene);
     uint64_t before = hash_of(&scene);
@@ -140,9 +133,8 @@ static void refused_view_gives_no_stale_scene(void **state)
     assert_true(hash_of(&scene) == before);
 }
 
-static void empty_depth_is_refused_at_the_door(void **state)
+TEST(empty_depth_is_refused_at_the_door)
 {
-    (void)state;
     t3r_scene scene;
     t3r_runtime *rt = analysed(&scene);
     assert_int_equal(t3r_reset(rt), T3R_OK);
@@ -242,9 +234,8 @@ static void wild_head(t3r_runtime *rt)
     rt->build.head = T3R_HEAD_COUNT;
 }
 
-static void damaged_copies_are_refused(void **state)
+TEST(damaged_copies_are_refused)
 {
-    (void)state;
     const damage damages[] = {
         no_focal_length, no_depth_unit,        wild_exponent,  wild_median,         wild_label,       wild_cluster,
         greedy_clusters, order_without_an_end, wild_gaussian,  label_without_depth, depth_of_nothing, wild_valid_points,
@@ -277,9 +268,8 @@ static uint32_t far_labels(const t3r_runtime *rt)
 
 /* With labels of nine bits a copy goes on as well, a damaged one is refused, and an analysis of the same planes, which
  * hold the labels of the one before, finds the same. */
-static void many_clusters_are_checked(void **state)
+TEST(many_clusters_are_checked)
 {
-    (void)state;
     t3r_scene scene;
     t3r_runtime *rt = analysed_by(MANY, &scene);
     const uint64_t before = hash_of(&scene);
@@ -303,9 +293,8 @@ static void many_clusters_are_checked(void **state)
 }
 
 /* A configuration that leaves a choice to t3r_init(): it has the same layout, but stages count on what was chosen. */
-static void choices_that_are_still_open_are_refused(void **state)
+TEST(choices_that_are_still_open_are_refused)
 {
-    (void)state;
     t3r_scene scene;
     for (uint32_t open = 0; open < 3; open++) {
         t3r_runtime *rt = analysed_by(0, &scene);
@@ -317,18 +306,4 @@ static void choices_that_are_still_open_are_refused(void **state)
         rt->config.cluster_batches = open == 2 ? 0 : rt->config.cluster_batches;
         assert_int_equal(t3r_attach(&rt, copy, arena_bytes), open == 0 ? T3R_OK : T3R_ERR_EPOCH);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cancelled_rebuild_keeps_the_analysis),
-        cmocka_unit_test(every_call_of_refinement_may_cancel),
-        cmocka_unit_test(refused_view_gives_no_stale_scene),
-        cmocka_unit_test(empty_depth_is_refused_at_the_door),
-        cmocka_unit_test(damaged_copies_are_refused),
-        cmocka_unit_test(many_clusters_are_checked),
-        cmocka_unit_test(choices_that_are_still_open_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

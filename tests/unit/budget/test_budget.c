@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The budget stage alone: exact quotas in every mode, nested sets, and counts as large as configurations allow. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "budget/budget.h"
 #include "budget/cluster_texture.h"
 #include "core/fixed.h"
+#include "test.h"
 
 enum { SIDE = 96, PIXELS = SIDE * SIDE, CLUSTERS = 40, WORDS = (PIXELS + 31) / 32 };
 
@@ -63,9 +59,8 @@ static t3r_budget_settings settings_of(t3r_allocation allocation, uint32_t gauss
                                  .seed = 1};
 }
 
-static void every_mode_meets_every_budget(void **state)
+TEST(every_mode_meets_every_budget)
 {
-    (void)state;
     t3r_cluster clusters[CLUSTERS + 1];
     t3r_view view = made_up_view(clusters);
     t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
@@ -84,9 +79,8 @@ static void every_mode_meets_every_budget(void **state)
     }
 }
 
-static void sets_are_nested(void **state)
+TEST(sets_are_nested)
 {
-    (void)state;
     t3r_cluster clusters[CLUSTERS + 1];
     t3r_view view = made_up_view(clusters);
     const t3r_allocation flat[] = {T3R_ALLOCATE_PIXEL, T3R_ALLOCATE_UNIFORM, T3R_ALLOCATE_RANDOM};
@@ -104,9 +98,8 @@ static void sets_are_nested(void **state)
 }
 
 /* `paper`: the lowest textures give first, a cluster is cut only so far that Z is exact. */
-static void paper_takes_the_lowest_textures_first(void **state)
+TEST(paper_takes_the_lowest_textures_first)
 {
-    (void)state;
     t3r_cluster clusters[CLUSTERS + 1];
     t3r_view view = made_up_view(clusters);
     t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
@@ -136,9 +129,8 @@ static void paper_takes_the_lowest_textures_first(void **state)
 }
 
 /* Points as given, no planes of that size needed: products must hold 2^28 points. */
-static void largest_counts_do_not_overflow(void **state)
+TEST(largest_counts_do_not_overflow)
 {
-    (void)state;
     t3r_cluster scratch[CLUSTERS + 1];
     t3r_view view = made_up_view(scratch);
     for (uint32_t shared = 1; shared <= 4; shared++) {
@@ -158,9 +150,8 @@ static void largest_counts_do_not_overflow(void **state)
 }
 
 /* Covered and doubtful points: none until all others are retained, the doubtful last of all; Z stays exact. */
-static void deferred_comes_last(void **state)
+TEST(deferred_comes_last)
 {
-    (void)state;
     t3r_cluster clusters[CLUSTERS + 1];
     t3r_view view = made_up_view(clusters);
     t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
@@ -216,9 +207,8 @@ static void deferred_comes_last(void **state)
 }
 
 /* Beside the busiest a flat SuperCluster counts a thousandth and no less, however steep the power. */
-static void flat_ones_get_a_thousandth(void **state)
+TEST(flat_ones_get_a_thousandth)
 {
-    (void)state;
     t3r_cluster clusters[CLUSTERS + 1];
     t3r_view view = made_up_view(clusters);
     for (uint32_t k = 0; k < CLUSTERS; k++) {
@@ -241,9 +231,8 @@ static int by_texture(const void *a, const void *b)
 }
 
 /* The same textures in other places, by the seed; empty clusters stay out of it, ranks and quotas follow. */
-static void textures_are_shuffled(void **state)
+TEST(textures_are_shuffled)
 {
-    (void)state;
     t3r_cluster before[CLUSTERS + 1], clusters[CLUSTERS + 1];
     t3r_view view = made_up_view(before);
     t3r_cluster_texture(&view, 1, before, CLUSTERS);
@@ -284,9 +273,8 @@ static void textures_are_shuffled(void **state)
 }
 
 /* Whatever the clusters count, no more than Z points are retained: the scene has room for no more. */
-static void wild_counts_stay_within_the_budget(void **state)
+TEST(wild_counts_stay_within_the_budget)
 {
-    (void)state;
     static const uint32_t claims[] = {PIXELS, 1u << 28, UINT32_MAX};
     for (size_t c = 0; c < sizeof claims / sizeof claims[0]; c++) {
         for (int mode = T3R_ALLOCATE_CONFIGURED + 1; mode < T3R_ALLOCATE_COUNT; mode++) {
@@ -309,9 +297,8 @@ static void wild_counts_stay_within_the_budget(void **state)
     }
 }
 
-static void an_order_is_of_all_clusters(void **state)
+TEST(an_order_is_of_all_clusters)
 {
-    (void)state;
     t3r_cluster clusters[CLUSTERS + 1];
     t3r_view view = made_up_view(clusters);
     t3r_cluster_texture(&view, 1, clusters, CLUSTERS);
@@ -326,20 +313,4 @@ static void an_order_is_of_all_clusters(void **state)
         clusters[k].order = order;
     }
     assert_true(t3r_are_ranked(clusters, CLUSTERS));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_mode_meets_every_budget),
-        cmocka_unit_test(sets_are_nested),
-        cmocka_unit_test(paper_takes_the_lowest_textures_first),
-        cmocka_unit_test(largest_counts_do_not_overflow),
-        cmocka_unit_test(deferred_comes_last),
-        cmocka_unit_test(flat_ones_get_a_thousandth),
-        cmocka_unit_test(textures_are_shuffled),
-        cmocka_unit_test(wild_counts_stay_within_the_budget),
-        cmocka_unit_test(an_order_is_of_all_clusters),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,9 +13,8 @@ static const t3r_budget_evidence plain = {
 };
 
 /* slope / ((loss + 1/4) / 17 yardstick), rounded up */
-static void as_in_double(void **state)
+TEST(as_in_double)
 {
-    (void)state;
     assert_int_equal(t3r_predict_budget(&plain, 100000, 128), (uint32_t)ceil(200000 / (0.75 / 17 * 500)));
     uint64_t seed = 5;
     for (int turn = 0; turn < 20000; turn++) {
@@ -38,9 +37,8 @@ static void as_in_double(void **state)
     }
 }
 
-static void more_loss_fewer_gaussians(void **state)
+TEST(more_loss_fewer_gaussians)
 {
-    (void)state;
     uint32_t before = UINT32_MAX;
     for (uint32_t loss_q8 = 1; loss_q8 <= T3R_MAX_LOSS_Q8; loss_q8++) {
         uint32_t now = t3r_predict_budget(&plain, 100000, loss_q8);
@@ -49,9 +47,8 @@ static void more_loss_fewer_gaussians(void **state)
     }
 }
 
-static void extremes(void **state)
+TEST(extremes)
 {
-    (void)state;
     const uint32_t worst = 1 << 24, most_points = 1u << 28;
     t3r_budget_evidence e = {.points = most_points, .trial = most_points / 100, .error_q8 = {worst, 0}};
     assert_int_equal(t3r_predict_budget(&e, T3R_MAX_GAUSSIANS, 1), T3R_MAX_GAUSSIANS);
@@ -68,14 +65,4 @@ static void extremes(void **state)
     assert_int_equal(t3r_predict_budget(&e, 1000, 1), 248);
     e = (t3r_budget_evidence){.points = 2, .trial = 1};
     assert_int_equal(t3r_predict_budget(&e, 2, T3R_MAX_LOSS_Q8), 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(as_in_double),
-        cmocka_unit_test(more_loss_fewer_gaussians),
-        cmocka_unit_test(extremes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,13 +2,8 @@
 /* The allocation `given`: the points of highest importance and no others, the density that heads are told, and that
  * nothing of it stays behind for the other allocations. The references are made here, by sorting and by counting. */
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "budget/budget.h"
 #include "budget/importance.h"
@@ -16,6 +11,7 @@
 #include "core/hash.h"
 #include "rgbd_frame.h"
 #include "state/state.h"
+#include "test.h"
 
 enum {
     W = 61, /* rows begin within words of the mask */
@@ -115,9 +111,8 @@ static uint32_t sorted_points(point points[POINTS])
     return valid;
 }
 
-static void the_highest_are_retained(void **state)
+TEST(the_highest_are_retained)
 {
-    (void)state;
     static point points[POINTS];
     t3r_view views[VIEWS];
     t3r_cluster clusters[CLUSTERS + 1];
@@ -168,9 +163,8 @@ static double window_share(const t3r_view *view, int x, int y)
     return log_share(retained, valid);
 }
 
-static void density_is_counted(void **state)
+TEST(density_is_counted)
 {
-    (void)state;
     t3r_view views[VIEWS];
     t3r_cluster clusters[CLUSTERS + 1];
     const uint16_t *const planes[VIEWS] = {plane[0], plane[1]};
@@ -292,9 +286,8 @@ static void expect_highest(const t3r_runtime *rt, const t3r_scene *scene, uint32
     }
 }
 
-static void nothing_stays_behind(void **state)
+TEST(nothing_stays_behind)
 {
-    (void)state;
     t3r_view made_up[VIEWS];
     t3r_cluster clusters[CLUSTERS + 1];
     make_up(made_up, clusters, 40);
@@ -349,9 +342,8 @@ static void nothing_stays_behind(void **state)
 }
 
 /* A copy of a kept analysis goes on with new importances, whatever its masks held. */
-static void a_copy_goes_on(void **state)
+TEST(a_copy_goes_on)
 {
-    (void)state;
     t3r_view made_up[VIEWS];
     t3r_cluster clusters[CLUSTERS + 1];
     make_up(made_up, clusters, 65535);
@@ -371,15 +363,4 @@ static void a_copy_goes_on(void **state)
     assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_STATE); /* `given` goes by what comes with the request */
     assert_int_equal(t3r_rebuild(rt, &given, &scene), T3R_OK);
     assert_true(hash_of(&scene) == before);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_highest_are_retained),
-        cmocka_unit_test(density_is_counted),
-        cmocka_unit_test(nothing_stays_behind),
-        cmocka_unit_test(a_copy_goes_on),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Misuse reaches the caller's T3R_ASSERT and is still refused; what a file could bring does not. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "noted_assert.h"
+#include "test.h"
 #include "trim3r.h"
 
 static int noted;
@@ -29,9 +25,8 @@ static t3r_runtime *fresh(void)
     return rt;
 }
 
-static void misuse_is_asserted_and_refused(void **state)
+TEST(misuse_is_asserted_and_refused)
 {
-    (void)state;
     t3r_runtime *rt = fresh();
     t3r_scene scene;
     assert_int_equal(t3r_reconstruct(NULL, NULL, &scene), T3R_ERR_ARGUMENT);
@@ -44,9 +39,8 @@ static void misuse_is_asserted_and_refused(void **state)
     assert_int_equal(noted, 4);
 }
 
-static void bad_input_is_refused_without_assertion(void **state)
+TEST(bad_input_is_refused_without_assertion)
 {
-    (void)state;
     t3r_runtime *rt = fresh();
     uint8_t pixels[SIDE * SIDE * 3] = {0};
     t3r_frame frame = {.format = T3R_PIXEL_RGB24,
@@ -70,13 +64,4 @@ static void bad_input_is_refused_without_assertion(void **state)
     assert_int_equal(t3r_scene_begin(rt, &where), T3R_OK);
     assert_int_equal(t3r_scene_append(rt, &unsound), T3R_ERR_ARGUMENT);
     assert_int_equal(noted, 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(misuse_is_asserted_and_refused),
-        cmocka_unit_test(bad_input_is_refused_without_assertion),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,9 +5,8 @@
 #include "core/hash.h"
 #include "core/little_endian.h"
 
-static void read(void **state)
+TEST(read)
 {
-    (void)state;
     static const uint8_t bytes[] = {0x01, 0x82, 0x03, 0x84, 0x05, 0x86, 0x07, 0x88};
     assert_int_equal(t3r_load_le16(bytes), 0x8201);
     assert_int_equal(t3r_load_le16(bytes + 1), 0x0382);
@@ -19,9 +18,8 @@ static void read(void **state)
     assert_int_equal(t3r_load_le64(ones), UINT64_MAX);
 }
 
-static void write(void **state)
+TEST(write)
 {
-    (void)state;
     uint8_t bytes[8] = {0};
     t3r_store_le16(bytes + 1, 0x8201);
     const uint8_t two[8] = {0, 0x01, 0x82};
@@ -34,9 +32,8 @@ static void write(void **state)
     assert_memory_equal(bytes, eight, sizeof eight);
 }
 
-static void table_in_place(void **state)
+TEST(table_in_place)
 {
-    (void)state;
     static _Alignas(int16_t) const uint8_t bytes[] = {0x01, 0x82, 0xfe, 0x7f};
     const t3r_le16 *table = (const void *)bytes;
     assert_int_equal(t3r_from_le16(table[0]), INT16_MIN + 0x201);
@@ -44,9 +41,8 @@ static void table_in_place(void **state)
 }
 
 /* The vectors of FNV-1a's authors. */
-static void hash_of_text(void **state)
+TEST(hash_of_text)
 {
-    (void)state;
     static const uint8_t text[] = "foobar";
     assert_int_equal(t3r_hash_bytes(T3R_HASH_START, text, 0), UINT64_C(0xcbf29ce484222325));
     assert_int_equal(t3r_hash_u8(T3R_HASH_START, 'a'), UINT64_C(0xaf63dc4c8601ec8c));
@@ -55,9 +51,8 @@ static void hash_of_text(void **state)
 }
 
 /* A number is hashed as its bytes, lowest first. */
-static void hash_of_numbers(void **state)
+TEST(hash_of_numbers)
 {
-    (void)state;
     static const uint8_t bytes[] = {0x01, 0x82, 0x03, 0x84, 0x05, 0x86, 0x07, 0x88};
     const uint16_t values[] = {0x8201, 0x8403, 0x8605, 0x8807};
     const uint64_t start = t3r_hash_u8(T3R_HASH_START, 7);
@@ -67,13 +62,4 @@ static void hash_of_numbers(void **state)
     assert_int_equal(t3r_hash_u16(start, 0x8201), t3r_hash_bytes(start, bytes, 2));
     assert_int_equal(t3r_hash_u32(start, 0x84038201), t3r_hash_bytes(start, bytes, 4));
     assert_int_equal(t3r_hash_u64(start, UINT64_C(0x8807860584038201)), t3r_hash_bytes(start, bytes, 8));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(read),         cmocka_unit_test(write),           cmocka_unit_test(table_in_place),
-        cmocka_unit_test(hash_of_text), cmocka_unit_test(hash_of_numbers),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

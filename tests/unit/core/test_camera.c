@@ -12,9 +12,8 @@ static t3r_camera plain_camera(void)
     return camera;
 }
 
-static void ranges(void **state)
+TEST(ranges)
 {
-    (void)state;
     t3r_camera camera = plain_camera();
     assert_int_equal(t3r_camera_check(&camera), T3R_OK);
     assert_int_equal(t3r_camera_check(NULL), T3R_ERR_ARGUMENT);
@@ -56,9 +55,8 @@ static void both_sides(const t3r_camera *within, const t3r_camera *beyond)
     assert_int_equal(t3r_camera_check(beyond), T3R_ERR_CAMERA);
 }
 
-static void bounds(void **state)
+TEST(bounds)
 {
-    (void)state;
     const int32_t pixels = 16384 << 16, component = 3 << 29;
 #define BOUND(field, last, first)                                                                                      \
     do {                                                                                                               \
@@ -101,9 +99,8 @@ static void bounds(void **state)
     assert_int_equal(t3r_camera_check(&camera), T3R_OK);
 }
 
-static void rotation(void **state)
+TEST(rotation)
 {
-    (void)state;
     uint64_t seed = 2;
     double worst = 0;
     for (int turn = 0; turn < 20000; turn++) {
@@ -136,9 +133,8 @@ static void rotation(void **state)
     assert_memory_equal(matrix, expected, sizeof matrix);
 }
 
-static void resized(void **state)
+TEST(resized)
 {
-    (void)state;
     uint64_t seed = 4;
     for (int turn = 0; turn < 2000; turn++) {
         t3r_camera camera = plain_camera();
@@ -164,11 +160,4 @@ static void resized(void **state)
     assert_int_equal(got.fx_q16, INT32_MAX);
     assert_int_equal(got.cx_q16, INT32_MIN);
     assert_int_equal(t3r_camera_check(&got), T3R_ERR_CAMERA);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(ranges), cmocka_unit_test(bounds), cmocka_unit_test(rotation),
-                                       cmocka_unit_test(resized)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,9 +7,8 @@
 #include "stereo/stereo_planes.h"
 #include "trim3r.h"
 
-static void parts(void **state)
+TEST(parts)
 {
-    (void)state;
     static uint8_t memory[5 * T3R_ARENA_ALIGN];
     t3r_cut cut = t3r_cut_of(memory, sizeof memory);
     assert_ptr_equal(t3r_take(&cut, 1), memory);
@@ -20,9 +19,8 @@ static void parts(void **state)
 }
 
 /* Parts are disjoint, each as long as the table says, and the last ends at the end. */
-static void matching(void **state)
+TEST(matching)
 {
-    (void)state;
     static const uint32_t sizes[][2] = {{8, 8}, {9, 11}, {97, 31}, {130, 129}, {320, 513}};
     for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
         for (uint32_t disparities = 16; disparities <= T3R_PATH_MOST; disparities += 48) {
@@ -44,9 +42,8 @@ static void matching(void **state)
     }
 }
 
-static void stereo(void **state)
+TEST(stereo)
 {
-    (void)state;
     for (uint32_t side = T3R_STEREO_LEAST_SIDE; side <= 1024; side += 1 + side / 7) {
         for (uint32_t disparities = 16; disparities <= T3R_PATH_MOST; disparities += 80) {
             const size_t left = T3R_STEREO_LEFT_(side, side), right = T3R_STEREO_RIGHT_(side, side, disparities);
@@ -60,10 +57,4 @@ static void stereo(void **state)
             free(work);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(parts), cmocka_unit_test(matching), cmocka_unit_test(stereo)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

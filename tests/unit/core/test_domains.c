@@ -22,9 +22,8 @@
 #define PRODUCTS_HASH UINT64_C(0xd7300b7710acd701)
 
 /* Every mantissa, and every exponent of some: the table sees 23 bits of the mantissa, the exponent is added. */
-static void logarithm(void **state)
+TEST(logarithm)
 {
-    (void)state;
     double worst = 0;
     uint64_t hash = T3R_HASH_START;
     for (uint32_t mantissa = UINT32_C(1) << 23; mantissa < UINT32_C(1) << 24; mantissa++) {
@@ -53,9 +52,8 @@ static void logarithm(void **state)
     assert_int_equal(hash, LOGARITHM_HASH);
 }
 
-static void power(void **state)
+TEST(power)
 {
-    (void)state;
     double worst = 0;
     uint64_t hash = T3R_HASH_START;
     for (int32_t x = -16 * 65536; x <= 15 * 65536; x++) {
@@ -68,9 +66,8 @@ static void power(void **state)
     assert_int_equal(hash, POWER_HASH);
 }
 
-static void power_in_thousands(void **state)
+TEST(power_in_thousands)
 {
-    (void)state;
     double worst = 0;
     uint64_t hash = T3R_HASH_START;
     for (int32_t x = -16 * 1024; x <= 0; x++) {
@@ -91,9 +88,8 @@ static void holds_about(uint64_t root)
 }
 
 /* Every square, and its neighbours, of roots of one step of Newton's (below 2^21); of the others, some. */
-static void square_root(void **state)
+TEST(square_root)
 {
-    (void)state;
     for (uint64_t root = 0; root < UINT64_C(1) << 21; root++) {
         holds_about(root);
     }
@@ -109,9 +105,8 @@ static void square_root(void **state)
 }
 
 /* 2^62 over every leading 16 bits of a number and about each, at every place. */
-static void reciprocal(void **state)
+TEST(reciprocal)
 {
-    (void)state;
     uint64_t hash = T3R_HASH_START;
     for (uint32_t leading = 1 << 15; leading < 1 << 16; leading++) {
         for (uint32_t place = 0; place <= 16; place++) {
@@ -129,9 +124,8 @@ static void reciprocal(void **state)
 }
 
 /* Every alpha: q from below 0 to beyond the last visible one, at the largest opacity and at others. */
-static void alpha(void **state)
+TEST(alpha)
 {
-    (void)state;
     double worst = 0;
     uint64_t hash = T3R_HASH_START;
     const uint16_t opacities[] = {257, 1000, 32768, 65000, UINT16_MAX};
@@ -152,9 +146,8 @@ static void alpha(void **state)
 }
 
 /* x / d in Q24 for every small d, those around powers of two, and the largest. */
-static void quotient(void **state)
+TEST(quotient)
 {
-    (void)state;
     uint64_t hash = T3R_HASH_START;
     for (uint32_t bit = 0; bit <= 30; bit++) {
         const uint32_t power = UINT32_C(1) << bit;
@@ -172,9 +165,8 @@ static void quotient(void **state)
 }
 
 /* Every a by 1,000 b: the first, the last, and those around powers of two. */
-static void products(void **state)
+TEST(products)
 {
-    (void)state;
     uint64_t hash = T3R_HASH_START;
     for (int32_t k = 0; k < 1000; k++) {
         const int32_t bit = k % 16, about = k / 16 - 31;
@@ -194,14 +186,4 @@ static void products(void **state)
         hash = t3r_hash_u32(hash, sum);
     }
     assert_int_equal(hash, PRODUCTS_HASH);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(logarithm),   cmocka_unit_test(power),      cmocka_unit_test(power_in_thousands),
-        cmocka_unit_test(square_root), cmocka_unit_test(reciprocal), cmocka_unit_test(alpha),
-        cmocka_unit_test(quotient),    cmocka_unit_test(products),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

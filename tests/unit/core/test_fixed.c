@@ -6,9 +6,8 @@
 #include "core/fixed.h"
 #include "kernels/wavelet_rows.h"
 
-static void square_root(void **state)
+TEST(square_root)
 {
-    (void)state;
     uint64_t seed = 1;
     for (uint64_t x = 0; x < 70000; x++) {
         uint64_t root = t3r_isqrt64(x);
@@ -25,9 +24,8 @@ static void square_root(void **state)
     assert_int_equal(t3r_isqrt64(UINT64_MAX), UINT32_MAX);
 }
 
-static void logarithm(void **state)
+TEST(logarithm)
 {
-    (void)state;
     const double bound = 4.0; /* 2^-14 in Q16 */
     double worst = 0;
     int32_t before = -1;
@@ -46,9 +44,8 @@ static void logarithm(void **state)
     }
 }
 
-static void power(void **state)
+TEST(power)
 {
-    (void)state;
     double worst = 0;
     uint32_t before = 0;
     for (int32_t x = -16 * 65536; x < 15 * 65536; x++) {
@@ -64,9 +61,8 @@ static void power(void **state)
     assert_int_equal(t3r_exp2_q16(14 * 65536), 1u << 30);
 }
 
-static void division(void **state)
+TEST(division)
 {
-    (void)state;
     for (int64_t d = 1; d < 40; d++) {
         for (int64_t n = -300; n <= 300; n++) {
             const int64_t exact = (int64_t)floor((2.0 * (double)n + (double)d) / (2.0 * (double)d));
@@ -88,9 +84,8 @@ static void division(void **state)
     assert_int_equal(t3r_round_div32(-most_32, most_32), -1);
 }
 
-static void shifts(void **state)
+TEST(shifts)
 {
-    (void)state;
     for (int32_t x = -4100; x <= 4100; x++) {
         for (uint32_t shift = 0; shift < 12; shift++) {
             int64_t exact = (int64_t)floor(ldexp(x, -(int)shift) + 0.5);
@@ -109,9 +104,8 @@ static void shifts(void **state)
 }
 
 /* 64 bits: halves and their neighbours, up to the largest value that a shift allows. */
-static void wide_shifts(void **state)
+TEST(wide_shifts)
 {
-    (void)state;
     for (uint32_t shift = 1; shift <= 62; shift++) {
         const int64_t half = INT64_C(1) << (shift - 1), most = (INT64_MAX - half) >> shift;
         for (int64_t whole = most; whole >= -most; whole = whole > 0 ? whole / 3 - 1 : whole * 3 - 1) {
@@ -133,9 +127,8 @@ static void wide_shifts(void **state)
 }
 
 /* 32 bits: at the limits of numbers and shifts. */
-static void shifts_of_extremes(void **state)
+TEST(shifts_of_extremes)
 {
-    (void)state;
     const int32_t edges[] = {INT32_MIN, INT32_MIN + 1, -1, 0, 1, INT32_MAX - 1, INT32_MAX};
     for (size_t i = 0; i < sizeof edges / sizeof edges[0]; i++) {
         for (int32_t shift = 1; shift <= 62; shift++) {
@@ -148,9 +141,8 @@ static void shifts_of_extremes(void **state)
     }
 }
 
-static void sizes_and_clamps(void **state)
+TEST(sizes_and_clamps)
 {
-    (void)state;
     for (int32_t x = -20; x <= 20; x++) {
         assert_int_equal(t3r_abs32(x), abs(x));
         assert_int_equal(t3r_abs64(x), abs(x));
@@ -169,9 +161,8 @@ static void sizes_and_clamps(void **state)
 }
 
 /* Against another implementation of the mixing. */
-static void mixing(void **state)
+TEST(mixing)
 {
-    (void)state;
     static const uint32_t mixed[][2] = {{0, 0},
                                         {1, 0x688990c0},
                                         {2, 0xd1132181},
@@ -186,9 +177,8 @@ static void mixing(void **state)
 }
 
 /* The 16-bit form of the product is the one rounding, bit for bit, for each constant and every sample. */
-static void small_product(void **state)
+TEST(small_product)
 {
-    (void)state;
     const int16_t constants[] = {0, 1, T3R_DB2_PREDICT_Q15, T3R_DB2_UPDATE_Q15, T3R_DB2_UPDATE_NEXT_Q15, 16383};
     for (size_t c = 0; c < sizeof constants / sizeof constants[0]; c++) {
         for (int32_t a = INT16_MIN; a <= INT16_MAX; a++) {
@@ -198,9 +188,8 @@ static void small_product(void **state)
 }
 
 /* Against division, for every sign and size, around all boundaries. */
-static void divisor(void **state)
+TEST(divisor)
 {
-    (void)state;
     uint64_t seed = 5;
     for (int turn = 0; turn < 200000; turn++) {
         const uint32_t most = UINT32_C(1) << unit_between(&seed, 0, 30);
@@ -218,14 +207,4 @@ static void divisor(void **state)
             assert_int_equal(t3r_divide_q24(&by, sign * x, limit), want);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(square_root),        cmocka_unit_test(logarithm),        cmocka_unit_test(power),
-        cmocka_unit_test(division),           cmocka_unit_test(shifts),           cmocka_unit_test(wide_shifts),
-        cmocka_unit_test(shifts_of_extremes), cmocka_unit_test(sizes_and_clamps), cmocka_unit_test(mixing),
-        cmocka_unit_test(small_product),      cmocka_unit_test(divisor)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

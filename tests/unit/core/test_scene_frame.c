@@ -31,9 +31,8 @@ static int32_t placed(int64_t position_q32, int64_t origin_q32, int32_t exponent
 }
 
 /* Offsets that a double holds exactly, times a power of two. */
-static void positions(void **state)
+TEST(positions)
 {
-    (void)state;
     uint64_t seed = 3;
     for (int turn = 0; turn < 20000; turn++) {
         const int32_t exponent = turn % (T3R_EXPONENT_MOST - T3R_EXPONENT_LEAST + 1) + T3R_EXPONENT_LEAST;
@@ -46,9 +45,8 @@ static void positions(void **state)
     }
 }
 
-static void bounds_of_positions(void **state)
+TEST(bounds_of_positions)
 {
-    (void)state;
     const int64_t most = T3R_POSITION_MOST_Q20;
     for (int sign = -1; sign <= 1; sign += 2) {
         assert_int_equal(placed(sign * most, 0, -12), sign * most);
@@ -67,9 +65,8 @@ static void bounds_of_positions(void **state)
     }
 }
 
-static void turned(void **state)
+TEST(turned)
 {
-    (void)state;
     t3r_camera camera = {.rotation_q30 = {1 << 29, 1 << 29, -(1 << 29), 3 << 28}};
     const t3r_scene_frame frame = {.exponent = 3};
     t3r_pose pose;
@@ -80,9 +77,8 @@ static void turned(void **state)
 }
 
 /* A unit's 32 highest bits, and raw steps times them in scene units: a double holds the product exactly. */
-static void depth_steps(void **state)
+TEST(depth_steps)
 {
-    (void)state;
     uint64_t seed = 6;
     for (int turn = 0; turn < 64 * 49 * 4; turn++) {
         const uint64_t noise = unit_random(&seed);
@@ -98,15 +94,4 @@ static void depth_steps(void **state)
             assert_int_equal(t3r_depth_q20(scale, raws[i]), (int32_t)fmin(exact, T3R_POSITION_MOST_Q20 - 1));
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(positions),
-        cmocka_unit_test(bounds_of_positions),
-        cmocka_unit_test(turned),
-        cmocka_unit_test(depth_steps),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

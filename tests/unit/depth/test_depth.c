@@ -38,9 +38,8 @@ static void hole(canvas *c, int x0, int y0, int x1, int y1)
     }
 }
 
-static void confidence(void **state)
+TEST(confidence)
 {
-    (void)state;
     canvas *c = canvas_new(9);
     hole(c, 3, 4, 5, 6);
     t3r_depth_validity(&c->view);
@@ -50,9 +49,8 @@ static void confidence(void **state)
     free(c);
 }
 
-static void interpolated(void **state)
+TEST(interpolated)
 {
-    (void)state;
     canvas *c = canvas_new(0);
     /* a ramp along x with a gap of three, in a row alone */
     for (int x = 0; x < W; x++) {
@@ -70,9 +68,8 @@ static void interpolated(void **state)
 }
 
 /* Only pixels with measured ones within the radius on both sides are filled, however the hole looks. */
-static void reach(void **state)
+TEST(reach)
 {
-    (void)state;
     for (uint32_t radius = 0; radius <= 8; radius++) {
         for (int size = 1; size <= 12; size++) {
             canvas *c = canvas_new(500);
@@ -96,9 +93,8 @@ static void reach(void **state)
 }
 
 /* Holes at the border are bracketed along it only; a hole in the corner not at all. */
-static void border(void **state)
+TEST(border)
 {
-    (void)state;
     canvas *c = canvas_new(500);
     hole(c, 0, 6, 1, 8);
     hole(c, W - 1, 0, W, 1);
@@ -112,9 +108,8 @@ static void border(void **state)
 }
 
 /* Across an edge the colour decides, and no depth is invented between the surfaces. */
-static void edge(void **state)
+TEST(edge)
 {
-    (void)state;
     canvas *c = canvas_new(0);
     for (int x = 0; x < W; x++) {
         c->depth[5 * W + x] = x < 10 ? 1000 : 2000;
@@ -143,9 +138,8 @@ static void edge(void **state)
 }
 
 /* Relative difference: 1/16 of the lesser one is still one surface. */
-static void agreement(void **state)
+TEST(agreement)
 {
-    (void)state;
     const uint16_t others[] = {1700, 1701};
     const uint16_t between[] = {1650, 1600};
     for (int i = 0; i < 2; i++) {
@@ -160,9 +154,8 @@ static void agreement(void **state)
 }
 
 /* Of two brackets the narrower; across when they are as wide. */
-static void nearer_pair(void **state)
+TEST(nearer_pair)
 {
-    (void)state;
     canvas *c = canvas_new(0);
     c->depth[5 * W + 4] = c->depth[5 * W + 8] = 1000;
     c->depth[4 * W + 6] = c->depth[6 * W + 6] = 3000;
@@ -176,9 +169,8 @@ static void nearer_pair(void **state)
 }
 
 /* Filled pixels seed nothing: every one lies between two measured ones, whose range holds it. */
-static void never_seeds(void **state)
+TEST(never_seeds)
 {
-    (void)state;
     uint64_t seed = 31;
     for (int turn = 0; turn < 50; turn++) {
         canvas *c = canvas_new(0);
@@ -213,13 +205,4 @@ static void never_seeds(void **state)
         assert_int_equal(filled, 0);
         free(c);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(confidence),  cmocka_unit_test(interpolated),
-                                       cmocka_unit_test(reach),       cmocka_unit_test(border),
-                                       cmocka_unit_test(edge),        cmocka_unit_test(agreement),
-                                       cmocka_unit_test(nearer_pair), cmocka_unit_test(never_seeds)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,9 +57,8 @@ static void assert_gain(double got, double density_ratio)
     }
 }
 
-static void as_often_as_covered(void **state)
+TEST(as_often_as_covered)
 {
-    (void)state;
     rig *s = views_new();
     assert_gain(gain(s, 1), 1);
     assert_gain(gain(s, 2), 2);
@@ -67,9 +66,8 @@ static void as_often_as_covered(void **state)
     free(s);
 }
 
-static void of_unlike_densities(void **state)
+TEST(of_unlike_densities)
 {
-    (void)state;
     rig *s = views_new();
     memset(label[1], 1, PIXELS);
     for (int32_t log_q10 = T3R_LEAST_DENSITY_Q10; log_q10 <= 0; log_q10 += 128) {
@@ -87,9 +85,8 @@ static void of_unlike_densities(void **state)
     free(s);
 }
 
-static void wider_where_points_are_few(void **state)
+TEST(wider_where_points_are_few)
 {
-    (void)state;
     rig *s = views_new();
     for (int32_t log_q10 = -4 * 1024; log_q10 <= 0; log_q10 += 128) {
         clusters[0].density_q10 = log_q10;
@@ -107,9 +104,8 @@ static void wider_where_points_are_few(void **state)
 }
 
 /* A depth below half a step of scene units counts as one step. */
-static void nothing_is_at_the_camera(void **state)
+TEST(nothing_is_at_the_camera)
 {
-    (void)state;
     rig *s = views_new();
     s->view[0].depth_unit_q40 = 1;
     s->depth[0][MIDDLE_Y * W + MIDDLE_X] = 1;
@@ -117,9 +113,8 @@ static void nothing_is_at_the_camera(void **state)
     free(s);
 }
 
-static void only_of_the_same_surface(void **state)
+TEST(only_of_the_same_surface)
 {
-    (void)state;
     rig *s = views_new();
     const size_t there = MIDDLE_Y * W + MIDDLE_X - 8; /* pixel of view 1 where the point falls */
     const struct {
@@ -219,9 +214,8 @@ static uint64_t fitted_hash(t3r_config config, way taken, bool differs)
     return fitted;
 }
 
-static void builds_that_ask(void **state)
+TEST(builds_that_ask)
 {
-    (void)state;
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
     const uint64_t wanted = fitted_hash(config, (way){0}, true);
     assert_true(fitted_hash(config, (way){.least = true}, true) == wanted);
@@ -233,14 +227,4 @@ static void builds_that_ask(void **state)
     config.fit_widths = 2;
     assert_int_equal(t3r_plan(&config, &(t3r_plan_info){0}), T3R_ERR_CONFIG);
     assert_string_equal(t3r_config_error(&config), "fit_widths must be 0 or 1");
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(as_often_as_covered),        cmocka_unit_test(of_unlike_densities),
-        cmocka_unit_test(wider_where_points_are_few), cmocka_unit_test(nothing_is_at_the_camera),
-        cmocka_unit_test(only_of_the_same_surface),   cmocka_unit_test(builds_that_ask),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -85,9 +85,8 @@ static void check_pixel(const t3r_head_input *input, uint32_t x, uint32_t y, con
     assert_int_equal(f[8], slope(i, y > 0 ? i - W : i, y + 1 < H ? i + W : i));
 }
 
-static void features_are_as_defined(void **state)
+TEST(features_are_as_defined)
 {
-    (void)state;
     t3r_head_input input = {.map = {.view = &view}, .settings = &settings, .clusters = clusters};
     int8_t least[T3R_FEATURES], most[T3R_FEATURES];
     memset(least, 127, sizeof least);
@@ -118,9 +117,8 @@ static void features_are_as_defined(void **state)
 }
 
 /* A copied arena's planes may mark a depth of 0 as measured: it has no slope. */
-static void no_depth_has_no_slope(void **state)
+TEST(no_depth_has_no_slope)
 {
-    (void)state;
     const t3r_head_input input = {
         .map = {.view = &view}, .settings = &settings, .clusters = clusters, .unadapted = true};
     int8_t f[T3R_FEATURES];
@@ -134,11 +132,4 @@ static void no_depth_has_no_slope(void **state)
     depth[5 * W + 5] = 0;
     t3r_head_features_at(&input, 5, 5, f);
     assert_true(f[7] == 0 && f[8] == 0);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(no_depth_has_no_slope),
-                                       cmocka_unit_test(features_are_as_defined)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

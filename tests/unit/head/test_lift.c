@@ -27,9 +27,8 @@ static t3r_gaussian lifted(uint16_t steps)
 }
 
 /* Two pixels of a standard deviation, an eighth of it thick: as far as steps of 2^-24 scene units tell. */
-static void as_wide_as_its_pixels(void **state)
+TEST(as_wide_as_its_pixels)
 {
-    (void)state;
     static const uint16_t depths[] = {64, 1000, 20000, 65535};
     for (size_t i = 0; i < sizeof depths / sizeof depths[0]; i++) {
         const t3r_gaussian g = lifted(depths[i]);
@@ -42,9 +41,8 @@ static void as_wide_as_its_pixels(void **state)
 }
 
 /* What the rasterizer's 0.3 square pixels leave of a footprint is held above the narrowest. */
-static void no_narrower_than_allowed(void **state)
+TEST(no_narrower_than_allowed)
 {
-    (void)state;
     static const struct {
         int32_t square_q12;
         uint32_t narrowest_q12, left_q12;
@@ -62,18 +60,10 @@ static void no_narrower_than_allowed(void **state)
 }
 
 /* A step before the camera a pixel is less than half such a step wide: a Gaussian of no extent. */
-static void of_no_extent(void **state)
+TEST(of_no_extent)
 {
-    (void)state;
     const t3r_gaussian g = lifted(1);
     for (int k = 0; k < 9; k++) {
         assert_int_equal(g.factor[k], 0);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(as_wide_as_its_pixels),
-                                       cmocka_unit_test(no_narrower_than_allowed), cmocka_unit_test(of_no_extent)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -21,9 +21,8 @@ static const made_layer shape[] = {
 };
 enum { LAYERS = sizeof shape / sizeof *shape };
 
-static void sound_ones_pass(void **state)
+TEST(sound_ones_pass)
 {
-    (void)state;
     for (uint32_t bits = 0; bits < 4; bits++) {
         size_t bytes;
         uint8_t *file = make_weights(shape, LAYERS, bits & 1 ? 16 : 8, bits & 2 ? 16 : 8, bits, &bytes);
@@ -44,9 +43,8 @@ static void sound_ones_pass(void **state)
 }
 
 /* Up to 15 letters, digits and underlines. */
-static void names(void **state)
+TEST(names)
 {
-    (void)state;
     static const struct {
         const char *name; /* 16 characters have no end */
         t3r_status status;
@@ -81,9 +79,8 @@ static void put(uint8_t *to, uint32_t value, uint32_t bytes)
 
 #define LAYER(n, field) (HEADER + ROW * ((n)-1) + (field))
 
-static void every_field_is_checked(void **state)
+TEST(every_field_is_checked)
 {
-    (void)state;
     const damage damages[] = {
         {0, 0x57523355, 4, "not a weight file"},
         {4, 2, 2, "format"},
@@ -171,9 +168,8 @@ static void every_field_is_checked(void **state)
 }
 
 /* Offsets: into the table, unaligned, up to and beyond the end. */
-static void blocks_lie_in_the_file(void **state)
+TEST(blocks_lie_in_the_file)
 {
-    (void)state;
     size_t bytes;
     uint8_t *good = make_weights(shape, LAYERS, 16, 16, 3, &bytes), *file = aligned_alloc(16, (bytes + 15) / 16 * 16);
     for (uint32_t n = 1; n <= LAYERS; n++) {
@@ -198,9 +194,8 @@ static void blocks_lie_in_the_file(void **state)
 }
 
 /* A multiplier, a shift, a bias or a weight one beyond the range of the sums. */
-static void numbers_are_bounded(void **state)
+TEST(numbers_are_bounded)
 {
-    (void)state;
     size_t bytes;
     uint8_t *good = make_weights(shape, LAYERS, 8, 8, 5, &bytes), *file = aligned_alloc(16, (bytes + 15) / 16 * 16);
     for (uint32_t n = 1; n <= LAYERS; n++) {
@@ -246,9 +241,8 @@ static void numbers_are_bounded(void **state)
 }
 
 /* Any flipped bit and any length is detected, by the length or the CRC. */
-static void damage_is_noticed(void **state)
+TEST(damage_is_noticed)
 {
-    (void)state;
     size_t bytes;
     uint8_t *file = make_weights(shape, LAYERS, 8, 8, 9, &bytes);
     for (size_t bit = 0; bit < bytes * 8; bit += bit < HEADER * 8 ? 1 : 37) {
@@ -273,9 +267,8 @@ static void damage_is_noticed(void **state)
 }
 
 /* Errors that only the whole graph shows. */
-static void graphs_are_checked(void **state)
+TEST(graphs_are_checked)
 {
-    (void)state;
     const made_layer unread[] = {
         {T3R_LAYER_CONV, 0, {0, T3R_SOURCE_NONE}, 3, 1, 1, 4},
         {T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 9},
@@ -319,9 +312,8 @@ static void graphs_are_checked(void **state)
 }
 
 /* A file is limited in length, even if all else is sound. */
-static void length_is_bounded(void **state)
+TEST(length_is_bounded)
 {
-    (void)state;
     size_t bytes;
     uint8_t *file = make_weights(shape, LAYERS, 8, 8, 9, &bytes);
     uint8_t *long_file = aligned_alloc(16, T3R_MAX_WEIGHTS_BYTES + 16);
@@ -333,15 +325,4 @@ static void length_is_bounded(void **state)
     assert_non_null(strstr(t3r_weights_error(long_file, T3R_MAX_WEIGHTS_BYTES + 1), "16 MiB"));
     free(long_file);
     free(file);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sound_ones_pass),        cmocka_unit_test(names),
-        cmocka_unit_test(every_field_is_checked), cmocka_unit_test(blocks_lie_in_the_file),
-        cmocka_unit_test(numbers_are_bounded),    cmocka_unit_test(damage_is_noticed),
-        cmocka_unit_test(graphs_are_checked),     cmocka_unit_test(length_is_bounded),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,9 +12,8 @@ static t3r_frame plain_frame(void)
     return frame;
 }
 
-static void refusals(void **state)
+TEST(refusals)
 {
-    (void)state;
     t3r_frame frame = plain_frame();
     assert_int_equal(t3r_image_check(&frame), T3R_OK);
     assert_int_equal(t3r_image_check(NULL), T3R_ERR_ARGUMENT);
@@ -60,9 +59,8 @@ static t3r_frame deep_frame(void)
     return frame;
 }
 
-static void depth_refusals(void **state)
+TEST(depth_refusals)
 {
-    (void)state;
     t3r_frame frame = deep_frame();
     assert_int_equal(t3r_image_check(&frame), T3R_OK);
 #define REFUSED(change)                                                                                                \
@@ -102,9 +100,8 @@ typedef struct layout {
 } layout;
 
 /* Each Y with every third U and V, in rows of 256 pixels. */
-static void packed_formats(void **state)
+TEST(packed_formats)
 {
-    (void)state;
     const layout layouts[] = {{T3R_PIXEL_YUYV, 0, 1, 2, 3}, {T3R_PIXEL_UYVY, 1, 0, 3, 2}};
     const uint32_t height = 86;
     uint8_t *packed = unit_array(height, 520);
@@ -143,9 +140,8 @@ static void packed_formats(void **state)
     free(packed);
 }
 
-static void nv12(void **state)
+TEST(nv12)
 {
-    (void)state;
     enum { W = 6, H = 4 };
     uint64_t seed = 5;
     uint8_t *luma = unit_array(H, 7);
@@ -174,9 +170,8 @@ static void nv12(void **state)
     free(chroma);
 }
 
-static void plain_formats(void **state)
+TEST(plain_formats)
 {
-    (void)state;
     const uint8_t bytes[] = {1, 2, 3, 4, 5, 6, 99, 7, 8, 9, 10, 11, 12, 99};
     uint8_t planes[3][4];
     uint8_t *out[3] = {planes[0], planes[1], planes[2]};
@@ -217,9 +212,8 @@ static uint8_t box_average(const uint8_t *grey, uint32_t from_w, uint32_t from_h
     return (uint8_t)((2 * sum + area) / (2 * area));
 }
 
-static void average(void **state)
+TEST(average)
 {
-    (void)state;
     uint64_t seed = 11;
     for (int turn = 0; turn < 300; turn++) {
         uint32_t from_w = (uint32_t)unit_between(&seed, 2, 40), from_h = (uint32_t)unit_between(&seed, 2, 40);
@@ -262,9 +256,8 @@ static void average(void **state)
 }
 
 /* Rows longer than a chunk, and three different channels. */
-static void average_wide(void **state)
+TEST(average_wide)
 {
-    (void)state;
     enum { W = 1003, H = 5, w = 77, h = 3 };
     uint64_t seed = 12;
     uint8_t *rgb = unit_array(W * H, 3);
@@ -294,9 +287,8 @@ static void average_wide(void **state)
 }
 
 /* The largest sums there are: 4096 x 4096 white pixels. */
-static void average_largest(void **state)
+TEST(average_largest)
 {
-    (void)state;
     const uint32_t side = T3R_MAX_SIDE;
     uint8_t *grey = unit_array(side, side);
     uint8_t planes[3][9 * 7];
@@ -314,9 +306,8 @@ static void average_largest(void **state)
     free(grey);
 }
 
-static void depth(void **state)
+TEST(depth)
 {
-    (void)state;
     enum { W = 13, H = 6 };
     uint64_t seed = 3;
     uint8_t bytes[H][2 * W + 3];
@@ -345,13 +336,4 @@ static void depth(void **state)
         frame.depth = &bytes[0][0];
         free(out);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(refusals),     cmocka_unit_test(depth_refusals),  cmocka_unit_test(packed_formats),
-        cmocka_unit_test(nv12),         cmocka_unit_test(plain_formats),   cmocka_unit_test(average),
-        cmocka_unit_test(average_wide), cmocka_unit_test(average_largest), cmocka_unit_test(depth)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

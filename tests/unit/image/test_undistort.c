@@ -59,9 +59,8 @@ static void real_source(const lens_case *c, double u, double v, double out[2])
     out[1] = c->fy * bent_y + c->cy;
 }
 
-static void nodes(void **state)
+TEST(nodes)
 {
-    (void)state;
     for (int i = 0; i < CASES; i++) {
         const lens_case *c = &cases[i];
         t3r_camera camera = camera_of(c);
@@ -121,9 +120,8 @@ static void planes_free(planes p)
 }
 
 /* Each sample is the bilinear (colour) or nearest (depth) one at the real source position, or 0 outside. */
-static void sampling(void **state)
+TEST(sampling)
 {
-    (void)state;
     for (int i = 0; i < CASES; i++) {
         const lens_case *c = &cases[i];
         if (c->width > 700) {
@@ -174,9 +172,8 @@ static void sampling(void **state)
 }
 
 /* No distortion, or one without coefficients: the image itself. */
-static void identity(void **state)
+TEST(identity)
 {
-    (void)state;
     const uint32_t sizes[][2] = {{8, 8}, {31, 9}, {64, 50}, {9, 23}};
     uint64_t seed = 8;
     for (size_t s = 0; s < sizeof sizes / sizeof sizes[0]; s++) {
@@ -207,9 +204,8 @@ static void identity(void **state)
 }
 
 /* A polynomial that folds: beyond the fold there is nothing, not a mirrored image. */
-static void fold(void **state)
+TEST(fold)
 {
-    (void)state;
     const uint32_t side = 128;
     /* r (1 - r^2 / 3) turns back at r = 1, 60 pixels from the centre */
     lens_case c = {"", side, side, 60, 60, 63.5, 63.5, T3R_DISTORTION_RADTAN, {-1.0 / 3, 0, 0, 0, 0}, 0};
@@ -235,9 +231,8 @@ static void fold(void **state)
 }
 
 /* Any coefficients give an answer, never undefined behaviour; wild ones an error. */
-static void wild(void **state)
+TEST(wild)
 {
-    (void)state;
     uint64_t seed = 21;
     const uint32_t width = 72, height = 40;
     int32_t *grid = unit_array(T3R_GRID_VALUES(width, height), sizeof(int32_t));
@@ -272,11 +267,4 @@ static void wild(void **state)
     planes_free(in);
     planes_free(out);
     free(grid);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(nodes), cmocka_unit_test(sampling), cmocka_unit_test(identity),
-                                       cmocka_unit_test(fold), cmocka_unit_test(wild)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -103,9 +103,8 @@ static double error_of_turn(const t3r_camera *first, const t3r_camera *second, u
     return fabs(turned(first, second) - turned(&camera[0], &camera[to]));
 }
 
-static void a_disturbed_pose_comes_back(void **state)
+TEST(a_disturbed_pose_comes_back)
 {
-    (void)state;
     static const struct {
         double angle, shift;
     } by[] = {{0.01, 0}, {-0.02, 0}, {0.02, 0.03}, {-0.01, -0.03}};
@@ -130,9 +129,8 @@ static void a_disturbed_pose_comes_back(void **state)
 }
 
 /* With depth at an eighth of the pixels, these are compared more closely than with depth everywhere. */
-static void little_depth_is_enough(void **state)
+TEST(little_depth_is_enough)
 {
-    (void)state;
     enum { FIRST = SIDE * 21 / 64, LAST = SIDE * 43 / 64 };
     const t3r_config config = settings(2, 1);
     const t3r_camera cameras[] = {camera[0], disturbed(&camera[1], 0.02, 0)};
@@ -158,9 +156,8 @@ static void little_depth_is_enough(void **state)
 }
 
 /* A target view has a pose like the given ones: its loss is measured before alignment. */
-static void a_bounded_loss_goes_by_the_poses_given(void **state)
+TEST(a_bounded_loss_goes_by_the_poses_given)
 {
-    (void)state;
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, SIDE * SIDE);
     config.keep_analysis = 1;
     const t3r_camera cameras[] = {camera[0], disturbed(&camera[1], 0.02, 0)};
@@ -189,9 +186,8 @@ static void a_bounded_loss_goes_by_the_poses_given(void **state)
     assert_true(2 * chosen[0] < build.gaussians); /* correct poses, without alignment */
 }
 
-static void three_views_meet(void **state)
+TEST(three_views_meet)
 {
-    (void)state;
     const t3r_config config = settings(3, 1);
     const t3r_camera cameras[] = {camera[0], disturbed(&camera[1], 0.02, 0), camera[2]};
     t3r_runtime *rt = with_views(&config, cameras);
@@ -207,9 +203,8 @@ static void three_views_meet(void **state)
     assert_true(error_of_turn(&found[0], &found[2], 2) < before / 4);
 }
 
-static void right_poses_stay(void **state)
+TEST(right_poses_stay)
 {
-    (void)state;
     for (uint32_t views = 1; views <= VIEWS; views++) {
         const t3r_config config = settings(views, 1), plain = settings(views, 0);
         t3r_runtime *rt = with_views(&config, camera);
@@ -225,9 +220,8 @@ static void right_poses_stay(void **state)
 }
 
 /* Without differences alignment has nothing to reduce. */
-static void grey_views(void **state)
+TEST(grey_views)
 {
-    (void)state;
     static uint8_t grey[2][SIDE * SIDE * 3];
     memset(grey, 128, sizeof grey);
     const t3r_config config = settings(2, 1);
@@ -241,9 +235,8 @@ static void grey_views(void **state)
 }
 
 /* A view at the end of the range of positions stays as given, and the other one is still aligned. */
-static void positions_stay_in_range(void **state)
+TEST(positions_stay_in_range)
 {
-    (void)state;
     const t3r_config config = settings(2, 1);
     const uint32_t outer = camera[1].position_q32[0] > camera[0].position_q32[0];
     for (int far = 0; far < 2; far++) {
@@ -264,9 +257,8 @@ static void positions_stay_in_range(void **state)
 }
 
 /* With `warm` the poses start from the previous build. */
-static void builds_that_follow_are_as_given(void **state)
+TEST(builds_that_follow_are_as_given)
 {
-    (void)state;
     const t3r_camera cameras[] = {camera[0], disturbed(&camera[1], 0.02, 0)};
     t3r_config config = settings(2, 1);
     config.warm = 1;
@@ -277,9 +269,8 @@ static void builds_that_follow_are_as_given(void **state)
 
 /* Noise in views that share a narrow strip: they differ less once they look away from it. Such a step is rejected,
  * and the poses stay. */
-static void narrow_strips_of_noise(void **state)
+TEST(narrow_strips_of_noise)
 {
-    (void)state;
     static const struct {
         double angle;
         uint64_t seed;
@@ -303,9 +294,8 @@ static void narrow_strips_of_noise(void **state)
 }
 
 /* Views with nothing in common or without contents: the poses stay. */
-static void views_without_anything_in_common(void **state)
+TEST(views_without_anything_in_common)
 {
-    (void)state;
     const t3r_config config = settings(2, 1);
     const t3r_camera away[] = {camera[0], disturbed(&camera[1], 3.0, 0)};
     t3r_camera found;
@@ -325,9 +315,8 @@ static int cancel_at(void *user, t3r_stage stage, uint32_t done, uint32_t total)
     return stage == T3R_STAGE_POINTMAP && (*left)-- == 0;
 }
 
-static void it_can_be_cancelled(void **state)
+TEST(it_can_be_cancelled)
 {
-    (void)state;
     const t3r_config config = settings(2, 1);
     const t3r_camera cameras[] = {camera[0], disturbed(&camera[1], 0.02, 0)};
     const uint64_t hash = scene_hash(with_views(&config, cameras));
@@ -343,9 +332,8 @@ static void it_can_be_cancelled(void **state)
 }
 
 /* Checks the residual of A x = b for random positive definite matrices of any scale, with unequal diagonals. */
-static void equations_are_solved(void **state)
+TEST(equations_are_solved)
 {
-    (void)state;
     srand(1);
     for (int round = 0; round < 2000; round++) {
         double f[6][6], a[6][6], b[6], worst = 0, size = 0;
@@ -399,21 +387,4 @@ static void equations_are_solved(void **state)
     assert_int_equal(got_q30[1], -T3R_ALIGN_STEP_MOST_Q30);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_disturbed_pose_comes_back),
-        cmocka_unit_test(little_depth_is_enough),
-        cmocka_unit_test(a_bounded_loss_goes_by_the_poses_given),
-        cmocka_unit_test(three_views_meet),
-        cmocka_unit_test(right_poses_stay),
-        cmocka_unit_test(grey_views),
-        cmocka_unit_test(positions_stay_in_range),
-        cmocka_unit_test(builds_that_follow_are_as_given),
-        cmocka_unit_test(views_without_anything_in_common),
-        cmocka_unit_test(narrow_strips_of_noise),
-        cmocka_unit_test(it_can_be_cancelled),
-        cmocka_unit_test(equations_are_solved),
-    };
-    return cmocka_run_group_tests(tests, draw_room, NULL);
-}
+ALL_TESTS_WITH(draw_room, NULL)

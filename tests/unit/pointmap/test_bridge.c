@@ -52,9 +52,8 @@ static uint32_t of_kind(const rig *s, int v, uint8_t validity)
 /* --- one view ----------------------------------------------------------------------------------------------------- */
 
 /* A slanted plane goes on through a hole as wide as a third of the picture: 1 / depth is straight in the picture. */
-static void planes_go_on(void **state)
+TEST(planes_go_on)
 {
-    (void)state;
     for (int turn = 0; turn < 9; turn++) {
         rig *s = pair_new();
         double across = (turn % 3 - 1) * 0.0007, down = (turn / 3 - 1) * 0.0009;
@@ -110,9 +109,8 @@ static double expected_depth(const uint16_t *depth, const uint8_t *validity, int
     return weights > 0 ? weights / sum : farther;
 }
 
-static void as_defined(void **state)
+TEST(as_defined)
 {
-    (void)state;
     uint64_t seed = 5;
     rig *s = unit_array(1, sizeof *s), *before = unit_array(1, sizeof *before);
     uint32_t bridged = 0;
@@ -150,9 +148,8 @@ static void as_defined(void **state)
 }
 
 /* Across an edge no depth is invented, and the farther surface goes on behind the nearer. */
-static void edges(void **state)
+TEST(edges)
 {
-    (void)state;
     rig *s = pair_new();
     for (int i = 0; i < PIXELS; i++) {
         forget(s, 0, i);
@@ -169,9 +166,8 @@ static void edges(void **state)
 }
 
 /* What was never measured up to the border stays unknown but for the corners that diagonals cut. */
-static void borders_stay(void **state)
+TEST(borders_stay)
 {
-    (void)state;
     rig *s = pair_new();
     for (int i = 0; i < PIXELS; i++) {
         if (i % W < 20 || i / W < 12) {
@@ -183,9 +179,8 @@ static void borders_stay(void **state)
 }
 
 /* A copied arena's planes may hold anything: what is said to be measured at depth 0 is no known pixel. */
-static void nothing_is_trusted(void **state)
+TEST(nothing_is_trusted)
 {
-    (void)state;
     uint64_t seed = 17;
     rig *s = pair_new();
     for (int turn = 0; turn < 20; turn++) {
@@ -209,9 +204,8 @@ static void nothing_is_trusted(void **state)
 /* --- two views ---------------------------------------------------------------------------------------------------- */
 
 /* What the other view measured is exact, in steps of this view, and wanted last where budgets are small. */
-static void lent(void **state)
+TEST(lent)
 {
-    (void)state;
     const uint64_t unit[] = {UNIT_Q40, UNIT_Q40 / 7, 3 * UNIT_Q40, UNIT_Q40 >> 4};
     for (int turn = 0; turn < 4; turn++) {
         rig *s = unit_array(1, sizeof *s);
@@ -231,9 +225,8 @@ static void lent(void **state)
 }
 
 /* Of two points of the other view on one pixel the nearer is lent. */
-static void nearest_lent(void **state)
+TEST(nearest_lent)
 {
-    (void)state;
     rig *s = pair_new();
     forget(s, 0, 20 * W + 40); /* the plane's point from 8 pixels to the left, one at 1 from 16 */
     s->depth[1][20 * W + 24] = UNIT;
@@ -244,9 +237,8 @@ static void nearest_lent(void **state)
 }
 
 /* Nothing is lent that is farther than the view's own steps reach. */
-static void out_of_steps_is_not_lent(void **state)
+TEST(out_of_steps_is_not_lent)
 {
-    (void)state;
     rig *s = unit_array(1, sizeof *s);
     place_view_in_steps(s, 0, 0, 0, 2, UNIT_Q40 >> 5); /* 65,535 steps are 2 - 1/32768 */
     place_view(s, 1, 0.25, 0, 2);
@@ -263,9 +255,8 @@ static void out_of_steps_is_not_lent(void **state)
 }
 
 /* A surface that neither view measured is bridged in the first and covered in the second. */
-static void bridged_once(void **state)
+TEST(bridged_once)
 {
-    (void)state;
     rig *s = pair_new();
     disc(s, 0, 40, 24, 10);
     disc(s, 1, 32, 24, 10); /* the same place */
@@ -281,9 +272,8 @@ static void bridged_once(void **state)
 }
 
 /* Nothing is left before what another view measured: 16 times the distance between them above the depth. */
-static void seen_through(void **state)
+TEST(seen_through)
 {
-    (void)state;
     for (int steps = UNIT; steps <= 3 * UNIT; steps += 7) {
         rig *s = pair_new();
         int at = 24 * W + 45, there = at - (int)lround(0.25 * F * UNIT / steps);
@@ -301,9 +291,8 @@ static void seen_through(void **state)
 }
 
 /* Of two bridges of one surface the second to settle is covered by the first, whichever view comes first. */
-static void settled_cover(void **state)
+TEST(settled_cover)
 {
-    (void)state;
     for (uint32_t v = 0; v < PAIR; v++) {
         rig *s = pair_new();
         int at[PAIR] = {24 * W + 45, 24 * W + 45 - (int)lround(0.25 * F)};
@@ -320,9 +309,8 @@ static void settled_cover(void **state)
 }
 
 /* Later comparisons leave such pixels as they are, and forgetting them gives back the planes as they were. */
-static void forgotten(void **state)
+TEST(forgotten)
 {
-    (void)state;
     rig *s = pair_new(), *before = unit_array(1, sizeof *before);
     disc(s, 0, 40, 24, 12);
     disc(s, 1, 20, 24, 12);
@@ -394,9 +382,8 @@ static uint32_t reconstruct(uint32_t radius, uint32_t gaussians, uint32_t views,
 }
 
 /* Bridged points compete but add nothing to the budget: exactly Z, and at most what was measured. */
-static void budgets_hold(void **state)
+TEST(budgets_hold)
 {
-    (void)state;
     static t3r_gaussian out[2 * PIXELS];
     for (uint32_t views = 1; views <= 2; views++) {
         for (uint32_t radius = 0; radius <= 64; radius += 64) {
@@ -413,24 +400,4 @@ static void budgets_hold(void **state)
             }
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(planes_go_on),
-        cmocka_unit_test(as_defined),
-        cmocka_unit_test(edges),
-        cmocka_unit_test(borders_stay),
-        cmocka_unit_test(nothing_is_trusted),
-        cmocka_unit_test(lent),
-        cmocka_unit_test(nearest_lent),
-        cmocka_unit_test(out_of_steps_is_not_lent),
-        cmocka_unit_test(bridged_once),
-        cmocka_unit_test(seen_through),
-        cmocka_unit_test(settled_cover),
-        cmocka_unit_test(forgotten),
-        cmocka_unit_test(budgets_hold),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

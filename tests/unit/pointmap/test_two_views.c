@@ -32,9 +32,8 @@ static void block(rig *s, int v, int x0, int y0, int x1, int y1, double depth)
 
 /* --- reprojection ------------------------------------------------------------------------------------------------- */
 
-static void shifted_by_the_disparity(void **state)
+TEST(shifted_by_the_disparity)
 {
-    (void)state;
     rig *s = pair_new();
     s->validity[1][5 * W + 5] = T3R_NO_DEPTH;
     t3r_pointmap zero = t3r_pointmap_of(&s->view[0], 0), one = t3r_pointmap_of(&s->view[1], 0);
@@ -57,9 +56,8 @@ static void shifted_by_the_disparity(void **state)
 }
 
 /* Any pose, against the same in double: the nearest pixel, but for ties that the roundings decide. */
-static void as_in_double(void **state)
+TEST(as_in_double)
 {
-    (void)state;
     uint64_t seed = 7;
     rig *s = pair_new();
     uint32_t inside = 0;
@@ -98,9 +96,8 @@ static void as_in_double(void **state)
 
 /* --- flying pixels ------------------------------------------------------------------------------------------------ */
 
-static void between_two_surfaces(void **state)
+TEST(between_two_surfaces)
 {
-    (void)state;
     rig *s = pair_new();
     block(s, 0, 0, 0, 20, H, 1);
     for (int y = 0; y < H; y++) {
@@ -124,9 +121,8 @@ static void between_two_surfaces(void **state)
 }
 
 /* A surface aslant, up to 1/16 a pixel, is no depth edge. */
-static void slanted_surfaces_stay(void **state)
+TEST(slanted_surfaces_stay)
 {
-    (void)state;
     rig *s = pair_new();
     double depth = 0.25;
     for (int x = 0; x < W; x++, depth *= 1.06) {
@@ -136,9 +132,8 @@ static void slanted_surfaces_stay(void **state)
     free(s);
 }
 
-static void seen_through(void **state)
+TEST(seen_through)
 {
-    (void)state;
     rig *s = pair_new();
     /* at 1 the disparity is 16: a block of 6 x 6 in view 1 that view 0, 16 pixels to the right, does not see */
     block(s, 1, 20, 10, 26, 16, 1);
@@ -175,9 +170,8 @@ static void seen_through(void **state)
 /* --- redundancy --------------------------------------------------------------------------------------------------- */
 
 /* As good as each other: the earlier view stays whole, the later one keeps what it alone sees. */
-static void the_earlier_of_two(void **state)
+TEST(the_earlier_of_two)
 {
-    (void)state;
     rig *s = pair_new();
     s->validity[1][3 * W + 3] = T3R_FILLED;
     s->validity[1][3 * W + 4] = T3R_MEASURED | T3R_MARK_DOUBTFUL;
@@ -196,9 +190,8 @@ static void the_earlier_of_two(void **state)
 }
 
 /* The nearer view is kept, whichever comes first; a longer lens counts as nearness. */
-static void the_nearer_of_two(void **state)
+TEST(the_nearer_of_two)
 {
-    (void)state;
     for (int nearer = 0; nearer < 2; nearer++) {
         for (int lens = 0; lens < 2; lens++) {
             rig *s = unit_array(1, sizeof *s);
@@ -221,9 +214,8 @@ static void the_nearer_of_two(void **state)
 }
 
 /* A later view that is only a little nearer does not take over; the earlier one is kept whole. */
-static void a_little_nearer_is_as_good(void **state)
+TEST(a_little_nearer_is_as_good)
 {
-    (void)state;
     const double nearer[] = {0.08, 0.16}; /* 1/25 and 2/25 of the depth: one part in 16 is between */
     for (int turn = 0; turn < 2; turn++) {
         rig *s = unit_array(1, sizeof *s);
@@ -237,9 +229,8 @@ static void a_little_nearer_is_as_good(void **state)
     }
 }
 
-static void other_surfaces_stay(void **state)
+TEST(other_surfaces_stay)
 {
-    (void)state;
     rig *s = pair_new();
     block(s, 1, 20, 10, 26, 16, 1.9); /* 1/20 off */
     assert_int_equal(mark_covered(s, 2), (W - 8) * H - 36);
@@ -248,9 +239,8 @@ static void other_surfaces_stay(void **state)
 }
 
 /* Whatever the depths: every covered pixel has one that covers it, measured and itself retained. */
-static void no_surface_is_lost(void **state)
+TEST(no_surface_is_lost)
 {
-    (void)state;
     uint64_t seed = 5;
     uint32_t all = 0;
     for (int turn = 0; turn < 20; turn++) {
@@ -288,9 +278,8 @@ static void no_surface_is_lost(void **state)
 /* --- scale -------------------------------------------------------------------------------------------------------- */
 
 /* The median depth is brought to 1..2 scene units as far as exponents go, and what is beyond is held there. */
-static void scale_of_depths(void **state)
+TEST(scale_of_depths)
 {
-    (void)state;
     static const struct {
         int unit, exponent; /* log2 of the depth step, Q40 */
         double median;
@@ -333,9 +322,8 @@ static double gain_of(const uint16_t gain_q14[3], int c)
 }
 
 /* A view 0.8 as bright is found out within 1 %, each channel apart, and both are brought to their (geometric) mean. */
-static void gain_recovered(void **state)
+TEST(gain_recovered)
 {
-    (void)state;
     const double one[3] = {1, 1, 1};
     const double other[][3] = {{0.8, 0.8, 0.8}, {0.7, 1, 1.3}, {1, 1, 1}};
     for (int turn = 0; turn < 3; turn++) {
@@ -354,9 +342,8 @@ static void gain_recovered(void **state)
 }
 
 /* More than an octave brighter or darker counts as an octave. */
-static void gains_are_held(void **state)
+TEST(gains_are_held)
 {
-    (void)state;
     for (int turn = 0; turn < 2; turn++) {
         rig *s = pair_new();
         for (int v = 0; v < 2; v++) {
@@ -375,9 +362,8 @@ static void gains_are_held(void **state)
 }
 
 /* A view that shares too little keeps its colours and moves no other's. */
-static void unlinked_views_stay(void **state)
+TEST(unlinked_views_stay)
 {
-    (void)state;
     const double one[3] = {1, 1, 1}, dark[3] = {0.8, 0.8, 0.8};
     rig *s = pair_new();
     place_view(s, 2, 0, 0, 4); /* on another plane */
@@ -399,9 +385,8 @@ static void unlinked_views_stay(void **state)
     free(s);
 }
 
-static void levelled_colours(void **state)
+TEST(levelled_colours)
 {
-    (void)state;
     for (uint32_t level = 0; level <= 255; level++) {
         assert_int_equal(t3r_level_q7(level * 128, T3R_GAIN_ONE_Q14), level * 128);
         for (uint32_t gain = 4096; gain <= UINT16_MAX; gain += 4093) {
@@ -465,9 +450,8 @@ static uint32_t of_view(const t3r_scene *scene, uint8_t view, uint8_t confidence
     return count;
 }
 
-static void in_the_pipeline(void **state)
+TEST(in_the_pipeline)
 {
-    (void)state;
     const uint32_t all = 2 * PIXELS;
     const int comparisons = 3 * 2 + 2 + 1 + 2; /* bridging, flying pixels, exposure, redundancy */
     for (int mode = T3R_ALLOCATE_CONFIGURED + 1; mode < T3R_ALLOCATE_GIVEN; mode++) {
@@ -521,9 +505,8 @@ static void in_the_pipeline(void **state)
 }
 
 /* Levelled splats of both views agree in their mean; left alone they are a fifth apart. */
-static void splats_are_levelled(void **state)
+TEST(splats_are_levelled)
 {
-    (void)state;
     for (uint32_t on = 0; on < 2; on++) {
         t3r_config config = t3r_default_config(W, H, 2, 2 * PIXELS);
         config.clusters = 20;
@@ -561,9 +544,8 @@ static void paint_sure(rig *s, int v, int disparity, const double gain[3])
 
 /* A wall whose colours differ by 9 levels in red and by nothing else: 27 a channel, whatever the exposure; what has
  * other depth, is doubtful or was not measured does not count. */
-static void colours_that_differ(void **state)
+TEST(colours_that_differ)
 {
-    (void)state;
     rig *s = pair_new();
     const double same[3] = {1, 1, 1};
     uint16_t gain_q14[VIEWS][3] = {{T3R_GAIN_ONE_Q14, T3R_GAIN_ONE_Q14, T3R_GAIN_ONE_Q14},
@@ -591,9 +573,8 @@ static void colours_that_differ(void **state)
     free(s);
 }
 
-static void levelled_before_they_are_compared(void **state)
+TEST(levelled_before_they_are_compared)
 {
-    (void)state;
     rig *s = pair_new();
     const double same[3] = {1, 1, 1}, darker[3] = {0.8, 0.9, 1};
     paint_sure(s, 0, 0, same);
@@ -610,9 +591,8 @@ static void levelled_before_they_are_compared(void **state)
 }
 
 /* Three views in a ring: each is compared with both others. */
-static void around_the_ring(void **state)
+TEST(around_the_ring)
 {
-    (void)state;
     rig *s = pair_new();
     const double same[3] = {1, 1, 1};
     place_view(s, 2, 0.5, 0, 2);
@@ -627,31 +607,4 @@ static void around_the_ring(void **state)
     assert_int_equal(t3r_disagreement_q8(s->view, 3, 0, gain_q14, 1, &pairs), 0);
     assert_int_equal(pairs, 2 * H * ((W - 8) + (W - 8) + (W - 16)));
     free(s);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(shifted_by_the_disparity),
-        cmocka_unit_test(as_in_double),
-        cmocka_unit_test(between_two_surfaces),
-        cmocka_unit_test(slanted_surfaces_stay),
-        cmocka_unit_test(seen_through),
-        cmocka_unit_test(the_earlier_of_two),
-        cmocka_unit_test(the_nearer_of_two),
-        cmocka_unit_test(a_little_nearer_is_as_good),
-        cmocka_unit_test(other_surfaces_stay),
-        cmocka_unit_test(no_surface_is_lost),
-        cmocka_unit_test(scale_of_depths),
-        cmocka_unit_test(gains_are_held),
-        cmocka_unit_test(gain_recovered),
-        cmocka_unit_test(unlinked_views_stay),
-        cmocka_unit_test(levelled_colours),
-        cmocka_unit_test(in_the_pipeline),
-        cmocka_unit_test(splats_are_levelled),
-        cmocka_unit_test(colours_that_differ),
-        cmocka_unit_test(levelled_before_they_are_compared),
-        cmocka_unit_test(around_the_ring),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

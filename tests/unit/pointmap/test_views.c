@@ -5,9 +5,8 @@
 #include "state/views.h"
 
 /* SPEC.md, "Between views" */
-static void confidences(void **state)
+TEST(confidences)
 {
-    (void)state;
     static const struct {
         uint8_t validity, confidence;
     } cases[] = {
@@ -27,9 +26,8 @@ static void confidences(void **state)
 }
 
 /* Of any byte, as a copied arena may hold any: one source, and 0 only where there is none. */
-static void sources(void **state)
+TEST(sources)
 {
-    (void)state;
     for (int byte = 0; byte <= UINT8_MAX; byte++) {
         const uint8_t validity = (uint8_t)byte;
         const int of = t3r_is_filled(validity) + t3r_is_bridged(validity) + t3r_is_measured(validity);
@@ -43,9 +41,8 @@ static void sources(void **state)
     }
 }
 
-static void marks(void **state)
+TEST(marks)
 {
-    (void)state;
     for (t3r_depth_source source = T3R_FILLED; source <= T3R_MEASURED; source++) {
         for (int mark = T3R_MARK_COVERED; mark <= T3R_MARK_LENT; mark *= 2) {
             const uint8_t validity = t3r_marked((uint8_t)source, (enum t3r_mark)mark);
@@ -60,9 +57,8 @@ static void marks(void **state)
 
 /* Each label comes back, beside all marks, and leaves them and the neighbours as they were; none is left once marks are
  * taken back, of whichever kind. */
-static void labels(void **state)
+TEST(labels)
 {
-    (void)state;
     enum { PIXELS = 3 };
     for (uint32_t found = T3R_FILLED; found < T3R_LABEL_HIGH; found++) {
         for (uint32_t label = 0; label < T3R_MAX_CLUSTERS; label++) {
@@ -83,9 +79,8 @@ static void labels(void **state)
 }
 
 /* Of the comparison nothing is left: neither marks nor what was bridged; depth of other pixels stays. */
-static void reset(void **state)
+TEST(reset)
 {
-    (void)state;
     enum { PIXELS = 6 };
     uint16_t depth[PIXELS] = {1, 2, 3, 4, 5, 0};
     uint8_t validity[PIXELS] = {T3R_MEASURED | T3R_MARK_DOUBTFUL, T3R_FILLED | T3R_MARK_COVERED,   T3R_BRIDGED,
@@ -96,11 +91,4 @@ static void reset(void **state)
     t3r_reset_comparison(&view, 1);
     assert_memory_equal(depth, expected_depth, sizeof depth);
     assert_memory_equal(validity, expected, sizeof validity);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(confidences), cmocka_unit_test(sources),
-                                       cmocka_unit_test(marks), cmocka_unit_test(labels), cmocka_unit_test(reset)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

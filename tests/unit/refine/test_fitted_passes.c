@@ -11,9 +11,8 @@ static double wanted(uint32_t points, uint32_t gaussians, uint32_t disagreement_
     return sqrt(512.0 * points / fmin(gaussians, ceil(points / 4.0)) / (disagreement_q8 / 256.0));
 }
 
-static void as_in_double(void **state)
+TEST(as_in_double)
 {
-    (void)state;
     assert_int_equal(t3r_predict_passes(100000, 100000, 512 * 256, 16), 2);
     assert_int_equal(t3r_predict_passes(100000, 25000, 512 * 256, 16), 2);
     assert_int_equal(t3r_predict_passes(100000, 20000, 160 * 256, 16), 4);
@@ -29,9 +28,8 @@ static void as_in_double(void **state)
     }
 }
 
-static void fewer_where_less_is_shared(void **state)
+TEST(fewer_where_less_is_shared)
 {
-    (void)state;
     uint32_t by_share = T3R_MAX_REFINE, by_views = T3R_MAX_REFINE;
     for (uint32_t n = 1; n <= 1000; n++) {
         const uint32_t share = t3r_predict_passes(1000, n, 100 * 256, T3R_MAX_REFINE);
@@ -44,9 +42,8 @@ static void fewer_where_less_is_shared(void **state)
     assert_int_equal(by_views, 2);
 }
 
-static void extremes(void **state)
+TEST(extremes)
 {
-    (void)state;
     const uint32_t most_points = 1u << 28, worst = 1u << 24;
     assert_int_equal(t3r_predict_passes(most_points, 1, 0, 16), 16);
     assert_int_equal(t3r_predict_passes(most_points, most_points, worst, 16), 1);
@@ -54,14 +51,4 @@ static void extremes(void **state)
     assert_int_equal(t3r_predict_passes(0, 0, 100, 16), 1); /* a restored arena may be without points */
     assert_int_equal(t3r_predict_passes(0, 5, 100, 16), 1);
     assert_int_equal(t3r_predict_passes(1, 1, UINT32_MAX, 16), 1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(as_in_double),
-        cmocka_unit_test(fewer_where_less_is_shared),
-        cmocka_unit_test(extremes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

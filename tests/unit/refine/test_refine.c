@@ -125,9 +125,8 @@ static double refined_psnr(uint32_t refine, uint32_t gaussians)
     return db;
 }
 
-static void gains_what_it_promises(void **state)
+TEST(gains_what_it_promises)
 {
-    (void)state;
     static const double least[3] = {2.2, 3.3, 4.5}; /* dB gained by 1, 2 and 4 passes */
     const double plain = refined_psnr(0, BUDGET);
     for (uint32_t k = 0; k < 3; k++) {
@@ -154,9 +153,8 @@ static void see_it_twice(void)
     }
 }
 
-static void many_passes_go_on(void **state)
+TEST_WITH(many_passes_go_on, NULL, draw_room)
 {
-    (void)state;
     see_it_twice();
     static const struct {
         uint32_t passes;
@@ -169,9 +167,8 @@ static void many_passes_go_on(void **state)
     }
 }
 
-static void black_stays_as_it_is(void **state)
+TEST_WITH(black_stays_as_it_is, NULL, draw_room)
 {
-    (void)state;
     memset(rgb, 0, sizeof rgb);
     uint64_t hash[2];
     for (uint32_t n = 0; n < 2; n++) {
@@ -187,9 +184,8 @@ static void black_stays_as_it_is(void **state)
 
 static const t3r_correction still;
 
-static void nothing_missing_changes_nothing(void **state)
+TEST(nothing_missing_changes_nothing)
 {
-    (void)state;
     uint64_t seed = 1;
     for (int i = 0; i < 1000; i++) {
         t3r_refine_sums sums = {.weight = (int32_t)unit_between(&seed, 0, 1 << 20),
@@ -210,9 +206,8 @@ static void nothing_missing_changes_nothing(void **state)
 }
 
 /* Sums at their bounds, whatever their signs: no overflow (the sanitizers' word), and a sound Gaussian. */
-static void extremes_stay_in_range(void **state)
+TEST(extremes_stay_in_range)
 {
-    (void)state;
     uint64_t seed = 2;
     for (int i = 0; i < 20000; i++) {
         t3r_refine_sums sums = {.area = (uint32_t)unit_between(&seed, 0, 1 << 28)};
@@ -252,9 +247,8 @@ static void extremes_stay_in_range(void **state)
 }
 
 /* Where nothing is missing any more a share of the pass before goes on, and no more than that. */
-static void momentum_fades(void **state)
+TEST(momentum_fades)
 {
-    (void)state;
     t3r_refine_sums sums = {.weight = 1 << 15, .area = 1};
     t3r_correction c = {
         .colour_q7 = {32640, -32640, 100}, .step_q16 = {32767, -32767, 1600, 160, -160, 3}, .share_q14 = 1000};
@@ -290,9 +284,8 @@ static t3r_refine_sums told_of(int32_t quarters)
 /* The next share by how much of the step before, which took 11/64 of it, is asked for again: all of it and half double
  * the share, more is not believed; a quarter takes 4/3 of it; none the same; as much back half, three times as much and
  * more a quarter, again the least that is believed. */
-static void share_follows_the_answer(void **state)
+TEST(share_follows_the_answer)
 {
-    (void)state;
     static const struct {
         int32_t quarters; /* of what was asked for at first */
         int32_t share_q14;
@@ -318,9 +311,8 @@ static void share_follows_the_answer(void **state)
 }
 
 /* Steps at their bounds, on every diagonal the largest sum: the quotient stays in 64 bits (the sanitizers' word). */
-static void largest_share_stays_in_range(void **state)
+TEST(largest_share_stays_in_range)
 {
-    (void)state;
     t3r_refine_sums sums = {.weight = 1, .area = 1 << 28};
     for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
         sums.curvature[k] = INT32_MAX;
@@ -336,9 +328,8 @@ static void largest_share_stays_in_range(void **state)
 }
 
 /* The scale of sums holds its bound for every area: at most 64 times what one pixel may add. */
-static void scale_follows_area(void **state)
+TEST(scale_follows_area)
 {
-    (void)state;
     for (uint32_t area = 0; area <= 1u << 28; area += 1 + area / 1000) {
         uint32_t shift = t3r_refine_shift(area);
         assert_true(area <= (uint64_t)64 << shift);
@@ -366,16 +357,14 @@ static void arena_and_order_show(uint32_t structural)
     }
 }
 
-static void arena_and_order_do_not_show(void **state)
+TEST(arena_and_order_do_not_show)
 {
-    (void)state;
     arena_and_order_show(0);
     arena_and_order_show(1);
 }
 
-static void cancelled_anywhere_it_can_be_done_again(void **state)
+TEST(cancelled_anywhere_it_can_be_done_again)
 {
-    (void)state;
     for (int keep = 0; keep < 2; keep++) {
         t3r_config config = settings(2);
         config.keep_analysis = (uint32_t)keep;
@@ -405,9 +394,8 @@ static void cancelled_anywhere_it_can_be_done_again(void **state)
 }
 
 /* An arena moves at any time: what refinement left of the analysis is not taken for one. */
-static void moves_after_it(void **state)
+TEST(moves_after_it)
 {
-    (void)state;
     for (int keep = 0; keep < 2; keep++) {
         t3r_config config = settings(2);
         config.keep_analysis = (uint32_t)keep;
@@ -428,9 +416,8 @@ static void moves_after_it(void **state)
 }
 
 /* Another budget refines likewise: the same scene as built with it from the start. */
-static void rebudget_refines(void **state)
+TEST(rebudget_refines)
 {
-    (void)state;
     uint64_t hash[2];
     for (uint32_t n = 0; n < 2; n++) {
         t3r_config config = settings(2);
@@ -450,9 +437,8 @@ static void rebudget_refines(void **state)
 
 /* As many passes as pay: fewer for all points than for a tenth, the same scene as by that very number, and never more
  * than are allowed. */
-static void fits_its_passes(void **state)
+TEST(fits_its_passes)
 {
-    (void)state;
     uint32_t passes[2];
     for (uint32_t all = 0; all < 2; all++) {
         uint64_t hash[2];
@@ -511,9 +497,8 @@ static uint64_t hash_with(uint32_t views, uint32_t passes, uint32_t structural)
 
 /* A view with a curve of its own, which no gain levels: the scene keeps to the middle of both, and each view, less its
  * own level, is met as well as if both were alike. */
-static void structure_passes_over_levels(void **state)
+TEST_WITH(structure_passes_over_levels, NULL, draw_room)
 {
-    (void)state;
     for (uint32_t views = 1; views <= 2; views++) { /* one alone has no level that others lack */
         assert_true(hash_with(views, 0, 1) == hash_with(views, 0, 0));
         assert_true(hash_with(views, 4, 1) != hash_with(views, 4, 0));
@@ -548,24 +533,4 @@ static void structure_passes_over_levels(void **state)
     assert_true(db[1][1] > db[0][1] + 0.5);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(gains_what_it_promises),
-        cmocka_unit_test_teardown(many_passes_go_on, draw_room),
-        cmocka_unit_test_teardown(black_stays_as_it_is, draw_room),
-        cmocka_unit_test(nothing_missing_changes_nothing),
-        cmocka_unit_test(extremes_stay_in_range),
-        cmocka_unit_test(momentum_fades),
-        cmocka_unit_test(share_follows_the_answer),
-        cmocka_unit_test(largest_share_stays_in_range),
-        cmocka_unit_test(scale_follows_area),
-        cmocka_unit_test(arena_and_order_do_not_show),
-        cmocka_unit_test(cancelled_anywhere_it_can_be_done_again),
-        cmocka_unit_test(moves_after_it),
-        cmocka_unit_test(rebudget_refines),
-        cmocka_unit_test(fits_its_passes),
-        cmocka_unit_test_teardown(structure_passes_over_levels, draw_room),
-    };
-    return cmocka_run_group_tests_name("refine", tests, draw_room, NULL);
-}
+ALL_TESTS_WITH(draw_room, NULL)

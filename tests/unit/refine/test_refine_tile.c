@@ -150,9 +150,8 @@ static void measure(uint32_t x, uint32_t y, uint32_t first, uint32_t count, uint
     t3r_refine_tile(&job, list, listed, x, y);
 }
 
-static void neither_room_nor_slices_show(void **state)
+TEST(neither_room_nor_slices_show)
 {
-    (void)state;
     static t3r_refine_sums whole[SPLATS], other[SPLATS];
     static const uint32_t rooms[] = {T3R_KEPT_LEAST, T3R_KEPT_LEAST + 7, 400, 1000, 5000};
     for (uint64_t seed = 1; seed < 6; seed++) {
@@ -174,9 +173,8 @@ static void neither_room_nor_slices_show(void **state)
 }
 
 /* No tile is drawn for Gaussians that do not reach into it. */
-static void tiles_without_the_slice_are_left_alone(void **state)
+TEST(tiles_without_the_slice_are_left_alone)
 {
-    (void)state;
     static t3r_refine_sums none[SPLATS];
     make_scene(1);
     measure(0, 0, 0, SPLATS, sizeof kept / sizeof kept[0], none);
@@ -317,9 +315,8 @@ static double compare_sums(const t3r_refine_sums *got, const expected *want, dou
     return share;
 }
 
-static void follows_double(void **state)
+TEST(follows_double)
 {
-    (void)state;
     static t3r_refine_sums sums[SPLATS];
     static layer layers[SPLATS];
     static tile_behind behind;
@@ -356,9 +353,8 @@ static void follows_double(void **state)
 }
 
 /* What is not before the camera has no footprint there. */
-static void unseen_have_no_footprint(void **state)
+TEST(unseen_have_no_footprint)
 {
-    (void)state;
     t3r_gaussian g = scene[0];
     int32_t a[3], b[3];
     assert_true(t3r_footprint_rows(&projection, &g, a, b));
@@ -366,15 +362,4 @@ static void unseen_have_no_footprint(void **state)
         g.position_q20[i] = 2 * projection.centre_q20[i] - g.position_q20[i];
     }
     assert_false(t3r_footprint_rows(&projection, &g, a, b));
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(neither_room_nor_slices_show),
-        cmocka_unit_test(tiles_without_the_slice_are_left_alone),
-        cmocka_unit_test(follows_double),
-        cmocka_unit_test(unseen_have_no_footprint),
-    };
-    return cmocka_run_group_tests_name("refine_tile", tests, NULL, NULL);
 }

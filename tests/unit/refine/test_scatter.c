@@ -45,9 +45,8 @@ static t3r_scatter_splat scatter_of(const t3r_tile_splat *span, const t3r_blende
 }
 
 /* Every layer's colour is mixed over what was behind it: all of them off, that is the picture. */
-static void behind_all_is_the_picture(void **state)
+TEST(behind_all_is_the_picture)
 {
-    (void)state;
     uint64_t seed = 3;
     static t3r_wanted tile;
     static t3r_blended_row rows[SPLATS][T3R_BLENDED_ROWS_MOST];
@@ -74,9 +73,8 @@ static void behind_all_is_the_picture(void **state)
 }
 
 /* White on black, all of it, and as much missing: the sums are exact. */
-static void the_most_there_can_be_fits(void **state)
+TEST(the_most_there_can_be_fits)
 {
-    (void)state;
     static t3r_wanted tile;
     static t3r_blended_row rows[T3R_BLENDED_ROWS_MOST];
     const t3r_tile_splat white = {.groups = 2, .last = SIDE - 1, .colour_q7 = {32640, 32640, 32640}};
@@ -107,9 +105,8 @@ static void the_most_there_can_be_fits(void **state)
 }
 
 /* Weights an eighth of others add an eighth to what is linear in them, and a 64th to what is square. */
-static void faint_splats_keep_their_bits(void **state)
+TEST(faint_splats_keep_their_bits)
 {
-    (void)state;
     uint64_t seed = 6;
     static t3r_wanted tile;
     static t3r_blended_row rows[T3R_BLENDED_ROWS_MOST], faint[T3R_BLENDED_ROWS_MOST];
@@ -140,14 +137,4 @@ static void faint_splats_keep_their_bits(void **state)
             assert_true(k >= T3R_REFINE_MOMENTS_2 || fabs(less.gradient[k] - sums.gradient[k] / 8.0) <= 1);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(behind_all_is_the_picture),
-        cmocka_unit_test(the_most_there_can_be_fits),
-        cmocka_unit_test(faint_splats_keep_their_bits),
-    };
-    return cmocka_run_group_tests_name("scatter", tests, NULL, NULL);
 }

@@ -68,9 +68,8 @@ static double asked_of(const t3r_wanted *tile, int c, int y, int x)
     return (11 * r + 5 * sum / count) / 16;
 }
 
-static void as_in_double(void **state)
+TEST(as_in_double)
 {
-    (void)state;
     uint64_t seed = 7;
     double worst = 0;
     for (int turn = 0; turn < 60; turn++) {
@@ -95,9 +94,8 @@ static void as_in_double(void **state)
 
 /* A level that a whole tile lacks is no structure; what is missing of a weak contrast counts more than of a strong one;
  * pixels that do not count change nothing in others. */
-static void structure_alone(void **state)
+TEST(structure_alone)
 {
-    (void)state;
     t3r_wanted tile = {0};
     memset(tile.counts, 0xff, sizeof tile.counts);
     for (int i = 0; i < SIDE * SIDE; i++) {
@@ -130,9 +128,8 @@ static void structure_alone(void **state)
     assert_int_equal(twice.residual_q4[0][4][4], 110);
 }
 
-static void extremes(void **state)
+TEST(extremes)
 {
-    (void)state;
     for (int pattern = 0; pattern < 512; pattern++) {
         t3r_wanted tile = {0};
         for (int i = 0; i < SIDE * SIDE; i++) {
@@ -148,14 +145,4 @@ static void extremes(void **state)
             assert_true(abs(tile.residual_q4[i % 3][i / 3 / SIDE][i / 3 % SIDE]) <= 4080);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(as_in_double),
-        cmocka_unit_test(structure_alone),
-        cmocka_unit_test(extremes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

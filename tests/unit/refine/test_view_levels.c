@@ -39,9 +39,8 @@ static t3r_level_sums sums_of(uint64_t seed, double offset, double slope, const 
     return sums;
 }
 
-static void found_as_they_were_made(void **state)
+TEST(found_as_they_were_made)
 {
-    (void)state;
     static const double made[2][2] = {{6, 0.1}, {-10, -0.06}};
     t3r_view_levels levels[2] = {{{0}, {0}}, {{0}, {0}}};
     for (int turn = 0; turn < 2; turn++) {
@@ -63,9 +62,8 @@ static void found_as_they_were_made(void **state)
     }
 }
 
-static void taken_off(void **state)
+TEST(taken_off)
 {
-    (void)state;
     uint64_t seed = 3;
     t3r_wanted tile;
     make_tile(&seed, 10, 0, &tile);
@@ -86,9 +84,8 @@ static void taken_off(void **state)
     }
 }
 
-static void extremes(void **state)
+TEST(extremes)
 {
-    (void)state;
     const t3r_level_sums nothing = {0};
     t3r_view_levels line = t3r_fit_levels(&nothing);
     assert_memory_equal(&line, &none, sizeof line);
@@ -120,14 +117,4 @@ static void extremes(void **state)
             assert_true(abs(tile.residual_q4[i % 3][i / 3 / SIDE][i / 3 % SIDE]) <= 4080);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(found_as_they_were_made),
-        cmocka_unit_test(taken_off),
-        cmocka_unit_test(extremes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -49,9 +49,8 @@ static int naive_cost(const t3r_match *m, int x, int y, int k)
     return m->luma[1][y * right + j] == 0 && cost < 12 ? 12 : cost;
 }
 
-static void census(void **state)
+TEST(census)
 {
-    (void)state;
     uint64_t seed = 3;
     for (int width = 2; width <= 40; width++) {
         uint8_t *picture = unit_array((size_t)width * 5, 1), *bits = unit_array((size_t)width * 3, 1);
@@ -165,9 +164,8 @@ static int refined(int k, int before, int least, int after)
     return steeper == 0 ? 128 * k : 128 * k + (int)floor((before - after) * 128.0 / (2.0 * steeper) + 0.5);
 }
 
-static void blocks(void **state)
+TEST(blocks)
 {
-    (void)state;
     /* the tall ones have blocks of 16, 32 and 64 rows */
     static const uint32_t shapes[][3] = {{16, 8, 16},  {17, 9, 16}, {20, 33, 32}, {9, 131, 16},
                                          {33, 16, 48}, {8, 8, 64},  {9, 515, 16}, {8, 2050, 16}};
@@ -240,9 +238,8 @@ static void seen_twice(pair *p, uint32_t shift, uint32_t gain)
     }
 }
 
-static void shifted(void **state)
+TEST(shifted)
 {
-    (void)state;
     for (uint32_t gain = 256; gain >= 128; gain -= 128) {
         for (uint32_t paths = 4; paths <= 8; paths += 4) {
             pair p = pair_new(64, 40, 32, paths);
@@ -271,9 +268,8 @@ static void set(pair *p, uint32_t side, uint16_t disparity, uint8_t confidence)
     }
 }
 
-static void agreement(void **state)
+TEST(agreement)
 {
-    (void)state;
     pair p = pair_new(40, 8, 16, 4);
     const uint32_t right = 55;
     set(&p, 0, 5 * 128, 77);
@@ -295,9 +291,8 @@ static void agreement(void **state)
     pair_free(&p);
 }
 
-static void speckles(void **state)
+TEST(speckles)
 {
-    (void)state;
     pair p = pair_new(128, 80, 16, 4); /* 11 pixels are large */
     set(&p, 0, 5 * 128, 9);
     for (uint32_t i = 0; i < 10; i++) {
@@ -352,9 +347,8 @@ static int rising(const void *a, const void *b)
     return *(const uint16_t *)a - *(const uint16_t *)b;
 }
 
-static void smoothing(void **state)
+TEST(smoothing)
 {
-    (void)state;
     uint64_t seed = 8;
     pair p = pair_new(37, 30, 16, 4);
     for (uint32_t side = 0; side < 2; side++) {
@@ -385,9 +379,8 @@ static void smoothing(void **state)
     pair_free(&p);
 }
 
-static void filling(void **state)
+TEST(filling)
 {
-    (void)state;
     pair p = pair_new(60, 40, 16, 4);
     set(&p, 0, 0, 9);
     set(&p, 1, T3R_NO_DISPARITY, 0);
@@ -429,12 +422,4 @@ static void filling(void **state)
     t3r_match_fill(&p.m, 0);
     assert_int_equal(p.m.disparity[0][15 * 60 + 28], T3R_NO_DISPARITY);
     pair_free(&p);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(census),   cmocka_unit_test(blocks),    cmocka_unit_test(shifted), cmocka_unit_test(agreement),
-        cmocka_unit_test(speckles), cmocka_unit_test(smoothing), cmocka_unit_test(filling)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -60,9 +60,8 @@ static double off(const shot *s)
     return (double)wrong / filled;
 }
 
-static void found(void **state)
+TEST(found)
 {
-    (void)state;
     shot *s = shoot(40, 60);
     t3r_planes planes;
     t3r_search_planes(&s->view, work, &planes);
@@ -80,9 +79,8 @@ static void found(void **state)
 }
 
 /* To the picture's end, where no other side holds a surface; what was matched stays. */
-static void continued(void **state)
+TEST(continued)
 {
-    (void)state;
     shot *s = shoot(50, W), *before = shoot(50, W);
     t3r_plane_fill(&s->view, work);
     assert_true(off(s) < 0.01);
@@ -100,9 +98,8 @@ static void continued(void **state)
 }
 
 /* Strays beyond the floor, nearer in the picture than all else: the floor bounds what they fill. */
-static void bounded(void **state)
+TEST(bounded)
 {
-    (void)state;
     shot *s = shoot(50, W);
     for (uint32_t y = H - 12; y < H; y++) {
         for (uint32_t x = W - 6; x < W - 2; x++) {
@@ -116,9 +113,8 @@ static void bounded(void **state)
 }
 
 /* As many planes as there is room for, of twice as many strips; and none where nothing is matched. */
-static void counted(void **state)
+TEST(counted)
 {
-    (void)state;
     shot *s = shoot(0, W);
     t3r_planes planes;
     t3r_search_planes(&s->view, work, &planes);
@@ -133,9 +129,8 @@ static void counted(void **state)
 }
 
 /* So few samples of a patch are as it says at once: everything is filled at its distance. */
-static void of_a_patch(void **state)
+TEST(of_a_patch)
 {
-    (void)state;
     enum { WIDTH = 33, HEIGHT = 200, COUNT = WIDTH * HEIGHT, DEPTH = 1000 };
     uint16_t *depth = unit_array(COUNT, 2);
     uint8_t *confidence = unit_array(COUNT, 1), *grey = unit_array(COUNT, 1);
@@ -162,9 +157,8 @@ static void of_a_patch(void **state)
 }
 
 /* Stripes so unlike that a way across half a hundred of them is longer than any that counts. */
-static void out_of_reach(void **state)
+TEST(out_of_reach)
 {
-    (void)state;
     enum { MATCHED = 30, REACH = 51 };
     shot *s = shoot(MATCHED, W);
     for (uint32_t i = 0; i < PIXELS; i++) {
@@ -182,9 +176,8 @@ static void out_of_reach(void **state)
 }
 
 /* Black pixels show nothing; what is beyond all steps is a hole; without planes nothing is done. */
-static void left_alone(void **state)
+TEST(left_alone)
 {
-    (void)state;
     shot *s = shoot(50, W);
     for (int c = 0; c < 3; c++) {
         memset(s->colour[c] + PIXELS - W, 0, W);
@@ -209,9 +202,8 @@ static void left_alone(void **state)
 }
 
 /* Any depths on views of any side: every depth within its range, the same again. */
-static void anything(void **state)
+TEST(anything)
 {
-    (void)state;
     static const uint32_t sides[][2] = {{32, 32}, {33, 200}, {500, 40}, {64, 65}};
     uint64_t seed = 8;
     for (uint32_t turn = 0; turn < 40; turn++) {
@@ -255,9 +247,8 @@ static void anything(void **state)
 }
 
 /* Rows that end at the same distance from both of a pair, at another, and nowhere near. */
-static void outlines(void **state)
+TEST(outlines)
 {
-    (void)state;
     enum { SIDE = 40, COUNT = 16, RIGHT = SIDE + COUNT - 1 };
     uint8_t left[SIDE], right[RIGHT], confidence[2][RIGHT];
     uint16_t disparity[2][RIGHT];
@@ -290,14 +281,4 @@ static void outlines(void **state)
             assert_int_equal(confidence[1][x + COUNT - 1 - 5] != 0, shown && !near);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(found),      cmocka_unit_test(counted),  cmocka_unit_test(continued),
-        cmocka_unit_test(of_a_patch), cmocka_unit_test(bounded),  cmocka_unit_test(out_of_reach),
-        cmocka_unit_test(left_alone), cmocka_unit_test(anything), cmocka_unit_test(outlines),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -118,9 +118,8 @@ static void check_size(const t3r_rectification *rect, uint32_t width, uint32_t h
     }
 }
 
-static void geometry(void **state)
+TEST(geometry)
 {
-    (void)state;
     static const struct {
         double x, y, z, degrees, ax, ay, az;
         int polar;
@@ -145,9 +144,8 @@ static void geometry(void **state)
 }
 
 /* Cameras side by side: the plane is the picture, pixel by pixel. */
-static void identity(void **state)
+TEST(identity)
 {
-    (void)state;
     uint64_t seed = 4;
     t3r_rectification rect;
     uint8_t *luma = unit_array(W * H, 1), *out = unit_array(W, 1);
@@ -176,9 +174,8 @@ static void identity(void **state)
 }
 
 /* A plane's pixels are the view's pixels at t3r_rectified_place(): in a picture that is a slope. */
-static void sampled(void **state)
+TEST(sampled)
 {
-    (void)state;
     for (int kind = 0; kind < 3; kind++) {
         double q[4];
         t3r_rectification rect;
@@ -228,9 +225,8 @@ static void sampled(void **state)
     }
 }
 
-static void refused(void **state)
+TEST(refused)
 {
-    (void)state;
     double q[4], away[4], behind[4];
     t3r_rectification rect;
     turned(10, 0, 1, 0, q);
@@ -255,9 +251,8 @@ static void refused(void **state)
 }
 
 /* Rays that go nowhere: far to a plane's side, along the baseline, or steeper than is looked at. */
-static void nowhere(void **state)
+TEST(nowhere)
 {
-    (void)state;
     t3r_rectification rect;
     int32_t place[2], across;
     const t3r_camera first = camera_at(0, 0, 0, straight, 450), beside = camera_at(0.3, 0, 0, straight, 450);
@@ -291,9 +286,8 @@ static void nowhere(void **state)
 }
 
 /* A camera whose picture is far below its axis and leans the other way: rays of more than 4, still in a plane. */
-static void steep_in_a_plane(void **state)
+TEST(steep_in_a_plane)
 {
-    (void)state;
     enum { WIDE = 400, TALL = 520, FOCAL = 580 };
     for (int sign = -1; sign <= 1; sign += 2) {
         double one[4], other[4];
@@ -331,9 +325,8 @@ static void steep_in_a_plane(void **state)
 }
 
 /* Any camera that passes its check: an answer, sizes within their bounds, rows that can be drawn. */
-static void anything(void **state)
+TEST(anything)
 {
-    (void)state;
     uint64_t seed = 12;
     uint8_t luma[48 * 40], row[512];
     memset(luma, 90, sizeof luma);
@@ -388,9 +381,8 @@ static void anything(void **state)
 }
 
 /* Planes around the direction of motion are tall: up to what the work memory allows, in pictures of every size. */
-static void tall(void **state)
+TEST(tall)
 {
-    (void)state;
     static const uint32_t sides[] = {90, 100, 300, 408, 412, 1200, 1630, 1645, 2400, 4096};
     for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++) {
         const int32_t side = (int32_t)sides[i];
@@ -405,13 +397,4 @@ static void tall(void **state)
             check_size(&rect, sides[i], sides[i], D);
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(geometry),         cmocka_unit_test(identity), cmocka_unit_test(sampled),
-        cmocka_unit_test(refused),          cmocka_unit_test(tall),     cmocka_unit_test(nowhere),
-        cmocka_unit_test(steep_in_a_plane), cmocka_unit_test(anything)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

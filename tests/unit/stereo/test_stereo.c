@@ -119,9 +119,8 @@ static void judge(const shot *s, uint64_t unit, double tolerance, double out[3])
     out[2] = 100 * filled / PIXELS;
 }
 
-static void pairs(void **state)
+TEST(pairs)
 {
-    (void)state;
     static const struct {
         const char *name;
         double at[3], q[4], gain, least_matched, tolerance;
@@ -158,9 +157,8 @@ static void pairs(void **state)
 }
 
 /* World units of any size give the same disparities, and so the same depths in steps, up to the baseline's rounding. */
-static void scales(void **state)
+TEST(scales)
 {
-    (void)state;
     for (int exponent = -8; exponent <= 12; exponent += 4) {
         const double scale = ldexp(1, exponent);
         shot *a = shoot(0, 0, 0, straight, 1, scale, 7), *b = shoot(0.25, 0, 0, straight, 1, scale, 7);
@@ -174,9 +172,8 @@ static void scales(void **state)
     }
 }
 
-static void refused(void **state)
+TEST(refused)
 {
-    (void)state;
     uint64_t unit;
     shot *a = shoot(0, 0, 0, straight, 1, 1, 7);
     shot *near = shoot(0.002, 0, 0, straight, 1, 1, 7); /* 0.1 pixels */
@@ -197,9 +194,8 @@ static void refused(void **state)
 }
 
 /* What lay in the work, and flat or black pictures, do not matter or harm. */
-static void repeated(void **state)
+TEST(repeated)
 {
-    (void)state;
     uint64_t unit[2];
     shot *a = shoot(0, 0, 0, straight, 1, 1, 7), *b = shoot(0.1, 0, 0.4, straight, 1, 1, 7);
     uint16_t *depth = unit_array(2 * PIXELS, 2);
@@ -226,9 +222,8 @@ static void repeated(void **state)
 }
 
 /* Noise for pictures, any settings, any pose: an answer, and depths within their range. */
-static void anything(void **state)
+TEST(anything)
 {
-    (void)state;
     uint64_t seed = 6, unit;
     shot *a = shoot(0, 0, 0, straight, 1, 1, 7), *b = shoot(0.25, 0, 0, straight, 1, 1, 7);
     for (int turn = 0; turn < 60; turn++) {
@@ -254,9 +249,8 @@ static void anything(void **state)
 }
 
 /* Without filling: the same matches, nothing between them. */
-static void unfilled(void **state)
+TEST(unfilled)
 {
-    (void)state;
     uint64_t unit[2];
     shot *a[2], *b[2];
     for (uint32_t fill = 0; fill < 2; fill++) {
@@ -284,9 +278,8 @@ static void unfilled(void **state)
 }
 
 /* A channel that is all but dark still shows something. */
-static void dark_is_not_nothing(void **state)
+TEST(dark_is_not_nothing)
 {
-    (void)state;
     uint64_t unit[2];
     shot *a[2], *b[2];
     for (int turn = 0; turn < 2; turn++) {
@@ -327,9 +320,8 @@ static void backwards(void *user, uint32_t count, void (*task)(void *context, ui
 }
 
 /* A picture of fewer rows in the first look than there are workers. */
-static void small_pictures_have_few_workers(void **state)
+TEST(small_pictures_have_few_workers)
 {
-    (void)state;
     enum { SIDE = 56, MOST = 16 };
     shot *s[2] = {shoot(0, 0, 0, straight, 1, 1, 7), shoot(0.06, 0, 0, straight, 1, 1, 7)};
     uint8_t colour[2][3][SIDE * SIDE];
@@ -370,9 +362,8 @@ static void small_pictures_have_few_workers(void **state)
 /* Two cameras whose first look compares so many disparities that its matching leaves no room for what it draws: that is
  * drawn in bands, each worker's its own; in the larger picture of eight rows, which are the most. Any picture, any
  * number of workers: the same. */
-static void bands_where_nothing_is_kept(void **state)
+TEST(bands_where_nothing_is_kept)
 {
-    (void)state;
     enum { SIDE = 53, MOST = 16 };
     static const int32_t focal_q16[2] = {9778159, 8654727};
     static const uint32_t counts[] = {1, 2, 4, 16};
@@ -446,9 +437,8 @@ static t3r_pair unit_of(t3r_rectification *rect, const t3r_view views[2], double
 
 /* 60,000 steps reach the farthest, but not beyond 64 times the median; a step is a whole number of 2^-40 world units,
  * below 2^47. */
-static void units(void **state)
+TEST(units)
 {
-    (void)state;
     shot *a = shoot(0, 0, 0, straight, 1, 1, 7), *b = shoot(0.25, 0, 0, straight, 1, 1, 7);
     const t3r_view views[2] = {a->view, b->view};
     t3r_rectification rect;
@@ -481,9 +471,8 @@ static void units(void **state)
     shot_free(b);
 }
 
-static void marks(void **state)
+TEST(marks)
 {
-    (void)state;
     uint16_t depth[6] = {0, 5, 5, 5, 5, 5};
     uint8_t confidence[6] = {T3R_STEREO_NONE, T3R_STEREO_FILLED, 2, 29, 30, 255};
     const uint8_t expected[6] = {
@@ -492,20 +481,4 @@ static void marks(void **state)
     const t3r_view view = {.width = 3, .height = 2, .depth = depth, .match_confidence = confidence};
     t3r_stereo_marks(&view, 30);
     assert_memory_equal(confidence, expected, 6);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(pairs),
-                                       cmocka_unit_test(scales),
-                                       cmocka_unit_test(refused),
-                                       cmocka_unit_test(repeated),
-                                       cmocka_unit_test(anything),
-                                       cmocka_unit_test(unfilled),
-                                       cmocka_unit_test(dark_is_not_nothing),
-                                       cmocka_unit_test(small_pictures_have_few_workers),
-                                       cmocka_unit_test(bands_where_nothing_is_kept),
-                                       cmocka_unit_test(units),
-                                       cmocka_unit_test(marks)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

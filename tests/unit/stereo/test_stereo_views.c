@@ -135,9 +135,8 @@ static verdict judge(const bench *b, const shots *s, uint32_t v)
 
 /* ---- two views --------------------------------------------------------------------------------------------------- */
 
-static void colours_alone(void **state)
+TEST(colours_alone)
 {
-    (void)state;
     shots s = room_shots((const uint32_t[]){0, 2}, 2);
     bench b = open_bench(2);
     t3r_scene scene;
@@ -184,9 +183,8 @@ static void colours_alone(void **state)
     shots_free(&s);
 }
 
-static void unfilled(void **state)
+TEST(unfilled)
 {
-    (void)state;
     shots s = room_shots((const uint32_t[]){0, 2}, 2);
     bench b = open_bench(2);
     t3r_scene scene, filled;
@@ -244,9 +242,8 @@ static double off_by(const bench *b, const shots *s, uint32_t v, double part)
 }
 
 /* With planes a bare wall gets its depth, and a textured room gets no worse. */
-static void planes(void **state)
+TEST(planes)
 {
-    (void)state;
     for (int room = 0; room < 2; room++) {
         shots s = room ? room_shots((const uint32_t[]){0, 2}, 2) : wall_shots();
         bench b = open_bench(2);
@@ -274,9 +271,8 @@ static void planes(void **state)
 }
 
 /* Black areas show nothing: they are neither matched nor filled. */
-static void nothing_shown(void **state)
+TEST(nothing_shown)
 {
-    (void)state;
     shots s = room_shots((const uint32_t[]){0, 2}, 2);
     bench b = open_bench(2);
     t3r_scene scene;
@@ -298,9 +294,8 @@ static void nothing_shown(void **state)
     shots_free(&s);
 }
 
-static void cancelled(void **state)
+TEST(cancelled)
 {
-    (void)state;
     shots s = room_shots((const uint32_t[]){0, 2, 1}, 3);
     bench b = open_bench(3);
     t3r_scene scene;
@@ -347,9 +342,8 @@ static void noise(uint8_t *rgb, uint64_t seed)
     }
 }
 
-static void refused(void **state)
+TEST(refused)
 {
-    (void)state;
     shots s = room_shots((const uint32_t[]){0, 2, 4}, 3);
     const t3r_camera second = s.camera[1];
     s.count = 2;
@@ -393,9 +387,8 @@ static void refused(void **state)
 
 /* ---- more views -------------------------------------------------------------------------------------------------- */
 
-static void more_views(void **state)
+TEST(more_views)
 {
-    (void)state;
     shots s = room_shots((const uint32_t[]){0, 1, 2, 3, 4}, 5);
     bench b = open_bench(5);
     t3r_scene scene;
@@ -417,9 +410,8 @@ static void more_views(void **state)
 }
 
 /* A view of another place has no depth and adds no points; the others are unaffected. */
-static void a_stranger(void **state)
+TEST(a_stranger)
 {
-    (void)state;
     shots s = room_shots((const uint32_t[]){0, 4, 2}, 3);
     bench b = open_bench(3);
     t3r_scene scene;
@@ -444,9 +436,8 @@ static void a_stranger(void **state)
 
 /* ---- parts ------------------------------------------------------------------------------------------------------- */
 
-static void fused(void **state)
+TEST(fused)
 {
-    (void)state;
     static const struct {
         uint16_t old_depth, new_depth;
         uint8_t old, new;
@@ -489,9 +480,8 @@ static void fused(void **state)
 }
 
 /* Units as large and as different as possible. */
-static void brought_together_at_any_scale(void **state)
+TEST(brought_together_at_any_scale)
 {
-    (void)state;
     static const struct {
         uint64_t unit, new_unit;
         uint16_t depth;
@@ -521,9 +511,8 @@ static void brought_together_at_any_scale(void **state)
 
 /* A picture with a step of luma in the middle and a pixel with depth on either side: each side takes its own, even
  * if the other one is nearer. */
-static void filled(void **state)
+TEST(filled)
 {
-    (void)state;
     enum { WIDTH = 16, HEIGHT = 9, COUNT = WIDTH * HEIGHT };
     uint8_t colour[COUNT], confidence[COUNT] = {0}, before[COUNT];
     uint16_t depth[COUNT] = {0};
@@ -556,9 +545,8 @@ static void filled(void **state)
 }
 
 /* In large pictures the sums over the steepest possible slope have more bits than a quotient has room for. */
-static void extended_in_large_pictures(void **state)
+TEST(extended_in_large_pictures)
 {
-    (void)state;
     enum { WIDTH = 4096, HEIGHT = 480 };
     const size_t count = (size_t)WIDTH * HEIGHT;
     uint8_t *colour = unit_array(count, 1), *confidence = unit_array(count, 1);
@@ -587,9 +575,8 @@ static void extended_in_large_pictures(void **state)
 }
 
 /* Depths on a plane in the left half go on in the right one. */
-static void extended(void **state)
+TEST(extended)
 {
-    (void)state;
     enum { WIDTH = 80, HEIGHT = 64, COUNT = WIDTH * HEIGHT };
     uint8_t colour[COUNT], confidence[COUNT];
     uint16_t depth[COUNT];
@@ -633,33 +620,11 @@ static void extended(void **state)
 }
 
 /* The work memory of matching suffices for filling, for any shape. */
-static void filling_fits(void **state)
+TEST(filling_fits)
 {
-    (void)state;
     for (uint32_t w = T3R_STEREO_LEAST_SIDE; w <= T3R_MAX_SIDE; w += w < 300 ? 1 : 61) {
         for (uint32_t h = T3R_STEREO_LEAST_SIDE; h <= T3R_MAX_SIDE; h += h < 300 ? 1 : 61) {
             assert_true(T3R_STEREO_FILL_BYTES(w, h) <= T3R_STEREO_BYTES_(w, h, 2, 1));
         }
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(colours_alone),
-        cmocka_unit_test(unfilled),
-        cmocka_unit_test(planes),
-        cmocka_unit_test(nothing_shown),
-        cmocka_unit_test(cancelled),
-        cmocka_unit_test(refused),
-        cmocka_unit_test(more_views),
-        cmocka_unit_test(a_stranger),
-        cmocka_unit_test(fused),
-        cmocka_unit_test(filled),
-        cmocka_unit_test(extended),
-        cmocka_unit_test(extended_in_large_pictures),
-        cmocka_unit_test(brought_together_at_any_scale),
-        cmocka_unit_test(filling_fits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

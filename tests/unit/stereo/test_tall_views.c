@@ -23,9 +23,8 @@ static void add(t3r_runtime *rt, uint32_t height, uint32_t index, const uint8_t 
     assert_int_equal(t3r_add_view(rt, &frame, &camera), T3R_OK);
 }
 
-static void every_height_of_blocks(void **state)
+TEST(every_height_of_blocks)
 {
-    (void)state;
     static const uint32_t heights[] = {64, 200, 520, 1700};
     for (size_t h = 0; h < sizeof heights / sizeof heights[0]; h++) {
         const uint32_t height = heights[h];
@@ -59,12 +58,4 @@ static void every_height_of_blocks(void **state)
         free(wall);
         free(arena);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_height_of_blocks),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

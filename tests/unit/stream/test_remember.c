@@ -53,9 +53,8 @@ static void take(t3r_runtime *rt, double x, double z, uint8_t level)
     assert_int_equal(try_to_take(rt, x, z, level), T3R_OK);
 }
 
-static void five_bits_keep_the_mean(void **state)
+TEST(five_bits_keep_the_mean)
 {
-    (void)state;
     const uint8_t levels[] = {0, 1, 3, 77, 128, 200, 254, 255};
     const t3r_config config = stream_config(1);
     for (size_t l = 0; l < sizeof levels; l++) {
@@ -88,9 +87,8 @@ static uint32_t numbers_of(const t3r_runtime *rt)
 }
 
 /* Of those that show the same place one is forgotten, and not the only one of another, whatever its number. */
-static void forgets_what_is_shown_often(void **state)
+TEST(forgets_what_is_shown_often)
 {
-    (void)state;
     const t3r_config config = stream_config(3);
     t3r_runtime *rt = begin(&config);
     take(rt, 0, 0, 90);
@@ -107,9 +105,8 @@ static void forgets_what_is_shown_often(void **state)
 }
 
 /* A camera that stands still remembers keyframes all over its time. */
-static void spreads_over_time(void **state)
+TEST(spreads_over_time)
 {
-    (void)state;
     const t3r_config config = stream_config(3);
     t3r_runtime *rt = begin(&config);
     for (int i = 0; i < 20; i++) {
@@ -130,9 +127,8 @@ static uint32_t mean_level(const t3r_runtime *rt)
 }
 
 /* The wall is darker in the end than it was for long: the map follows, but not all the way. */
-static void the_map_remembers(void **state)
+TEST(the_map_remembers)
 {
-    (void)state;
     uint32_t level[2];
     for (uint32_t i = 0; i < 2; i++) {
         const t3r_config config = stream_config(3 * i);
@@ -149,9 +145,8 @@ static void the_map_remembers(void **state)
 }
 
 /* From afar alone a Gaussian stays as it is, unless a remembered keyframe shows it closely. */
-static void holds_what_it_shows(void **state)
+TEST(holds_what_it_shows)
 {
-    (void)state;
     for (uint32_t remember = 0; remember < 2; remember++) {
         const t3r_config config = stream_config(remember);
         t3r_runtime *rt = begin(&config);
@@ -165,9 +160,8 @@ static void holds_what_it_shows(void **state)
 
 /* Where a remembered keyframe had no depth it shows nothing. The second one stands eight columns to the right of the
  * first: of what the first one gave the map, a column falls on its column without depth, and some miss it. */
-static void hides_what_had_no_depth(void **state)
+TEST(hides_what_had_no_depth)
 {
-    (void)state;
     const t3r_config config = stream_config(1);
     t3r_runtime *rt = begin(&config);
     take(rt, -0.5, 0, 90);
@@ -191,9 +185,8 @@ static void hides_what_had_no_depth(void **state)
 }
 
 /* One that saw everything from afar holds nothing that was seen closely. */
-static void holds_nothing_from_afar(void **state)
+TEST(holds_nothing_from_afar)
 {
-    (void)state;
     const t3r_config config = stream_config(1);
     t3r_runtime *rt = begin(&config);
     take(rt, 0, 0, 90);
@@ -211,9 +204,8 @@ static double units(const t3r_runtime *rt, int count)
 
 /* The map's range is 1,024 units about an origin that follows the camera. What is beyond it neither holds nor refines,
  * and is forgotten first, whatever its number. */
-static void forgets_first_what_is_out_of_range(void **state)
+TEST(forgets_first_what_is_out_of_range)
 {
-    (void)state;
     const t3r_config config = stream_config(2);
     t3r_runtime *rt = begin(&config);
     take(rt, 0, 0, 90);
@@ -227,9 +219,8 @@ static void forgets_first_what_is_out_of_range(void **state)
 }
 
 /* The keyframe whose planes are taken can itself be out of range. It shows nothing of the map. */
-static void remembers_what_is_out_of_range(void **state)
+TEST(remembers_what_is_out_of_range)
 {
-    (void)state;
     const t3r_config config = stream_config(2);
     t3r_runtime *rt = begin(&config);
     take(rt, 0, 0, 90);
@@ -241,9 +232,8 @@ static void remembers_what_is_out_of_range(void **state)
 }
 
 /* A keyframe at hand that came out of range lost its depth, and is not remembered. */
-static void remembers_only_what_shows_something(void **state)
+TEST(remembers_only_what_shows_something)
 {
-    (void)state;
     t3r_config config = stream_config(2);
     config.views = 3;
     t3r_runtime *rt = begin(&config);
@@ -257,9 +247,8 @@ static void remembers_only_what_shows_something(void **state)
 }
 
 /* Memory may come back otherwise than it was: a camera that is none shows nothing, and is forgotten first. */
-static void passes_over_cameras_that_are_none(void **state)
+TEST(passes_over_cameras_that_are_none)
 {
-    (void)state;
     const t3r_config config = stream_config(3);
     t3r_runtime *rt = begin(&config);
     for (int i = 0; i < 3; i++) {
@@ -284,9 +273,8 @@ static int progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
 }
 
 /* A keyframe is cancelled while remembered ones refine the map, too. */
-static void is_cancelled_at_every_step(void **state)
+TEST(is_cancelled_at_every_step)
 {
-    (void)state;
     uint32_t calls = 1;
     for (uint32_t at = 0; at <= calls; at++) {
         const t3r_config config = stream_config(1);
@@ -303,9 +291,8 @@ static void is_cancelled_at_every_step(void **state)
 }
 
 /* As many keyframes as there is no room for are no state that the library left. */
-static void refuses_more_than_fit(void **state)
+TEST(refuses_more_than_fit)
 {
-    (void)state;
     const t3r_config config = stream_config(1);
     t3r_plan_info plan;
     assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
@@ -315,24 +302,4 @@ static void refuses_more_than_fit(void **state)
     assert_int_equal(t3r_attach(&rt, arena, plan.bytes), T3R_OK);
     rt->remembered = 2;
     assert_int_equal(t3r_attach(&rt, arena, plan.bytes), T3R_ERR_EPOCH);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(five_bits_keep_the_mean),
-        cmocka_unit_test(forgets_what_is_shown_often),
-        cmocka_unit_test(spreads_over_time),
-        cmocka_unit_test(the_map_remembers),
-        cmocka_unit_test(holds_what_it_shows),
-        cmocka_unit_test(refuses_more_than_fit),
-        cmocka_unit_test(hides_what_had_no_depth),
-        cmocka_unit_test(holds_nothing_from_afar),
-        cmocka_unit_test(forgets_first_what_is_out_of_range),
-        cmocka_unit_test(remembers_what_is_out_of_range),
-        cmocka_unit_test(remembers_only_what_shows_something),
-        cmocka_unit_test(passes_over_cameras_that_are_none),
-        cmocka_unit_test(is_cancelled_at_every_step),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

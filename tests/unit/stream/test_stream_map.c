@@ -63,9 +63,8 @@ static int by_order(const void *a, const void *b)
     return x->key != y->key ? (x->key > y->key) - (x->key < y->key) : (x->rank > y->rank) - (x->rank < y->rank);
 }
 
-static void compete_as_sorted(void **state)
+TEST(compete_as_sorted)
 {
-    (void)state;
     static site s;
     static rival rivals[PIXELS + MOST];
     uint64_t seed = 1;
@@ -110,9 +109,8 @@ static double size_of(const t3r_gaussian *g)
 }
 
 /* A quarter of the density is twice the width; no thinning, no change; nobody ever narrows. */
-static void widens_by_density(void **state)
+TEST(widens_by_density)
 {
-    (void)state;
     static site s;
     uint64_t seed = 5;
     for (int thinned_q10 = 0; thinned_q10 <= 12 << 10; thinned_q10 += 100) {
@@ -139,9 +137,8 @@ static void widens_by_density(void **state)
 }
 
 /* Half the density, an octave, in every `half_life` keyframes on end, evenly. */
-static void fades_by_half_life(void **state)
+TEST(fades_by_half_life)
 {
-    (void)state;
     static site s;
     const uint32_t half_lives[] = {1, 3, 32, 341, 342, 600, 1000, 1024};
     for (size_t h = 0; h < sizeof half_lives / sizeof *half_lives; h++) {
@@ -162,9 +159,8 @@ static void fades_by_half_life(void **state)
 }
 
 /* However long nobody sees a Gaussian, its counts stay at their most. */
-static void counts_are_held(void **state)
+TEST(counts_are_held)
 {
-    (void)state;
     static site s;
     uint64_t seed = 13;
     fill(&s, &seed, 100);
@@ -183,9 +179,8 @@ static void counts_are_held(void **state)
 }
 
 /* What a head put at the end of the range or beyond is not taken over; what is, keeps its own pixel's record. */
-static void what_is_out_of_range_is_left_out(void **state)
+TEST(what_is_out_of_range_is_left_out)
 {
-    (void)state;
     static site s;
     uint64_t seed = 17;
     fill(&s, &seed, 100);
@@ -221,9 +216,8 @@ static void what_is_out_of_range_is_left_out(void **state)
     assert_int_equal(s.records[2].wanted_q10, INT16_MAX); /* 2 log2 of 65,543 is a little above */
 }
 
-static void moves_are_exact(void **state)
+TEST(moves_are_exact)
 {
-    (void)state;
     static site s;
     uint64_t seed = 9;
     fill(&s, &seed, 100);
@@ -246,15 +240,4 @@ static void moves_are_exact(void **state)
     t3r_map_move(&s.map, (int64_t[3]){(int64_t)100 << 20, -((int64_t)100 << 20), 0});
     assert_int_equal(s.map.count, 1);
     assert_int_equal(s.gaussians[0].position_q20[2], 7);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(compete_as_sorted),
-                                       cmocka_unit_test(widens_by_density),
-                                       cmocka_unit_test(fades_by_half_life),
-                                       cmocka_unit_test(counts_are_held),
-                                       cmocka_unit_test(what_is_out_of_range_is_left_out),
-                                       cmocka_unit_test(moves_are_exact)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,9 +57,8 @@ static uint32_t run(const t3r_config *config, t3r_gaussian map[BUDGET])
     return scene.count;
 }
 
-static void each_setting(void **state)
+TEST(each_setting)
 {
-    (void)state;
     static t3r_gaussian first[BUDGET], again[BUDGET], usual[BUDGET];
     t3r_config base = t3r_default_config(SIDE, SIDE, 2, BUDGET);
     base.stream = 1;
@@ -98,9 +97,8 @@ static void each_setting(void **state)
 }
 
 /* With fitted passes a keyframe takes the maximum of a stream; otherwise the number requested. */
-static void fitted_passes_have_a_bound(void **state)
+TEST(fitted_passes_have_a_bound)
 {
-    (void)state;
     static t3r_gaussian fitted[BUDGET], bound[BUDGET], more[BUDGET];
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
     config.stream = 1;
@@ -116,9 +114,8 @@ static void fitted_passes_have_a_bound(void **state)
 }
 
 /* A damaged arena may hold another head than the configuration's, whose weights are not bound. */
-static void a_stream_builds_as_it_is_configured(void **state)
+TEST(a_stream_builds_as_it_is_configured)
 {
-    (void)state;
     const t3r_camera camera = camera_at(0);
     const t3r_frame frame = frame_at(0);
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
@@ -131,14 +128,4 @@ static void a_stream_builds_as_it_is_configured(void **state)
     assert_int_equal(t3r_attach(&rt, arena, plan.bytes), T3R_OK);
     assert_int_equal(t3r_stream_keyframe(rt, &frame, &camera, NULL), T3R_OK);
     assert_int_equal(rt->build.head, T3R_HEAD_ANALYTIC);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_setting),
-        cmocka_unit_test(fitted_passes_have_a_bound),
-        cmocka_unit_test(a_stream_builds_as_it_is_configured),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -47,9 +47,8 @@ static void fill(bench b, uint64_t *seed, int pattern)
     }
 }
 
-static void inverts_every_size(void **state)
+TEST(inverts_every_size)
 {
-    (void)state;
     uint64_t seed = 1;
     for (uint32_t height = 1; height <= 70; height++) {
         for (uint32_t width = 1; width <= 70; width++) {
@@ -65,9 +64,8 @@ static void inverts_every_size(void **state)
     }
 }
 
-static void inverts_large(void **state)
+TEST(inverts_large)
 {
-    (void)state;
     uint64_t seed = 2;
     bench b = bench_new(1280, 720);
     for (int pattern = 0; pattern < 5; pattern++) {
@@ -184,9 +182,8 @@ static void worst_sums(uint32_t level, t3r_wavelet kind, double worst[3])
 }
 
 /* The table of wavelet_level.h, and that everything stored fits 16 bits. */
-static void proof(void **state)
+TEST(proof)
 {
-    (void)state;
     const double table[KINDS][LEVELS][3] = {
         {{1.268, 4.000, 2.733},
          {1.500, 3.402, 2.929},
@@ -217,9 +214,8 @@ static void proof(void **state)
 
 /* For a coefficient (i, j), the black and white image that drives it furthest: the integer transform follows the
  * real one to its extreme, so nothing has wrapped round. */
-static void attained(void **state)
+TEST(attained)
 {
-    (void)state;
     static double across[80][80], down[80][80];
     const uint32_t sizes[][2] = {{8, 8}, {9, 9}, {17, 33}, {33, 34}, {64, 65}, {70, 41}, {66, 50}, {37, 24}};
     double worst_error = 0, largest = 0;
@@ -274,9 +270,8 @@ static void attained(void **state)
 
 /* The low and high halves are db2's published filters, coefficient n over samples 2 n - 1 .. 2 n + 2, up to the
  * stated gains and the sign of the high half. The first and the last ones follow the border's own rules. */
-static void daubechies(void **state)
+TEST(daubechies)
 {
-    (void)state;
     enum { N = 48, BORDER = 2 };
     const double root = sqrt(3), norm = 4 * sqrt(2);
     const double h[4] = {(1 + root) / norm, (3 + root) / norm, (3 - root) / norm, (1 - root) / norm};
@@ -337,9 +332,8 @@ static double magnitude(const int16_t *plane, uint32_t width, uint32_t x, uint32
 }
 
 /* Computes each pixel's texture from the coefficients in Mallat's layout, with real gains. */
-static void texture_by_definition(void **state)
+TEST(texture_by_definition)
 {
-    (void)state;
     uint64_t seed = 17;
     const uint32_t sizes[][2] = {{64, 64}, {33, 47}, {70, 9}, {8, 8}, {1, 13}, {12, 1}, {31, 32}};
     const double root = sqrt(3);
@@ -387,9 +381,8 @@ static void texture_by_definition(void **state)
 }
 
 /* A blank wall has no texture, apart from rounding. */
-static void texture_of_nothing(void **state)
+TEST(texture_of_nothing)
 {
-    (void)state;
     image x = image_new(67, 45);
     uint32_t worst = 0;
     for (int grey = 0; grey < 256; grey++) {
@@ -411,9 +404,8 @@ static void texture_of_nothing(void **state)
 }
 
 /* The image that drives a coefficient of level 5 furthest exceeds Q4 in 16 bits: its pixels stay at the top. */
-static void texture_saturates(void **state)
+TEST(texture_saturates)
 {
-    (void)state;
     static double weights[80][80];
     image x = image_new(64, 64);
     line_weights(weights, NULL, 64, 5, T3R_WAVELET_DB2);
@@ -439,9 +431,8 @@ static void texture_saturates(void **state)
 }
 
 /* A coefficient of the coarsest level without a neighbour to the side is clamped to 16 bits, like all others. */
-static void held_at_odd_sides(void **state)
+TEST(held_at_odd_sides)
 {
-    (void)state;
     enum { WIDTH = 16, HEIGHT = 64, STRIPE = 16 }; /* one sample by four at level 5 */
     image x = image_new(WIDTH, HEIGHT);
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
@@ -455,18 +446,4 @@ static void held_at_odd_sides(void **state)
         assert_int_equal(x.texture[i], UINT16_MAX);
     }
     image_free(x);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(held_at_odd_sides),
-                                       cmocka_unit_test(inverts_every_size),
-                                       cmocka_unit_test(inverts_large),
-                                       cmocka_unit_test(proof),
-                                       cmocka_unit_test(attained),
-                                       cmocka_unit_test(daubechies),
-                                       cmocka_unit_test(texture_by_definition),
-                                       cmocka_unit_test(texture_of_nothing),
-                                       cmocka_unit_test(texture_saturates)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,14 +9,13 @@
 
 #include "cli/cli.h"
 #include "cli/options/file_guard.h"
-#include "cli/options/man_page.h"
 #include "cli/options/option_list.h"
 #include "cli/tables/json_output.h"
 #include "cli/text/edit_distance.h"
 #include "cli/text/style.h"
 #include "cli/text/word_list.h"
 
-enum { KEY_LISTING = 0x8000, KEY_COMPLETE, KEY_MAN_PAGE, KEY_COLOR, KEY_FORCE, LONG_OPTION = 0x10000 };
+enum { KEY_LISTING = 0x8000, KEY_COMPLETE, KEY_COLOR, KEY_FORCE, LONG_OPTION = 0x10000 };
 
 static void *must(void *memory)
 {
@@ -70,8 +69,8 @@ static void add_value(file_list *files, const struct argp_option *o, const char 
 static const struct argp_option *arguments_of(const option_list *list)
 {
     for (uint32_t i = 0; i < list->count; i++) {
-        if (list->rows[i].option->key == 0 && (list->rows[i].option->flags & OPTION_READS) != 0) {
-            return list->rows[i].option;
+        if (list->rows[i]->key == 0 && (list->rows[i]->flags & OPTION_READS) != 0) {
+            return list->rows[i];
         }
     }
     return NULL;
@@ -82,7 +81,7 @@ static char *short_options(const option_list *list)
 {
     char *letters = must(calloc(list->count + 1, 3)), *end = letters;
     for (uint32_t i = 0; i < list->count; i++) {
-        const struct argp_option *o = list->rows[i].option;
+        const struct argp_option *o = list->rows[i];
         if (option_has_short(o)) {
             *end++ = (char)o->key;
             *end = ':';
@@ -101,7 +100,7 @@ static struct option *long_options(const option_list *list)
 {
     struct option *all = must(calloc(list->count + OF_ARGP + 1, sizeof *all)), *next = all;
     for (uint32_t i = 0; i < list->count; i++) {
-        const struct argp_option *o = list->rows[i].option;
+        const struct argp_option *o = list->rows[i];
         if (o->name != NULL && (o->flags & OPTION_DOC) == 0) {
             int takes = o->arg == NULL                          ? no_argument
                         : (o->flags & OPTION_ARG_OPTIONAL) != 0 ? optional_argument
@@ -118,9 +117,8 @@ static struct option *long_options(const option_list *list)
 static const struct argp_option *option_of(const option_list *list, int got)
 {
     for (uint32_t i = 0; i < list->count; i++) {
-        if (got == LONG_OPTION + (int)i ||
-            (option_has_short(list->rows[i].option) && list->rows[i].option->key == got)) {
-            return list->rows[i].option;
+        if (got == LONG_OPTION + (int)i || (option_has_short(list->rows[i]) && list->rows[i]->key == got)) {
+            return list->rows[i];
         }
     }
     return NULL;
@@ -144,7 +142,7 @@ static void refuse_option(const option_list *list, const char *word)
         }
     }
     for (uint32_t i = 0; i < list->count; i++) {
-        const struct argp_option *o = list->rows[i].option;
+        const struct argp_option *o = list->rows[i];
         if (!option_is_shown(o)) {
             continue;
         }
@@ -204,7 +202,7 @@ static void print_listing(const option_list *list)
 {
     cJSON *rows = cJSON_CreateArray();
     for (uint32_t i = 0; i < list->count; i++) {
-        const struct argp_option *o = list->rows[i].option;
+        const struct argp_option *o = list->rows[i];
         if ((o->flags & (OPTION_READS | OPTION_WRITES_BIT)) == 0) {
             continue;
         }
@@ -242,7 +240,7 @@ static bool lists_values(const char *argument)
 static void print_completion(const option_list *list)
 {
     for (uint32_t i = 0; i < list->count; i++) {
-        const struct argp_option *o = list->rows[i].option;
+        const struct argp_option *o = list->rows[i];
         if (!option_is_shown(o)) {
             continue;
         }
@@ -266,13 +264,8 @@ static error_t parse_listing(int key, char *argument, struct argp_state *state)
     if (key == KEY_COLOR) {
         return 0; /* read_line() has handled it */
     }
-    if (key != KEY_LISTING && key != KEY_COMPLETE && key != KEY_MAN_PAGE) {
+    if (key != KEY_LISTING && key != KEY_COMPLETE) {
         return ARGP_ERR_UNKNOWN;
-    }
-    if (key == KEY_MAN_PAGE) {
-        /* argp puts its own options next to ours */
-        man_page_of_command(cli_command(), cli_command_summary(), state->root_argp->children[0].argp);
-        exit(CLI_OK);
     }
     option_list list = option_list_of(state->root_argp);
     if (key == KEY_COMPLETE) {
@@ -294,7 +287,6 @@ static const struct argp_option listing_options[] = {
      "use of colours in messages and headings: auto (default), on terminals alone; always; never", -1},
     {"file-options", KEY_LISTING, NULL, OPTION_HIDDEN, "the options that name files, as JSON", -1},
     {"complete", KEY_COMPLETE, NULL, OPTION_HIDDEN, "all options, for completion", -1},
-    {"man-page", KEY_MAN_PAGE, NULL, OPTION_HIDDEN, "the page for man(1)", -1},
     {0}};
 static const struct argp_option force_options[] = {
     {"force", KEY_FORCE, NULL, 0, "replace a file of another kind than the one to be written, too", -1}, {0}};
@@ -308,7 +300,7 @@ static bool any_is_written(const struct argp *argp)
     option_list list = option_list_of(argp);
     bool written = false;
     for (uint32_t i = 0; i < list.count; i++) {
-        written = written || (list.rows[i].option->flags & OPTION_WRITES_BIT) != 0;
+        written = written || (list.rows[i]->flags & OPTION_WRITES_BIT) != 0;
     }
     option_list_free(&list);
     return written;

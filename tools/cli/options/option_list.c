@@ -13,19 +13,12 @@ static bool ends(const struct argp_option *o)
     return o->key == 0 && o->name == NULL && o->doc == NULL && o->group == 0;
 }
 
-static bool is_heading(const struct argp_option *o)
-{
-    return o->name == NULL && o->key == 0;
-}
-
 /* Counts the rows, and writes them if there is room. */
 static void add_rows(const struct argp *argp, option_list *list)
 {
-    int group = 0;
     for (const struct argp_option *o = argp->options; o != NULL && !ends(o); o++) {
-        group = o->group != 0 ? o->group : is_heading(o) ? group + 1 : group;
         if (list->rows != NULL) {
-            list->rows[list->count] = (option_row){o, argp, group};
+            list->rows[list->count] = o;
         }
         list->count++;
     }

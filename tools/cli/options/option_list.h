@@ -7,14 +7,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-typedef struct option_row {
-    const struct argp_option *option;
-    const struct argp *owner; /* the parser whose table holds it */
-    int group;                /* as in argp: a row without a group belongs to the previous row's */
-} option_row;
-
 typedef struct option_list {
-    option_row *rows; /* heap; option_list_free() */
+    const struct argp_option **rows; /* heap; option_list_free() */
     uint32_t count;
 } option_list;
 

@@ -8,6 +8,21 @@
 #include "cli/cli.h"
 #include "trim3r.h"
 
+error_t option_field(int key, char *argument, struct argp_state *state)
+{
+    void *field = (char *)state->input + (key & 0xffff);
+    switch (key & ~0xffff) {
+    case TO_SWITCH:
+        *(bool *)field = true;
+        return 0;
+    case TO_TEXT:
+        *(const char **)field = argument;
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high)
 {
     uint32_t value = low, count;
@@ -27,6 +42,23 @@ double option_decimal(struct argp_state *state, const char *option, const char *
         argp_error(state, "--%s takes a number %g..%g, not '%s'", option, low, high, text);
     }
     return value;
+}
+
+uint32_t numbers_of_text(const char *text, double *numbers, uint32_t most)
+{
+    for (uint32_t count = 0; count < most; text++) {
+        char *end;
+        numbers[count] = strtod(text, &end);
+        if (end == text || !(numbers[count] > -1e6 && numbers[count] < 1e6)) {
+            return 0;
+        }
+        count++;
+        text = end;
+        if (*text != ',') {
+            return *text == '\0' ? count : 0;
+        }
+    }
+    return 0;
 }
 
 bool bytes_of_text(const char *text, uint64_t *bytes)

@@ -6,14 +6,24 @@
 
 #include <argp.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "trim3r.h"
+
+/* Key of an option that fills one field of the parser's input, a struct `type`: a switch (bool) or a text. */
+#define OPTION_TO(type, field)                                                                                         \
+    ((int)offsetof(type, field) | _Generic(((type *)NULL)->field, bool : TO_SWITCH, const char * : TO_TEXT))
+enum { TO_SWITCH = 0x100000, TO_TEXT = 0x200000 };
+/* Fills the field of such a key. Returns ARGP_ERR_UNKNOWN for any other key. */
+error_t option_field(int key, char *argument, struct argp_state *state);
 
 /* Returns a whole number in [low, high]. */
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high);
 /* Returns a decimal number in [low, high], with or without an exponent. */
 double option_decimal(struct argp_state *state, const char *option, const char *text, double low, double high);
+/* Parses 1 to `most` numbers of less than a million, separated by commas. Returns their count, or 0 for other texts. */
+uint32_t numbers_of_text(const char *text, double *numbers, uint32_t most);
 /* Parses a number of bytes, optionally followed by K (2^10), M (2^20) or G (2^30). False: the text is none. */
 bool bytes_of_text(const char *text, uint64_t *bytes);
 /* The same as an option's value; must be above 0. */

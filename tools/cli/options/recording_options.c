@@ -3,13 +3,15 @@
 
 #include <string.h>
 
-enum { KEY_COMPRESSION = 0x190, KEY_UNCHUNKED };
+#include "cli/options/option_values.h"
+
+enum { KEY_COMPRESSION = 0x190 };
 
 static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "How messages are stored in the recording:", RECORDING_GROUP},
     {"compression", KEY_COMPRESSION, "NAME", 0, "compression of the frames: none (default), zstd or lz4",
      RECORDING_GROUP},
-    {"unchunked", KEY_UNCHUNKED, NULL, 0,
+    {"unchunked", OPTION_TO(recording_options, unchunked), NULL, 0,
      "write messages without chunks and without their index, as a microcontroller does", RECORDING_GROUP},
     {0},
 };
@@ -32,16 +34,13 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     case KEY_COMPRESSION:
         o->compression = parse_compression(state, argument);
         return 0;
-    case KEY_UNCHUNKED:
-        o->unchunked = true;
-        return 0;
     case ARGP_KEY_END:
         if (o->unchunked && o->compression != T3R_COMPRESSION_NONE) {
             argp_error(state, "--compression packs chunks, which --unchunked leaves out");
         }
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, argument, state);
     }
 }
 

@@ -56,7 +56,7 @@ static void set_pose(posed_frame *frame, const t3r_camera *camera)
     }
 }
 
-static int estimate(const char *directory, posed_folder *folder, poses_source source, pose_view *views, motion *poses,
+static int estimate(const char *directory, posed_folder *folder, poses_source source, pose_view *views, rigid *poses,
                     t3r_camera *cameras, pose_account *accounts, char *error, size_t error_bytes)
 {
     if (poses_check_count(folder->frame_count, error, error_bytes) != 0) {
@@ -64,7 +64,7 @@ static int estimate(const char *directory, posed_folder *folder, poses_source so
     }
     for (uint32_t i = 0; i < folder->frame_count; i++) {
         char reason[512];
-        cli_progress("looking for corners", i, folder->frame_count);
+        cli_progress("looking for features", i, folder->frame_count);
         const int status = look_at(directory, folder, i, &views[i], &cameras[i], reason, sizeof reason);
         if (status != 0) {
             (void)t3r_reason(error, error_bytes, "frame %u: %s", i, reason);
@@ -93,7 +93,7 @@ int import_estimate_poses(const char *directory, posed_folder *folder, poses_sou
                           char *error, size_t error_bytes)
 {
     pose_view *views = calloc(folder->frame_count, sizeof *views);
-    motion *poses = calloc(folder->frame_count, sizeof *poses);
+    rigid *poses = calloc(folder->frame_count, sizeof *poses);
     t3r_camera *cameras = calloc(folder->frame_count, sizeof *cameras);
     int status = views != NULL && poses != NULL && cameras != NULL
                      ? estimate(directory, folder, source, views, poses, cameras, accounts, error, error_bytes)

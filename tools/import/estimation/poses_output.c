@@ -20,7 +20,7 @@ cJSON *pose_account_json(const uint32_t *frames, uint32_t index, const pose_acco
         cJSON_AddBoolToObject(out, "by_depth", a->metric);
         cJSON_AddNumberToObject(out, "pixels", a->pixels);
         cJSON_AddNumberToObject(out, "rotation_degrees", a->turn_degrees);
-        cJSON_AddNumberToObject(out, "direction_degrees", a->direction_degree);
+        cJSON_AddNumberToObject(out, "direction_degrees", a->direction_degrees);
     }
     return out;
 }
@@ -62,9 +62,9 @@ void poses_print(const uint32_t *frames, uint32_t count, const pose_account *acc
             printf("%s\n", why);
         } else if (a->matches > 0) {
             printf("frame %" PRIu32 " posed from frame %" PRIu32 ": %" PRIu32 " of %" PRIu32
-                   " corners agree within %.2f pixels%s, rotation +-%.2f degrees, direction +-%.1f\n",
+                   " features agree within %.2f pixels%s, rotation +-%.2f degrees, direction +-%.1f\n",
                    frames != NULL ? frames[i] : i, frames != NULL ? frames[a->from] : a->from, a->matches, a->tried,
-                   a->pixels, a->metric ? ", by depth" : "", a->turn_degrees, a->direction_degree);
+                   a->pixels, a->metric ? ", by depth" : "", a->turn_degrees, a->direction_degrees);
         }
     }
 }

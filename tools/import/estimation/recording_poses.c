@@ -9,7 +9,7 @@
 
 #define ERROR_BYTES 512
 
-/* Finds the frame's corners; its pose, or the origin, goes to `camera`. */
+/* Finds the features of the frame; its pose, or the origin, goes to `camera`. */
 static int look_at(const t3r_recording *recording, const char *path, uint32_t index, pose_view *view,
                    t3r_camera *camera)
 {
@@ -39,7 +39,7 @@ static int look_at(const t3r_recording *recording, const char *path, uint32_t in
 }
 
 static int estimate(t3r_recording *recording, const char *path, const uint32_t *frames, uint32_t count,
-                    poses_source source, pose_account *accounts, pose_view *views, motion *poses, t3r_camera *cameras)
+                    poses_source source, pose_account *accounts, pose_view *views, rigid *poses, t3r_camera *cameras)
 {
     char error[ERROR_BYTES] = "";
     if (poses_check_count(count, error, sizeof error) != 0) {
@@ -71,7 +71,7 @@ int recording_estimate_poses(t3r_recording *recording, const char *path, const u
                              poses_source source, pose_account *accounts)
 {
     pose_view *views = calloc(count, sizeof *views);
-    motion *poses = calloc(count, sizeof *poses);
+    rigid *poses = calloc(count, sizeof *poses);
     t3r_camera *cameras = calloc(count, sizeof *cameras);
     int code = views != NULL && poses != NULL && cameras != NULL
                    ? estimate(recording, path, frames, count, source, accounts, views, poses, cameras)

@@ -18,7 +18,7 @@
 #include "trim3r.h"
 
 #define MAX_PATH_BYTES 4096u
-#define TOLD_MOST 16u         /* most remarks on unread fields */
+#define REMARKED_MOST 16u     /* most remarks on unread fields */
 #define NERFSTUDIO_UNIT 0.001 /* default of a depth_file_path, as in nerfstudio */
 
 /* Every field that is read at the top or in a frame, in the order of strcmp(). */
@@ -66,8 +66,8 @@ typedef struct reader {
     const cJSON *frame; /* NULL while the top level is read */
     const posed_folder_options *options;
     text_list *remarks;
-    const char *told[TOLD_MOST]; /* fields with remarks; the names belong to the text */
-    uint32_t told_count;
+    const char *remarked[REMARKED_MOST]; /* fields with remarks; the names belong to the text */
+    uint32_t remarked_count;
     bool nerfstudio; /* some frame has a depth_file_path */
     char where[64];  /* "frames[3]" */
     char *error;
@@ -112,13 +112,13 @@ static bool may_matter(const char *name)
 /* Remarks once per name. */
 static void tell_unread(reader *r, const char *name)
 {
-    for (uint32_t i = 0; i < r->told_count; i++) {
-        if (strcmp(r->told[i], name) == 0) {
+    for (uint32_t i = 0; i < r->remarked_count; i++) {
+        if (strcmp(r->remarked[i], name) == 0) {
             return;
         }
     }
-    if (r->told_count < TOLD_MOST) {
-        r->told[r->told_count++] = name;
+    if (r->remarked_count < REMARKED_MOST) {
+        r->remarked[r->remarked_count++] = name;
         (void)text_list_add(r->remarks, "%s%s%.100s: this field is not read, though its name says depth or pose",
                             r->where, r->where[0] != '\0' ? ": " : "", name);
     }

@@ -11,8 +11,10 @@
 
 #include "geometry/quaternion.h"
 #include "host/file_bytes.h"
+#include "host/grow.h"
 #include "host/reason.h"
 #include "import/poses/pose_check.h"
+#include "import/poses/pose_lines.h"
 #include "mcap/reader_limits.h"
 #include "trim3r.h"
 
@@ -60,23 +62,11 @@ static int by_stamp(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Takes a finite number at *text, which moves past it. */
-static bool take_number(char **text, double *value)
-{
-    char *end;
-    *value = strtod(*text, &end);
-    if (end == *text || !isfinite(*value)) {
-        return false;
-    }
-    *text = end;
-    return true;
-}
-
 /* Parses one line into an item. Returns NULL, or what is wrong with it. */
 static const char *parse_line(char *line, bool poses, stamped *item)
 {
     char *at = line;
-    if (!take_number(&at, &item->stamp)) {
+    if (!pose_lines_number(&at, &item->stamp) || !isfinite(item->stamp)) {
         return "no time stamp";
     }
     if (!poses) {
@@ -87,10 +77,8 @@ static const char *parse_line(char *line, bool poses, stamped *item)
         item->name = strdup(name);
         return item->name != NULL ? NULL : "out of memory";
     }
-    for (int i = 0; i < 7; i++) {
-        if (!take_number(&at, i < 3 ? &item->pose.position[i] : &item->pose.rotation[(i - 2) % 4])) {
-            return "not 'time tx ty tz qx qy qz qw' in finite numbers";
-        }
+    if (!pose_lines_pose(&at, false, &item->pose)) {
+        return "not 'time tx ty tz qx qy qz qw'";
     }
     const char *wrong = pose_check(&item->pose);
     quaternion_normalise(item->pose.rotation);
@@ -100,34 +88,22 @@ static const char *parse_line(char *line, bool poses, stamped *item)
 static int parse_list(const char *path, char *text, bool poses, stamped_list *list, char *error, size_t error_bytes)
 {
     size_t room = 0;
-    size_t line_number = 0;
-    for (char *line = text, *next; line != NULL; line = next) {
-        line_number++;
-        next = strchr(line, '\n');
-        if (next != NULL) {
-            *next++ = '\0';
-        }
-        line += strspn(line, " \t\r");
-        if (*line == '\0' || *line == '#') {
-            continue;
-        }
+    pose_lines lines = {.rest = text};
+    for (char *line; (line = pose_lines_next(&lines)) != NULL;) {
         if (list->count == (poses ? T3R_LIMIT_POSES : T3R_LIMIT_PICTURES)) {
-            return t3r_reason(error, error_bytes, "%s: line %zu: more than %d entries", path, line_number,
+            return t3r_reason(error, error_bytes, "%s: line %zu: more than %d entries", path, lines.number,
                               poses ? T3R_LIMIT_POSES : T3R_LIMIT_PICTURES);
         }
-        if (list->count == room) {
-            room = room == 0 ? 1024 : room * 2;
-            stamped *grown = realloc(list->items, room * sizeof *grown);
-            if (grown == NULL) {
-                return t3r_reason(error, error_bytes, "%s: out of memory", path);
-            }
-            list->items = grown;
+        stamped *grown = t3r_grow(list->items, list->count, &room, sizeof *grown);
+        if (grown == NULL) {
+            return t3r_reason(error, error_bytes, "%s: out of memory", path);
         }
+        list->items = grown;
         stamped *item = &list->items[list->count];
         *item = (stamped){0};
         const char *wrong = parse_line(line, poses, item);
         if (wrong != NULL) {
-            return t3r_reason(error, error_bytes, "%s: line %zu: %s", path, line_number, wrong);
+            return t3r_reason(error, error_bytes, "%s: line %zu: %s", path, lines.number, wrong);
         }
         list->count++;
     }

@@ -5,18 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "geometry/quaternion.h"
 #include "host/reason.h"
 #include "import/frames/frame.h"
 #include "messages/fixed_camera.h"
-#include "posing/resection.h"
+#include "posing/opencv_module.h"
 
 #define RESECTED 3000u       /* points that a pose is computed from */
-#define RESECTION_PIXELS 5.0 /* largest accepted root mean square error, for 512 pixels */
+#define RESECTION_PIXELS 5.0 /* largest error of a right point, for 512 pixels */
 #define SAMPLED 20000u       /* depths per frame for the median */
 #define MEDIAN_STEPS 8192.0
 #define MOST_STEPS 65535.0
-#define SAME_POSE 1e-3 /* equal poses differ at most so: rotation entries, and relative position */
+#define SAME_POSE 1e-3 /* equal poses differ at most so: rotation in radians, and relative position */
 
 static int open_maps(const pointmap_source *source, uint32_t index, pointmaps *maps, char *error, size_t error_bytes)
 {
@@ -55,19 +54,10 @@ static int maps_of(pointmap_source *source, uint32_t index, pointmaps *own, poin
 
 /* ---- cameras ---------------------------------------------------------------------------------------------------- */
 
-static motion pose_of(const posed_frame *frame)
+static void set_pose(posed_frame *frame, const rigid *pose)
 {
-    motion m;
-    quaternion_matrix(frame->pose.rotation, m.r);
-    memcpy(m.t, frame->pose.position, sizeof m.t);
-    return m;
-}
-
-static int set_pose(posed_frame *frame, const motion *pose)
-{
-    memcpy(frame->pose.position, pose->t, sizeof frame->pose.position);
     frame->posed = true;
-    return quaternion_of(pose->r, frame->pose.rotation) == NULL ? 0 : -1;
+    frame->pose = *pose;
 }
 
 static int ascending(const void *a, const void *b)
@@ -111,14 +101,18 @@ static int map_lens(const pointmap_source *source, const posed_frame *frame, con
 
 /* Computes the pose from which the points lie on their pixels' rays; uses the more confident half, spread over the
  * view. */
-static int resect_map(const pointmaps *maps, const t3r_recorded_camera *lens, double least, motion *camera,
-                      double *pixels_off)
+static int resect_map(const pointmaps *maps, const t3r_recorded_camera *lens, double least, rigid *camera,
+                      double *pixels_off, char *error, size_t error_bytes)
 {
+    const pose_module *module = pose_module_load(error, error_bytes);
+    if (module == NULL) {
+        return -1;
+    }
     size_t pixels = (size_t)maps->width * maps->height, stride = pixels / (2 * (size_t)RESECTED) + 1, count = 0;
     const float *confidence = maps->confidence;
     double(*points)[3] = malloc((pixels / stride + 1) * sizeof *points);
-    double(*rays)[2] = malloc((pixels / stride + 1) * sizeof *rays), error = 0;
-    int status = points != NULL && rays != NULL ? 0 : -1;
+    double(*rays)[2] = malloc((pixels / stride + 1) * sizeof *rays), off = 0;
+    int status = points != NULL && rays != NULL ? 0 : t3r_reason(error, error_bytes, "out of memory");
     double enough = confidence != NULL ? fmax(least, median_confidence(confidence, pixels)) : 0;
     for (size_t i = stride / 2; i < pixels && status == 0; i += stride) {
         if (confidence == NULL || confidence[i] >= enough) {
@@ -130,19 +124,22 @@ static int resect_map(const pointmaps *maps, const t3r_recorded_camera *lens, do
             count++;
         }
     }
-    status = status == 0 ? resect((const double(*)[3])points, (const double(*)[2])rays, (uint32_t)count, camera, &error)
-                         : -1;
+    if (status == 0) {
+        const double band = RESECTION_PIXELS * fmax(maps->width, maps->height) / 512 / lens->fx;
+        status = module->resect((const double(*)[3])points, (const double(*)[2])rays, (uint32_t)count, band, camera,
+                                &off, error, error_bytes);
+    }
     free(points);
     free(rays);
-    *pixels_off = error * lens->fx;
-    return status == 0 && *pixels_off < RESECTION_PIXELS * fmax(maps->width, maps->height) / 512 ? 0 : -1;
+    *pixels_off = off * lens->fx;
+    return status;
 }
 
 /* Returns the frame's own pose in the first camera's frame, before it is changed. */
-static motion in_first(const pointmap_source *source, uint32_t index)
+static rigid in_first(const pointmap_source *source, uint32_t index)
 {
-    motion here = pose_of(&source->folder->frames[index]), back = motion_inverse(&source->first);
-    return motion_after(&back, &here);
+    const rigid back = rigid_inverse(&source->first);
+    return rigid_compose(&back, &source->folder->frames[index].pose);
 }
 
 /* Notes the first frame of each world, for messages. */
@@ -152,28 +149,28 @@ static void note_world(const char **world, const posed_frame *frame)
 }
 
 /* Whether the folder gives the frame the same pose; the pose then does not distinguish the two worlds. */
-static bool folder_agrees(const posed_frame *frame, const motion *pose)
+static bool folder_agrees(const posed_frame *frame, const rigid *pose)
 {
     if (!frame->posed) {
         return false;
     }
-    motion own = pose_of(frame);
-    double off = 0, apart = 0, far = 0;
-    for (int i = 0; i < 9; i++) {
-        off = fmax(off, fabs(own.r[i] - pose->r[i]));
+    const rigid *own = &frame->pose;
+    double alike = 0, apart = 0, far = 0;
+    for (int i = 0; i < 4; i++) {
+        alike += own->rotation[i] * pose->rotation[i];
     }
     for (int i = 0; i < 3; i++) {
-        apart = fmax(apart, fabs(own.t[i] - pose->t[i]));
-        far = fmax(far, fmax(fabs(own.t[i]), fabs(pose->t[i])));
+        apart = fmax(apart, fabs(own->position[i] - pose->position[i]));
+        far = fmax(far, fmax(fabs(own->position[i]), fabs(pose->position[i])));
     }
-    return off <= SAME_POSE && apart <= SAME_POSE * far;
+    return 2 * acos(fmin(1, fabs(alike))) <= SAME_POSE && apart <= SAME_POSE * far;
 }
 
 static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t index, const pointmaps *maps,
                         uint32_t which, char *error, size_t error_bytes)
 {
     posed_frame *frame = &folder->frames[index];
-    motion *camera = &source->cameras[index];
+    rigid *camera = &source->cameras[index];
     if (maps->intrinsics != NULL) {
         const double *k = maps->intrinsics[which];
         frame->intrinsics = posed_intrinsics_of((const double[9]){k[0], k[1], k[2], k[3]});
@@ -185,7 +182,8 @@ static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t 
         if (!folder_agrees(frame, camera)) {
             note_world(&source->in_points, frame);
         }
-        return set_pose(frame, camera);
+        set_pose(frame, camera);
+        return 0;
     }
     if (frame->posed && source->first_posed && !source->options.resect) {
         *camera = in_first(source, index);
@@ -201,21 +199,16 @@ static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t 
     if (map_lens(source, frame, maps, &lens, error, error_bytes) != 0) {
         return -1;
     }
-    if (resect_map(maps, &lens, source->options.confidence_least, camera, &off) != 0) {
-        return t3r_reason(
-            error, error_bytes,
-            "%s: no pose, and the points do not lie on the pixels' rays from any: intrinsics are wrong or "
-            "missing, or the points are",
-            frame->image);
+    char reason[512];
+    if (resect_map(maps, &lens, source->options.confidence_least, camera, &off, reason, sizeof reason) != 0) {
+        return t3r_reason(error, error_bytes, "%s: no pose, and %s", frame->image, reason);
     }
     source->worst_px = fmax(source->worst_px, off);
-    if (source->options.resect || !source->first_posed) {
-        note_world(&source->in_points, frame);
-        return set_pose(frame, camera); /* the points' frame is the world */
-    }
-    note_world(&source->in_folder, frame);
-    motion world = motion_after(&source->first, camera);
-    return set_pose(frame, &world);
+    const bool in_points = source->options.resect || !source->first_posed; /* the points' frame is the world */
+    const rigid world = in_points ? *camera : rigid_compose(&source->first, camera);
+    note_world(in_points ? &source->in_points : &source->in_folder, frame);
+    set_pose(frame, &world);
+    return 0;
 }
 
 /* ---- the unit --------------------------------------------------------------------------------------------------- */
@@ -325,7 +318,7 @@ int pointmap_source_open(pointmap_source *source, const char *directory, const p
     depths d = {0};
     int status = 0;
     source->first_posed = folder->frames[0].posed;
-    source->first = pose_of(&folder->frames[0]);
+    source->first = folder->frames[0].pose;
     for (uint32_t i = 0; i < folder->frame_count && status == 0; i++) {
         status = note_frame(source, folder, i, &d, error, error_bytes);
     }

@@ -19,8 +19,8 @@ typedef struct pointmap_source {
     const char *directory;
     const posed_folder *folder;
     pointmaps stack; /* for options.file */
-    motion *cameras; /* one per frame: camera to the points' frame */
-    motion first;    /* the folder's pose of its first frame, if it has one */
+    rigid *cameras;  /* one per frame: camera to the points' frame */
+    rigid first;     /* the folder's pose of its first frame, if it has one */
     bool first_posed;
     uint32_t count; /* frames that have a pointmap */
     /* a frame with a pose in the folder's world, and one in the points' frame; NULL = none */

@@ -9,7 +9,7 @@
 #include "geometry/quaternion.h"
 #include "host/reason.h"
 #include "import/pointmaps/array_file.h"
-#include "import/poses/pose_check.h"
+#include "import/poses/pose_matrix.h"
 #include "mcap/reader_limits.h"
 
 #define NAMES 5
@@ -195,24 +195,14 @@ static int take_poses(const stack *s, bool inverse, const double *numbers, point
         return t3r_reason(error, error_bytes, "out of memory");
     }
     for (uint32_t v = 0; v < out->count; v++) {
-        motion m;
-        double quaternion[4];
-        size_t at = (size_t)v * rows * 4;
-        for (uint32_t i = 0; i < 12; i++) {
-            double value = numbers[at + i];
-            *(i % 4 == 3 ? &m.t[i / 4] : &m.r[i / 4 * 3 + i % 4]) = value;
-        }
-        for (uint32_t i = 12; i < rows * 4; i++) {
-            if (numbers[at + i] != (i == 15 ? 1 : 0)) {
-                return fail(s, "the last row is not 0 0 0 1", error, error_bytes);
-            }
-        }
-        const char *wrong = pose_check_position(m.t);
-        wrong = wrong != NULL ? wrong : quaternion_of(m.r, quaternion);
+        double matrix[16] = {[15] = 1};
+        rigid pose;
+        memcpy(matrix, numbers + (size_t)v * rows * 4, rows * 4 * sizeof *matrix);
+        const char *wrong = pose_of_matrix(matrix, AXES_OPENCV, &pose);
         if (wrong != NULL) {
             return fail(s, wrong, error, error_bytes);
         }
-        out->poses[v] = inverse ? motion_inverse(&m) : m;
+        out->poses[v] = inverse ? rigid_inverse(&pose) : pose;
     }
     return 0;
 }
@@ -429,14 +419,16 @@ void pointmaps_free(pointmaps *maps)
     *maps = (pointmaps){0};
 }
 
-void pointmaps_depth(const pointmaps *maps, const motion *camera, double least, float *depth)
+void pointmaps_depth(const pointmaps *maps, const rigid *camera, double least, float *depth)
 {
+    double rotation[9];
+    quaternion_matrix(camera->rotation, rotation);
     size_t pixels = (size_t)maps->width * maps->height;
     for (size_t i = 0; i < pixels; i++) {
         const float *p = maps->points + 3 * i;
         double z = 0;
         for (int k = 0; k < 3; k++) {
-            z += camera->r[3 * k + 2] * (p[k] - camera->t[k]);
+            z += rotation[3 * k + 2] * (p[k] - camera->position[k]);
         }
         depth[i] = maps->confidence != NULL && maps->confidence[i] < least ? 0 : (float)z;
     }

@@ -17,13 +17,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "geometry/rigid.h"
 #include "pictures/picture.h"
-#include "posing/motion.h"
 
 /* An open file: what all views share, and one view's numbers at a time. */
 typedef struct pointmaps {
     uint32_t count, width, height;
-    motion *poses;           /* camera to the points' frame; NULL = none */
+    rigid *poses;            /* camera to the points' frame; NULL = none */
     double (*intrinsics)[4]; /* fx fy cx cy in pixels of the map; NULL = none */
     bool has_confidence;
     float *points;     /* height x width x 3 of the current view, all finite; NULL = none read */
@@ -47,6 +47,6 @@ void pointmaps_free(pointmaps *maps);
 
 /* Computes the depth along z of a camera for every point of the current view, 0 where the confidence is below `least`.
  * camera: to the points' frame. depth: height x width. */
-void pointmaps_depth(const pointmaps *maps, const motion *camera, double least, float *depth);
+void pointmaps_depth(const pointmaps *maps, const rigid *camera, double least, float *depth);
 
 #endif

@@ -7,8 +7,10 @@
 
 #include "geometry/quaternion.h"
 #include "host/file_bytes.h"
+#include "host/grow.h"
 #include "host/reason.h"
 #include "import/poses/pose_check.h"
+#include "import/poses/pose_lines.h"
 #include "mcap/mcap.h"
 #include "mcap/reader_limits.h"
 #include "recording/recording.h"
@@ -35,15 +37,11 @@ static const char *append(trajectory *t, size_t *room, const trajectory_pose *po
     if (t->count == T3R_LIMIT_POSES) {
         return T3R_LIMIT_TEXT("more than ", T3R_LIMIT_POSES, " poses");
     }
-    if (t->count == *room) {
-        size_t more = *room == 0 ? 1024 : *room * 2;
-        trajectory_pose *grown = realloc(t->poses, more * sizeof *grown);
-        if (grown == NULL) {
-            return "out of memory";
-        }
-        t->poses = grown;
-        *room = more;
+    trajectory_pose *grown = t3r_grow(t->poses, t->count, room, sizeof *grown);
+    if (grown == NULL) {
+        return "out of memory";
     }
+    t->poses = grown;
     t->poses[t->count++] = *pose;
     return NULL;
 }
@@ -104,49 +102,27 @@ static bool take_nanoseconds(char **text, int64_t *stamp_ns)
     return any;
 }
 
-static bool take_number(char **text, double *value)
-{
-    char *end, *start = *text + strspn(*text, " \t,");
-    *value = strtod(start, &end);
-    if (end == start) {
-        return false;
-    }
-    *text = end;
-    return true;
-}
-
 /* Returns NULL, or what is wrong with the line. */
 static const char *parse_line(char *line, bool commas, trajectory_pose *out)
 {
-    double *const position = out->pose.position, *const rotation = out->pose.rotation;
     if (commas ? !take_nanoseconds(&line, &out->stamp_ns) : !take_seconds(&line, &out->stamp_ns)) {
         return commas ? "no time in nanoseconds" : "no time in seconds";
     }
     if (*line != ' ' && *line != '\t' && *line != ',') {
         return commas ? "no whole number of nanoseconds" : "no time in seconds";
     }
-    for (int i = 0; i < 7; i++) {
-        if (!take_number(&line, i < 3 ? &position[i] : &rotation[commas ? i - 3 : (i - 2) % 4])) {
-            return commas ? "not 'nanoseconds,px,py,pz,qw,qx,qy,qz'" : "not 'seconds tx ty tz qx qy qz qw'";
-        }
+    if (!pose_lines_pose(&line, commas, &out->pose)) {
+        return commas ? "not 'nanoseconds,px,py,pz,qw,qx,qy,qz'" : "not 'seconds tx ty tz qx qy qz qw'";
     }
     return pose_check(&out->pose);
 }
 
 int trajectory_parse(char *text, const char *path, trajectory *out, char *error, size_t error_bytes)
 {
-    size_t room = 0, number = 0;
+    size_t room = 0;
+    pose_lines lines = {.rest = text};
     *out = (trajectory){.kind = "TUM"};
-    for (char *line = text, *next; line != NULL; line = next) {
-        number++;
-        next = strchr(line, '\n');
-        if (next != NULL) {
-            *next++ = '\0';
-        }
-        line += strspn(line, " \t\r");
-        if (*line == '\0' || *line == '#') {
-            continue;
-        }
+    for (char *line; (line = pose_lines_next(&lines)) != NULL;) {
         bool commas = strchr(line, ',') != NULL;
         out->kind = commas ? "EuRoC" : out->kind;
         trajectory_pose pose;
@@ -156,7 +132,7 @@ int trajectory_parse(char *text, const char *path, trajectory *out, char *error,
         }
         if (wrong != NULL) {
             trajectory_free(out);
-            return t3r_reason(error, error_bytes, "%s: line %zu: %s", path, number, wrong);
+            return t3r_reason(error, error_bytes, "%s: line %zu: %s", path, lines.number, wrong);
         }
     }
     if (out->count == 0) {

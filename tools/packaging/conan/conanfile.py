@@ -36,7 +36,6 @@ class Trim3rConan(ConanFile):
     def generate(self):
         toolchain = CMakeToolchain(self)
         toolchain.cache_variables["T3R_TOOLS"] = False
-        toolchain.cache_variables["T3R_TESTS"] = "OFF"
         toolchain.cache_variables["T3R_SHARED"] = bool(self.options.shared)
         for feature in FEATURES:
             toolchain.cache_variables[f"T3R_WITH_{feature.upper()}"] = bool(getattr(self.options, feature))

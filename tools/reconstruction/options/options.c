@@ -12,29 +12,20 @@
 #include "reconstruction/options/option_names.h"
 #include "reconstruction/options/settings.h"
 
-enum {
-    KEY_GAUSSIANS = 256,
-    KEY_KEEP,
-    KEY_CONTEXT,
-    KEY_AUTO,
-    KEY_MAX_LOSS,
-    KEY_IMPORTANCE,
-    KEY_WORKING,
-    KEY_ARENA,
-    KEY_PRESET
-};
+enum { KEY_GAUSSIANS = 256, KEY_KEEP, KEY_CONTEXT, KEY_MAX_LOSS, KEY_WORKING, KEY_ARENA, KEY_PRESET };
 
 static const struct argp_option settings[] = {
     {NULL, 0, NULL, 0, "Settings:", 20},
     {"preset", KEY_PRESET, "fast|balanced|best", 0,
      "head and refinement for so much work (balanced); settings after it change it", 0},
-    {"auto", KEY_AUTO, NULL, 0,
+    {"auto", OPTION_TO(reconstruction_options, automatic), NULL, 0,
      "take no more Gaussians than the scene needs: as few as are predicted to stay within --max-loss, and at most the "
      "budget (all valid points)",
      0},
     {"max-loss", KEY_MAX_LOSS, "DB", 0,
      "decibels that --auto may lose on new views, against a scene of all valid points; 0.01..10 (0.5)", 0},
-    {"importance", KEY_IMPORTANCE, "PNG,PNG,...", OPTION_READS | OPTION_LIST | OPTION_FOLDER,
+    {"importance", OPTION_TO(reconstruction_options, importance), "PNG,PNG,...",
+     OPTION_READS | OPTION_LIST | OPTION_FOLDER,
      "importance of each pixel, for --allocate given: a grey picture for each context view, in their order and of the "
      "working size, or a folder with <frame>.png; the brightest points are retained; 8-bit pictures are spread evenly "
      "within a level",
@@ -94,9 +85,6 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         state->child_inputs[1] = &o->processor;
         state->child_inputs[2] = &o->head;
         return 0;
-    case KEY_IMPORTANCE:
-        o->importance = arg;
-        return 0;
     case KEY_WORKING:
         option_size(state, "working", arg, T3R_MIN_SIDE, &o->config.width, &o->config.height);
         return 0;
@@ -106,9 +94,6 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
     case KEY_PRESET:
         option_preset(state, "preset", arg, &o->config, &o->head);
         return 0;
-    case KEY_AUTO:
-        o->automatic = true;
-        return 0;
     case KEY_MAX_LOSS:
         o->max_loss = option_decimal(state, "max-loss", arg, 0.01, 10);
         return 0;
@@ -116,7 +101,7 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         check_settings(state, o);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 

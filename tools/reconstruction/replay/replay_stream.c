@@ -16,6 +16,7 @@
 #include "core/hash.h"
 #include "pictures/metrics.h"
 #include "pictures/picture.h"
+#include "reconstruction/developed_frame.h"
 #include "reconstruction/reconstruction_error.h"
 #include "reconstruction/replay/hash_report.h"
 
@@ -43,8 +44,6 @@ typedef struct stream_run {
     const char *path;
     uint32_t every;
     reconstruction r;
-    t3r_runtime *developing; /* an arena of its own: the map's takes only keyframes */
-    void *developing_arena;
     uint8_t *target, *drawn, *mask;
     uint16_t *depth;
     uint64_t views_hash; /* of all pictures drawn */
@@ -56,28 +55,16 @@ typedef struct stream_run {
 
 /* ---- held-back frames ------------------------------------------------------------------------------------------ */
 
-static int open_developing(stream_run *s)
+static int open_pictures(stream_run *s)
 {
-    const t3r_config *c = &s->r.config;
-    t3r_config config = t3r_default_config(c->width, c->height, 1, 1);
-    size_t pixels = (size_t)c->width * c->height;
-    t3r_plan_info plan;
-    t3r_status status = t3r_plan(&config, &plan);
-    if (status != T3R_OK) {
-        return reconstruction_error(status, "image stage", &config, 0);
-    }
+    const size_t pixels = (size_t)s->r.config.width * s->r.config.height;
     s->target = malloc(pixels * 3);
     s->drawn = malloc(pixels * 3);
     s->mask = malloc(pixels);
     s->depth = malloc(pixels * sizeof *s->depth);
-    if (posix_memalign(&s->developing_arena, T3R_ARENA_ALIGN, plan.min_bytes) != 0) {
-        s->developing_arena = NULL;
-    }
-    if (s->target == NULL || s->drawn == NULL || s->mask == NULL || s->depth == NULL || s->developing_arena == NULL) {
-        return cli_error(CLI_BAD_INPUT, "out of memory");
-    }
-    status = t3r_init(&s->developing, s->developing_arena, plan.min_bytes, &config);
-    return status == T3R_OK ? CLI_OK : reconstruction_error(status, "image stage", &config, plan.min_bytes);
+    return s->target != NULL && s->drawn != NULL && s->mask != NULL && s->depth != NULL
+               ? CLI_OK
+               : cli_error(CLI_BAD_INPUT, "out of memory");
 }
 
 static int write_picture(const stream_run *s, const char *what, uint32_t frame, uint32_t channels, uint8_t *samples)
@@ -98,15 +85,15 @@ static int draw_held(stream_run *s, uint32_t frame, const char *when, double *ps
     const uint32_t width = s->r.config.width, height = s->r.config.height;
     t3r_capture_frame captured;
     int code = recorded_frame_read(s->recording, s->path, frame, &captured);
+    t3r_camera camera;
+    if (code == CLI_OK) {
+        code = developed_capture(&captured, s->path, frame, width, height, s->target, s->depth, &camera);
+    }
     if (code != CLI_OK) {
         return code;
     }
-    t3r_camera camera;
-    t3r_status status = t3r_develop(s->developing, &captured.frame, &captured.camera, s->target, s->depth, &camera);
-    if (status == T3R_OK) {
-        t3r_target target = {.width = width, .height = height, .rgb = s->drawn, .rgb_stride_bytes = width * 3};
-        status = t3r_render(s->r.runtime, &camera, &target);
-    }
+    const t3r_target target = {.width = width, .height = height, .rgb = s->drawn, .rgb_stride_bytes = width * 3};
+    const t3r_status status = t3r_render(s->r.runtime, &camera, &target);
     if (status != T3R_OK) {
         return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
     }
@@ -400,7 +387,7 @@ int replay_stream(const replay_stream_options *options, const t3r_recording *rec
     if (code != CLI_OK) {
         return code;
     }
-    code = open_developing(&s);
+    code = open_pictures(&s);
     if (code == CLI_OK) {
         code = run(&s);
     }
@@ -420,7 +407,6 @@ int replay_stream(const replay_stream_options *options, const t3r_recording *rec
     }
     free(s.held);
     free(s.keyframes);
-    free(s.developing_arena);
     free(s.depth);
     free(s.mask);
     free(s.drawn);

@@ -33,8 +33,8 @@ static const char *setting(const chart_points *points, uint32_t point, chart_set
 void chart_setting_text(const chart_points *points, uint32_t point, chart_setting s, char *text, size_t bytes)
 {
     const char *value = setting(points, point, s);
-    bool told = value[0] != '\0', number = told && isdigit((unsigned char)value[strlen(value) - 1]);
-    snprintf(text, bytes, "%s%s%s", told ? chart_settings[s].before : "", value,
+    bool given = value[0] != '\0', number = given && isdigit((unsigned char)value[strlen(value) - 1]);
+    snprintf(text, bytes, "%s%s%s", given ? chart_settings[s].before : "", value,
              number ? chart_settings[s].behind : "");
 }
 
@@ -87,7 +87,7 @@ static void contestant(const chart_points *points, uint32_t point, char *text, s
 }
 
 /* Names the missing setting where two series differ only in that one of them does not give it. */
-static void name_untold(chart_names *names, const chart_points *points, uint32_t series, const char *const usuals[])
+static void name_missing(chart_names *names, const chart_points *points, uint32_t series, const char *const usuals[])
 {
     char *text = names->series[series].text;
     bool taken = false;
@@ -97,7 +97,7 @@ static void name_untold(chart_names *names, const chart_points *points, uint32_t
     for (int s = 0; s < CHART_KEEP && taken; s++) {
         if (usuals[s][0] != '\0' && setting(points, first_of(points, series), (chart_setting)s)[0] == '\0') {
             append(text, CHART_NAME_BYTES, MIDDLE_DOT, chart_settings[s].column);
-            append(text, CHART_NAME_BYTES, " ", "not told");
+            append(text, CHART_NAME_BYTES, " ", "not given");
         }
     }
 }
@@ -116,15 +116,15 @@ static int name_series(chart_names *names, const chart_points *points, uint32_t 
     for (int s = 0; s < CHART_KEEP; s++) {
         char text[CHART_NAME_BYTES];
         chart_setting_text(points, point, (chart_setting)s, text, sizeof text);
-        bool told = s == CHART_METHOD || strcmp(setting(points, point, (chart_setting)s), usuals[s]) != 0;
-        append(name->text, sizeof name->text, MIDDLE_DOT, told ? text : "");
-        append(key, sizeof key, ",", told && s != CHART_METHOD && s != CHART_HEAD ? text : "");
+        bool given = s == CHART_METHOD || strcmp(setting(points, point, (chart_setting)s), usuals[s]) != 0;
+        append(name->text, sizeof name->text, MIDDLE_DOT, given ? text : "");
+        append(key, sizeof key, ",", given && s != CHART_METHOD && s != CHART_HEAD ? text : "");
     }
     append(key, sizeof key, ",", way_of(setting(points, point, CHART_METHOD)));
     if (name->text[0] == '\0') {
         snprintf(name->text, sizeof name->text, "all rows");
     }
-    name_untold(names, points, series, usuals);
+    name_missing(names, points, series, usuals);
     if (chart_texts_number(variants, key, &how) != 0) {
         return -1;
     }

@@ -5,109 +5,81 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include <cjson/cJSON.h>
+
 #include "cli/text/markup.h"
 #include "study/chart/svg.h"
 
 /* Embedded by the build: page.html with the marks <!--style-->, <!--svg-->, <!--data--> and <!--script-->. */
 extern const char chart_page_html[], chart_page_css[], chart_page_js[];
 
-/* More spreads would make the page slow. Above this limit the page offers only the view of all scenes together. */
-#define SPREADS_MOST 60000u
+/* ---- the data -------------------------------------------------------------------------------------------------- */
 
-typedef struct page {
-    FILE *out;
-    const chart_points *points;
-    const chart_names *names;
-    const chart_pictures *pictures;
-    bool scenes; /* each can be chosen */
-} page;
-
-/* ---- JSON within a script element ------------------------------------------------------------------------------ */
-
-static void json_text(FILE *out, const char *text)
+/* Writes JSON within a script element, which no '<' may end, and deletes it. An object may stay open for more members.
+ * Returns 0, or -1 when memory is out. */
+static int write_json(FILE *out, cJSON *json, bool open)
 {
-    fputc('"', out);
-    for (const unsigned char *p = (const unsigned char *)text; *p != '\0'; p++) {
-        if (*p < 0x20 || *p == '"' || *p == '\\' || *p == '<') { /* '<': no end of the script element */
-            fprintf(out, "\\u%04x", *p);
-        } else {
-            fputc(*p, out);
-        }
+    char *text = cJSON_PrintUnformatted(json);
+    cJSON_Delete(json);
+    for (const char *c = text; c != NULL && c[open] != '\0'; c++) {
+        fprintf(out, *c == '<' ? "\\u003c" : "%c", *c);
     }
-    fputc('"', out);
+    cJSON_free(text);
+    return text != NULL ? 0 : -1;
 }
 
-static void json_number(FILE *out, double value)
+static cJSON *number(double value)
 {
-    if (isnan(value)) {
-        fputs("null", out);
-    } else {
-        fprintf(out, "%.7g", value);
-    }
+    char text[32];
+    snprintf(text, sizeof text, "%.10g", value);
+    return isnan(value) ? cJSON_CreateNull() : cJSON_CreateRaw(text);
 }
 
-static void json_picture(FILE *out, uint32_t number)
+static cJSON *picture(uint32_t number)
 {
-    if (number == CHART_NO_PICTURE) {
-        fputs("null", out);
-    } else {
-        fprintf(out, "%u", (unsigned)number);
-    }
+    return number == CHART_NO_PICTURE ? cJSON_CreateNull() : cJSON_CreateNumber(number);
 }
 
-static const char *comma(bool first)
-{
-    return first ? "" : ",";
-}
-
-/* ---- the parts of the data ------------------------------------------------------------------------------------- */
-
-static void write_measures(const page *p)
+static void add_measures(cJSON *root)
 {
     static const char *const units[] = {"", "dB", "ms", "bytes"};
-    fputs("\"measures\":[", p->out);
+    cJSON *measures = cJSON_AddArrayToObject(root, "measures");
     for (int m = 0; m < CHART_MEASURES; m++) {
         const chart_measure_about *about = &chart_measures[m];
-        fprintf(p->out,
-                "%s{\"key\":\"%s\",\"title\":\"%s\",\"unit\":\"%s\",\"decimals\":%d,\"less\":%s,\"quality\":%s,"
-                "\"cost\":%s}",
-                comma(m == 0), about->column, about->title, units[about->unit], about->decimals,
-                about->less_is_better ? "true" : "false", m < CHART_QUALITIES ? "true" : "false",
-                m >= CHART_QUALITIES && m < CHART_COSTS_END ? "true" : "false");
+        cJSON *item = cJSON_CreateObject();
+        cJSON_AddStringToObject(item, "title", about->title);
+        cJSON_AddStringToObject(item, "unit", units[about->unit]);
+        cJSON_AddNumberToObject(item, "decimals", about->decimals);
+        cJSON_AddBoolToObject(item, "less", about->less_is_better);
+        cJSON_AddBoolToObject(item, "quality", m < CHART_QUALITIES);
+        cJSON_AddBoolToObject(item, "cost", m >= CHART_QUALITIES && m < CHART_COSTS_END);
+        cJSON_AddItemToArray(measures, item);
     }
-    fprintf(p->out, "],\"gaussians\":%d,\n\"shapes\":[", CHART_GAUSSIANS);
-    for (uint32_t s = 0; s < CHART_SHAPES; s++) {
-        fprintf(p->out, "%s\"%s\"", comma(s == 0), chart_shapes[s]);
-    }
-    fputs("],\n", p->out);
+    cJSON_AddNumberToObject(root, "gaussians", CHART_GAUSSIANS);
+    cJSON_AddItemToObject(root, "shapes", cJSON_CreateStringArray(chart_shapes, CHART_SHAPES));
 }
 
-static void write_series(const page *p)
+static void add_series(cJSON *root, const chart_points *points, const chart_names *names)
 {
-    fputs("\"series\":[", p->out);
-    for (uint32_t s = 0; s < p->points->series_count; s++) {
-        const chart_series *series = &p->points->series[s];
-        fprintf(p->out, "%s{\"name\":", comma(s == 0));
-        json_text(p->out, p->names->series[s].text);
-        fprintf(p->out, ",\"colour\":%u,\"shape\":%u,\"points\":[", (unsigned)p->names->series[s].colour,
-                (unsigned)p->names->series[s].shape);
+    cJSON *list = cJSON_AddArrayToObject(root, "series");
+    for (uint32_t s = 0; s < points->series_count; s++) {
+        const chart_series *series = &points->series[s];
+        cJSON *item = cJSON_CreateObject(), *of = cJSON_AddArrayToObject(item, "points");
+        cJSON_AddStringToObject(item, "name", names->series[s].text);
+        cJSON_AddNumberToObject(item, "colour", names->series[s].colour);
+        cJSON_AddNumberToObject(item, "shape", names->series[s].shape);
         for (uint32_t i = 0; i < series->point_count; i++) {
-            fprintf(p->out, "%s%u", comma(i == 0), (unsigned)(series->first_point + i));
+            cJSON_AddItemToArray(of, cJSON_CreateNumber(series->first_point + i));
         }
-        fputs("]}", p->out);
+        cJSON_AddItemToArray(list, item);
     }
-    fputs("],\n", p->out);
 }
 
-static void write_cases(const page *p)
+static void add_cases(cJSON *root, const chart_table *table)
 {
-    const chart_table *table = p->points->table;
-    fputs("\"scenes\":[", p->out);
-    for (uint32_t s = 0; s < table->scenes.count; s++) {
-        fputs(comma(s == 0), p->out);
-        json_text(p->out, table->scenes.text[s]);
-    }
-    fputs("],\n\"cases\":[", p->out);
+    cJSON *scenes = cJSON_CreateStringArray((const char *const *)table->scenes.text, (int)table->scenes.count);
+    cJSON_AddItemToObject(root, "scenes", scenes);
+    cJSON *cases = cJSON_AddArrayToObject(root, "cases");
     for (uint32_t c = 0; c < table->case_keys.count; c++) {
         const chart_case *it = &table->cases[c];
         char name[512] = "";
@@ -115,180 +87,93 @@ static void write_cases(const page *p)
             snprintf(name, sizeof name, "frame %.100s from %.300s", table->texts.text[it->target],
                      table->texts.text[it->context]);
         }
-        fprintf(p->out, "%s{\"scene\":%u,\"name\":", comma(c == 0), (unsigned)it->scene);
-        json_text(p->out, name);
-        fputc('}', p->out);
+        cJSON *item = cJSON_CreateObject();
+        cJSON_AddNumberToObject(item, "scene", it->scene);
+        cJSON_AddStringToObject(item, "name", name);
+        cJSON_AddItemToArray(cases, item);
     }
-    fputs("],\n", p->out);
 }
 
-static void write_cell(const page *p, uint32_t index)
+static void add_texts(cJSON *root, const chart_points *points, const chart_names *names, const chart_pictures *pictures,
+                      const chart_view *first)
 {
-    const chart_cell *cell = &p->points->cells[index];
-    const chart_shots *shots = &p->pictures->of_cell[index];
-    fprintf(p->out, "[%u,", (unsigned)cell->scene_case);
-    json_picture(p->out, shots->render);
-    fputc(',', p->out);
-    json_picture(p->out, shots->target);
-    fputc(',', p->out);
-    json_picture(p->out, shots->mask);
-    for (int m = 0; m < CHART_MEASURES; m++) {
-        fputc(',', p->out);
-        json_number(p->out, cell->value[m]);
-    }
-    fputc(']', p->out);
-}
-
-static void write_points(const page *p)
-{
-    fputs("\"points\":[", p->out);
-    for (uint32_t i = 0; i < p->points->count; i++) {
-        const chart_point *point = &p->points->points[i];
-        char text[CHART_NAME_BYTES];
-        bool first = true;
-        chart_setting_text(p->points, i, CHART_KEEP, text, sizeof text);
-        fprintf(p->out, "%s\n{\"series\":%u,\"keep\":", comma(i == 0), (unsigned)point->series);
-        json_text(p->out, text);
-        fputs(",\"settings\":[", p->out);
-        for (int s = 0; s < CHART_KEEP; s++) {
-            chart_setting_text(p->points, i, (chart_setting)s, text, sizeof text);
-            if (text[0] != '\0') {
-                fputs(comma(first), p->out);
-                json_text(p->out, text);
-                first = false;
-            }
-        }
-        fputs("],\"cells\":[", p->out);
-        for (uint32_t c = 0; c < point->cell_count; c++) {
-            fputs(comma(c == 0), p->out);
-            write_cell(p, point->first_cell + c);
-        }
-        fputs("]}", p->out);
-    }
-    fputs("],\n", p->out);
-}
-
-static void write_axis(const page *p, const char *name, const chart_axis *axis)
-{
-    fprintf(p->out, "\"%s\":{\"low\":%.9g,\"high\":%.9g,\"log\":%s,\"falling\":%s,\"ticks\":[", name, axis->low,
-            axis->high, axis->logarithmic ? "true" : "false", axis->falling ? "true" : "false");
-    for (uint32_t t = 0; t < axis->tick_count; t++) {
-        fprintf(p->out, "%s[%.9g,\"%s\"]", comma(t == 0), axis->tick[t].value, axis->tick[t].label);
-    }
-    fputs("]}", p->out);
-}
-
-/* Axes and complete points of each quality against each cost. */
-static int write_pairs(const page *p, uint32_t scene)
-{
-    bool first = true;
-    fputs(",\"pairs\":{", p->out);
-    for (int q = 0; q < CHART_QUALITIES; q++) {
-        for (int c = CHART_QUALITIES; c < CHART_COSTS_END; c++) {
-            chart_view view;
-            if (chart_view_make(&view, p->points, (chart_choice){(chart_measure)q, (chart_measure)c, scene}) != 0) {
-                return -1;
-            }
-            if (view.shown > 0) {
-                bool none = true;
-                fprintf(p->out, "%s\n\"%d:%d\":{", comma(first), q, c);
-                write_axis(p, "x", &view.x);
-                fputc(',', p->out);
-                write_axis(p, "y", &view.y);
-                fprintf(p->out, ",\"cases\":%u,\"complete\":[", (unsigned)view.cases);
-                for (uint32_t i = 0; i < p->points->count; i++) {
-                    if (view.spots[i].complete) {
-                        fprintf(p->out, "%s%u", comma(none), (unsigned)i);
-                        none = false;
-                    }
-                }
-                fputs("]}", p->out);
-                first = false;
-            }
-            chart_view_free(&view);
-        }
-    }
-    fputc('}', p->out);
-    return 0;
-}
-
-static int write_choice(const page *p, uint32_t scene)
-{
-    fputs("\n{\"scene\":", p->out);
-    if (scene == CHART_ALL_SCENES) {
-        fputs("null", p->out);
-    } else {
-        fprintf(p->out, "%u", (unsigned)scene);
-    }
-    fputs(",\"spreads\":[", p->out);
-    for (uint32_t i = 0; i < p->points->count; i++) {
-        fprintf(p->out, "%s[", comma(i == 0));
-        for (int m = 0; m < CHART_MEASURES; m++) {
-            chart_spread s = chart_points_spread(p->points, i, (chart_measure)m, scene);
-            if (s.cases == 0) {
-                fprintf(p->out, "%snull", comma(m == 0));
-            } else {
-                fprintf(p->out, "%s[%.7g,%.7g,%.7g,%.7g,%u]", comma(m == 0), s.mean, s.low, s.median, s.high,
-                        (unsigned)s.cases);
-            }
-        }
-        fputc(']', p->out);
-    }
-    fputc(']', p->out);
-    int failed = write_pairs(p, scene);
-    fputc('}', p->out);
-    return failed;
-}
-
-static int write_choices(const page *p)
-{
-    uint32_t scenes = p->scenes ? p->points->table->scenes.count : 0;
-    fputs("\"choices\":[", p->out);
-    int failed = write_choice(p, CHART_ALL_SCENES);
-    for (uint32_t s = 0; s < scenes && failed == 0; s++) {
-        fputc(',', p->out);
-        failed = write_choice(p, s);
-    }
-    fputs("]\n", p->out);
-    return failed;
-}
-
-static void write_texts(const page *p, const chart_view *first)
-{
-    const chart_table *table = p->points->table;
-    uint32_t start = p->scenes && first->choice.scene != CHART_ALL_SCENES ? first->choice.scene + 1 : 0;
+    const chart_table *table = points->table;
     char about[2 * CHART_NAME_BYTES], left_out[256] = "";
-    snprintf(about, sizeof about, "%u point%s, %u case%s of %u scene%s%s%s.", (unsigned)p->points->count,
-             p->points->count == 1 ? "" : "s", (unsigned)table->case_keys.count, table->case_keys.count == 1 ? "" : "s",
+    snprintf(about, sizeof about, "%u point%s, %u case%s of %u scene%s%s%s.", (unsigned)points->count,
+             points->count == 1 ? "" : "s", (unsigned)table->case_keys.count, table->case_keys.count == 1 ? "" : "s",
              (unsigned)table->scenes.count, table->scenes.count == 1 ? "" : "s",
-             p->names->common[0] != '\0' ? "; unless named, " : "", p->names->common);
-    if (p->pictures->left_out + p->pictures->missing > 0) {
+             names->common[0] != '\0' ? "; unless named, " : "", names->common);
+    if (pictures->left_out + pictures->missing > 0) {
         snprintf(left_out, sizeof left_out,
                  "Of the pictures, %u are left out because the report would be too large, and %u were not found.",
-                 (unsigned)p->pictures->left_out, (unsigned)p->pictures->missing);
+                 (unsigned)pictures->left_out, (unsigned)pictures->missing);
     }
-    fprintf(p->out, "{\"start\":{\"choice\":%u,\"quality\":%d,\"cost\":%d},\n\"about\":", (unsigned)start,
-            (int)first->choice.quality, (int)first->choice.cost);
-    json_text(p->out, about);
-    fputs(",\"leftOut\":", p->out);
-    json_text(p->out, left_out);
-    fputs(",\n", p->out);
+    cJSON *start = cJSON_AddObjectToObject(root, "start");
+    const bool all = first->choice.scene == CHART_ALL_SCENES;
+    cJSON_AddItemToObject(start, "scene", all ? cJSON_CreateNull() : cJSON_CreateNumber(first->choice.scene));
+    cJSON_AddNumberToObject(start, "quality", first->choice.quality);
+    cJSON_AddNumberToObject(start, "cost", first->choice.cost);
+    cJSON_AddStringToObject(root, "about", about);
+    cJSON_AddStringToObject(root, "leftOut", left_out);
 }
 
-static int write_data(const page *p, const chart_view *first)
+/* A cell: its case, its pictures (render, target, mask), and a value a measure. */
+static cJSON *cell_json(const chart_cell *cell, const chart_shots *shots)
 {
-    fputs("<script type=\"application/json\" id=\"data\">\n", p->out);
-    write_texts(p, first);
-    write_measures(p);
-    write_series(p);
-    write_cases(p);
-    write_points(p);
-    int failed = write_choices(p);
-    fputs("}\n</script>\n", p->out);
-    for (uint32_t i = 0; i < p->pictures->count; i++) {
-        fprintf(p->out, "<script type=\"text/plain\" id=\"p%u\">", (unsigned)i);
-        markup_base64(p->out, p->pictures->pictures[i].png, p->pictures->pictures[i].bytes);
-        fputs("</script>\n", p->out);
+    cJSON *json = cJSON_CreateArray();
+    cJSON_AddItemToArray(json, cJSON_CreateNumber(cell->scene_case));
+    cJSON_AddItemToArray(json, picture(shots->render));
+    cJSON_AddItemToArray(json, picture(shots->target));
+    cJSON_AddItemToArray(json, picture(shots->mask));
+    for (int m = 0; m < CHART_MEASURES; m++) {
+        cJSON_AddItemToArray(json, number(cell->value[m]));
+    }
+    return json;
+}
+
+static cJSON *point_json(const chart_points *points, const chart_pictures *pictures, uint32_t index)
+{
+    const chart_point *point = &points->points[index];
+    char text[CHART_NAME_BYTES];
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddNumberToObject(json, "series", point->series);
+    chart_setting_text(points, index, CHART_KEEP, text, sizeof text);
+    cJSON_AddStringToObject(json, "keep", text);
+    cJSON *settings = cJSON_AddArrayToObject(json, "settings");
+    for (int s = 0; s < CHART_KEEP; s++) {
+        chart_setting_text(points, index, (chart_setting)s, text, sizeof text);
+        if (text[0] != '\0') {
+            cJSON_AddItemToArray(settings, cJSON_CreateString(text));
+        }
+    }
+    cJSON *cells = cJSON_AddArrayToObject(json, "cells");
+    for (uint32_t c = point->first_cell; c < point->first_cell + point->cell_count; c++) {
+        cJSON_AddItemToArray(cells, cell_json(&points->cells[c], &pictures->of_cell[c]));
+    }
+    return json;
+}
+
+/* Points are written one by one: together they may be large. */
+static int write_data(FILE *out, const chart_points *points, const chart_names *names, const chart_pictures *pictures,
+                      const chart_view *first)
+{
+    cJSON *root = cJSON_CreateObject();
+    add_texts(root, points, names, pictures, first);
+    add_measures(root);
+    add_series(root, points, names);
+    add_cases(root, points->table);
+    fputs("<script type=\"application/json\" id=\"data\">\n", out);
+    int failed = write_json(out, root, true);
+    fputs(",\n\"points\":[", out);
+    for (uint32_t i = 0; i < points->count && failed == 0; i++) {
+        fputs(i == 0 ? "\n" : ",\n", out);
+        failed = write_json(out, point_json(points, pictures, i), false);
+    }
+    fputs("]}\n</script>\n", out);
+    for (uint32_t i = 0; i < pictures->count; i++) {
+        fprintf(out, "<script type=\"text/plain\" id=\"p%u\">", (unsigned)i);
+        markup_base64(out, pictures->pictures[i].png, pictures->pictures[i].bytes);
+        fputs("</script>\n", out);
     }
     return failed;
 }
@@ -331,15 +216,12 @@ static const char *up_to(FILE *out, const char *from, const char *mark)
 int chart_page_write(FILE *out, const chart_points *points, const chart_names *names, const chart_pictures *pictures,
                      const chart_view *first)
 {
-    uint32_t scenes = points->table->scenes.count;
-    page p = {.out = out, .points = points, .names = names, .pictures = pictures};
-    p.scenes = scenes > 1 && (uint64_t)scenes * points->count <= SPREADS_MOST;
     const char *rest = up_to(out, chart_page_html, "<!--style-->");
     write_style(out);
     rest = up_to(out, rest, "<!--svg-->");
     chart_svg_write(out, points, names, first, 1, CHART_GROUND_READER);
     rest = up_to(out, rest, "<!--data-->");
-    int failed = write_data(&p, first);
+    int failed = write_data(out, points, names, pictures, first);
     rest = up_to(out, rest, "<!--script-->\n");
     fputs(chart_page_js, out);
     fputs(rest, out);

@@ -3,9 +3,8 @@
 (() => {
   const $ = (id) => document.getElementById(id);
   const data = JSON.parse($("data").textContent);
-  const { measures, points, series, scenes, cases, choices } = data;
-  const state = { choice: data.start.choice, quality: data.start.quality, cost: data.start.cost, hidden: new Set(),
-                  point: null, beside: null, at: 0 };
+  const { measures, points, series, scenes, cases } = data;
+  const state = { ...data.start, hidden: new Set(), point: null, beside: null, at: 0 };
   let spots = [], marks = new Map();
 
   /* ---- small helpers ---- */
@@ -17,12 +16,31 @@
     return it;
   }
   const own = (s) => `--own: var(--c${series[s].colour})`;
-  const spread = (p, m) => choices[state.choice].spreads[p][m]; // [mean, low, median, high, cases] or null
-  const pair = () => choices[state.choice].pairs[`${state.quality}:${state.cost}`];
+  /* [mean, lower quartile, median, upper quartile, cases], or null: the mean over scenes, each the mean over its cases. */
+  const spreads = new Map();
+  function spread(p, m) {
+    const key = `${state.scene} ${p} ${m}`;
+    if (!spreads.has(key)) {
+      const found = points[p].cells.map((c) => ({ scene: cases[c[0]].scene, value: c[4 + m] }))
+        .filter((c) => c.value !== null && (state.scene === null || c.scene === state.scene));
+      const mean = (list) => list.reduce((sum, v) => sum + v, 0) / list.length;
+      const means = [...new Set(found.map((c) => c.scene))].map((s) => mean(found.filter((c) => c.scene === s).map((c) => c.value)));
+      const rising = found.map((c) => c.value).sort((a, b) => a - b);
+      const quantile = (q) => { const at = q * (rising.length - 1), k = Math.floor(at); return rising[k] + (at - k) * ((rising[k + 1] ?? rising[k]) - rising[k]); };
+      spreads.set(key, found.length ? [mean(means), quantile(0.25), quantile(0.5), quantile(0.75), found.length] : null);
+    }
+    return spreads.get(key);
+  }
+  /* The points that have both measures, those of them that have both on as many cases as any, and that number. */
+  function measured() {
+    const both = points.map((_, p) => p).filter((p) => spread(p, state.quality) && spread(p, state.cost));
+    const most = (m) => Math.max(...both.map((p) => spread(p, m)[4])), costs = most(state.cost), count = most(state.quality);
+    return { both, complete: new Set(both.filter((p) => spread(p, state.cost)[4] === costs && spread(p, state.quality)[4] === count)), count };
+  }
   const title = (p) => series[points[p].series].name + (points[p].keep ? `, ${points[p].keep}` : "");
 
-  function text(m, value) {
-    const { unit, decimals } = measures[m];
+  function text(m, value, decimals = measures[m].decimals) {
+    const { unit } = measures[m];
     if (value === null || value === undefined) return "\u2013";
     const short = (v) => String(Number(v.toPrecision(3)));
     if (unit === "ms") return value >= 1000 ? `${short(value / 1000)} s` : `${short(value)} ms`;
@@ -36,11 +54,8 @@
   const many = (s) => s[4] >= 4; // fewer cases have no quartiles worth telling
 
   /* ---- what is shown ---- */
-  function shown() {
-    return points.map((_, p) => p).filter((p) => !state.hidden.has(points[p].series) && spread(p, state.quality) && spread(p, state.cost));
-  }
-  function front(list) {
-    const complete = new Set(pair() ? pair().complete : []), sign = measures[state.quality].less ? -1 : 1;
+  function front(list, complete) {
+    const sign = measures[state.quality].less ? -1 : 1;
     const place = (p) => [spread(p, state.cost)[0], sign * spread(p, state.quality)[0]];
     const order = list.filter((p) => complete.has(p)).sort((a, b) => place(a)[0] - place(b)[0] || place(b)[1] - place(a)[1] || a - b);
     const found = [];
@@ -64,43 +79,50 @@
       return fits;
     });
   }
-  /* Ticks at 1, 2 and 5 times powers of ten. */
-  function roundTicks(low, high, log) {
-    const step = 10 ** Math.floor(Math.log10((high - low) / 8)), found = [];
-    const every = [1, 2, 5, 10].map((t) => t * step).find((s) => (high - low) / s <= 8);
+  /* Round values: 1, 2 and 5 times powers of ten, or powers of two; their labels have the digits of the step. */
+  function roundTicks(m, low, high, log) {
+    const binary = measures[m].unit === "bytes", least = (high - low) / 8, decades = Math.log10(high / low), found = [];
+    let step = null;
     if (!log) {
-      for (let v = Math.ceil(low / every) * every; v <= high; v += every) found.push(v);
-      return found;
+      const power = 10 ** Math.floor(Math.log10(least));
+      step = binary ? Math.max(1, 2 ** Math.ceil(Math.log2(least))) : [1, 2, 5, 10].map((t) => t * power).find((s) => s >= least * (1 - 1e-9));
+      for (let k = Math.ceil(low / step - 1e-9); k * step <= high; k++) found.push(k * step);
+    } else if (binary) {
+      const every = Math.ceil(Math.log2(high / low) / 8);
+      for (let k = Math.ceil(Math.log2(low) / every) * every; 2 ** k <= high; k += every) found.push(2 ** k);
+    } else {
+      for (let k = Math.floor(Math.log10(low)); 10 ** k <= high; k++) {
+        found.push(...(decades < 1.3 ? [1, 2, 3, 5, 7] : [1, 2, 5]).map((t) => t * 10 ** k).filter((v) => v >= low && v <= high));
+      }
     }
-    for (let power = 10 ** Math.floor(Math.log10(low)); power <= high; power *= 10) {
-      found.push(...[1, 2, 5].map((t) => t * power).filter((v) => v >= low && v <= high));
-    }
-    return found;
+    const digits = step === null ? null : Math.min(6, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)));
+    return found.map((v) => [v, ["ms", "bytes"].includes(measures[m].unit) ? text(m, v).replace(".00 ", " ") : text(m, v, digits)]);
   }
-  /* Returns the axis of the visible points if some are hidden, otherwise the axis of all points. */
-  function fitted(axis, measure, list) {
-    const whiskers = measures[measure].unit === "ms";
-    const values = list.flatMap((p) => { const s = spread(p, measure); return whiskers && many(s) ? [s[0], s[1], s[3]] : [s[0]]; });
-    const least = Math.min(...values), most = Math.max(...values);
-    if (state.hidden.size === 0 || !(most - least > 1e-3 * Math.abs(most))) return axis;
-    const log = axis.log && most / least > 5, room = log ? (most / least) ** .06 : .06 * (most - least);
-    const [low, high] = log ? [least / room, most * room] : [axis.low >= 0 ? Math.max(0, least - room) : least - room, most + room];
-    return { ...axis, low, high, log, ticks: roundTicks(low, high, log).map((v) => [v, text(measure, v)]) };
+  /* The axis of these points, with some room at either end; of costs logarithmic where they differ by more than five times. */
+  function axis(m, list) {
+    const { unit, cost, less } = measures[m];
+    const values = list.flatMap((p) => { const s = spread(p, m); return unit === "ms" && many(s) ? [s[0], s[1], s[3]] : [s[0]]; });
+    const least = Math.min(...values), most = Math.max(...values), range = most - least;
+    const log = cost && least >= 1e-9 && most / least > 5, alike = Math.max(1e-3 * Math.max(Math.abs(most), 1), unit === "bytes" ? 16 : 0);
+    const room = log ? (most / least) ** 0.06 : range > alike ? 0.06 * range : 50 * alike;
+    const [low, high] = log ? [least / room, most * room] : [cost ? Math.max(0, least - room) : least - room, most + room];
+    return { low, high, log, falling: !cost && less, ticks: roundTicks(m, low, high, log) };
   }
   function draw() {
     const wide = Math.max(300, $("canvas").clientWidth), high = Math.round(Math.min(600, Math.max(340, wide * 0.55)));
-    const list = shown(), at = pair(), best = front(list), onFront = new Set(best);
+    const { both, complete, count } = measured(), list = both.filter((p) => !state.hidden.has(points[p].series));
+    const best = front(list, complete), onFront = new Set(best);
     const focused = document.activeElement && document.activeElement.closest ? document.activeElement.closest(".spot") : null;
     const svg = make("svg:svg", { viewBox: `0 0 ${wide} ${high}`, class: "live", role: "group", "aria-label": "Points; arrow keys move, Enter opens" });
     marks = new Map();
     spots = list;
     $("tip").hidden = true;
-    if (!at) {
+    if (both.length === 0) {
       $("canvas").replaceChildren(make("p", { class: "quiet" }, "Nothing here has both of these measures."));
       return;
     }
     const left = 66, right = wide - 16, top = 34, bottom = high - 48;
-    const xs = fitted(at.x, state.cost, list), ys = fitted(at.y, state.quality, list);
+    const visible = list.length ? list : both, xs = axis(state.cost, visible), ys = axis(state.quality, visible);
     const x = scale(xs, left, right), y = ys.falling ? scale(ys, top, bottom) : scale(ys, bottom, top);
     const px = (p) => x(spread(p, state.cost)[0]), py = (p) => y(spread(p, state.quality)[0]);
     for (const [v, label] of ticks(ys, y, 22)) {
@@ -125,7 +147,7 @@
         svg.append(make("svg:path", { class: "line of", "data-series": i, style: own(i), d: "M" + line.map((p) => `${px(p)},${py(p)}`).join("L") }));
       }
     });
-    const small = wide < 560 ? 5.2 : 5.8, time = measures[state.cost].unit === "ms", complete = new Set(at.complete);
+    const small = wide < 560 ? 5.2 : 5.8, time = measures[state.cost].unit === "ms";
     const tab = list.includes(state.point) ? state.point : best[0] ?? list[0];
     for (const p of [...list].reverse()) {
       const s = points[p].series, cost = spread(p, state.cost);
@@ -154,7 +176,7 @@
     if (focused && marks.has(Number(focused.dataset.point))) marks.get(Number(focused.dataset.point)).g.focus({ preventScroll: true });
     const pale = list.length - list.filter((p) => complete.has(p)).length;
     $("note").hidden = pale === 0;
-    $("note").textContent = complete.size === 0 ? "" : `${pale} pale point${pale === 1 ? " was" : "s were"} not measured on all ${at.cases} cases; choose a scene that they share.`;
+    $("note").textContent = complete.size === 0 ? "" : `${pale} pale point${pale === 1 ? " was" : "s were"} not measured on all ${count} cases; choose a scene that they share.`;
     table($("front"), best);
     table($("all"), list);
   }
@@ -248,12 +270,12 @@
       state.beside === p ? "Kept for comparison" : "Keep for comparison");
     close.onclick = () => choose(null);
     pin.onclick = () => { state.beside = p; detail(); };
-    const told = measures.map((_, m) => m).filter((m) => spread(p, m)), number = { class: "number" };
-    const rows = told.map((m) => make("tr", {}, make("td", {}, measures[m].title), make("td", number, text(m, spread(p, m)[0])),
+    const given = measures.map((_, m) => m).filter((m) => spread(p, m)), number = { class: "number" };
+    const rows = given.map((m) => make("tr", {}, make("td", {}, measures[m].title), make("td", number, text(m, spread(p, m)[0])),
                                       ...[1, 2, 3].map((i) => make("td", number, many(spread(p, m)) ? text(m, spread(p, m)[i]) : ""))));
     box.replaceChildren(make("div", { class: "top" }, make("h2", {}, title(p)), make("div", {}, pin, " ", close)),
                         make("p", { class: "settings" }, points[p].settings.join(", ")));
-    const scene = choices[state.choice].scene, list = points[p].cells.map((c) => c[0]).filter((c) => scene === null || cases[c].scene === scene);
+    const list = points[p].cells.map((c) => c[0]).filter((c) => state.scene === null || cases[c].scene === state.scene);
     if (list.some((c) => points[p].cells.find((cell) => cell[0] === c)[1] !== null)) {
       if (!list.includes(state.at)) state.at = list[0];
       const select = make("select", { "aria-label": "Case" }, ...list.map((c) => make("option", { value: c }, `${scenes[cases[c].scene]}${cases[c].name ? ", " + cases[c].name : ""}`)));
@@ -349,13 +371,14 @@
   });
   $("canvas").addEventListener("keydown", keys);
   $("theme").onclick = theme;
-  const there = (m) => points.some((_, p) => choices[0].spreads[p][m]);
+  const there = (m) => points.some((point) => point.cells.some((c) => c[4 + m] !== null));
   radios($("qualities"), "quality", measures.map((_, m) => m).filter((m) => measures[m].quality && there(m)));
   radios($("costs"), "cost", measures.map((_, m) => m).filter((m) => measures[m].cost && there(m)));
-  choices.forEach((c, i) => $("scene").querySelector("select").append(make("option", { value: i }, c.scene === null ? `all ${scenes.length}` : scenes[c.scene])));
-  $("scene").hidden = choices.length < 2;
-  $("scene").querySelector("select").value = state.choice;
-  $("scene").querySelector("select").onchange = (e) => { state.choice = Number(e.target.value); draw(); detail(); };
+  const select = $("scene").querySelector("select");
+  select.append(...[`all ${scenes.length}`, ...scenes].map((name, i) => make("option", { value: i }, name)));
+  select.value = state.scene === null ? 0 : state.scene + 1;
+  select.onchange = () => { state.scene = select.value === "0" ? null : Number(select.value) - 1; draw(); detail(); };
+  $("scene").hidden = scenes.length < 2;
   $("about").append(` ${data.about}`);
   $("left-out").textContent = data.leftOut;
   legend();

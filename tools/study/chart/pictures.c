@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "host/grow.h"
 #include "host/reason.h"
 #include "pictures/picture.h"
 #include "pictures/png_bytes.h"
@@ -32,15 +33,11 @@ static int fail(const gathering *g, const char *path, const char *why)
 static int encode(const gathering *g, const char *path, const picture *in, uint32_t *number)
 {
     chart_pictures *to = g->to;
-    if (to->count == to->room) {
-        uint32_t room = to->room == 0 ? 64 : to->room * 2;
-        chart_picture *grown = realloc(to->pictures, room * sizeof *grown);
-        if (grown == NULL) {
-            return fail(g, path, "out of memory");
-        }
-        to->pictures = grown;
-        to->room = room;
+    chart_picture *grown = t3r_grow(to->pictures, to->count, &to->room, sizeof *grown);
+    if (grown == NULL) {
+        return fail(g, path, "out of memory");
     }
+    to->pictures = grown;
     chart_picture *it = &to->pictures[to->count];
     *it = (chart_picture){.width = in->width, .height = in->height};
     it->png = png_bytes(in->width, in->height, in->channels, in->samples, &it->bytes);
@@ -64,15 +61,11 @@ static int look_up(const gathering *g, const char *path, uint32_t *number)
         *number = to->of_path[at];
         return 0;
     }
-    if (to->paths.count > to->path_room) {
-        uint32_t room = to->path_room == 0 ? 64 : to->path_room * 2;
-        uint32_t *grown = realloc(to->of_path, room * sizeof *grown);
-        if (grown == NULL) {
-            return fail(g, path, "out of memory");
-        }
-        to->of_path = grown;
-        to->path_room = room;
+    uint32_t *grown = t3r_grow(to->of_path, at, &to->path_room, sizeof *grown);
+    if (grown == NULL) {
+        return fail(g, path, "out of memory");
     }
+    to->of_path = grown;
     to->of_path[at] = *number = CHART_NO_PICTURE;
     if (access(path, R_OK) != 0) {
         return 0;

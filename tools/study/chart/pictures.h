@@ -25,14 +25,15 @@ typedef struct chart_shots {
 
 typedef struct chart_pictures {
     chart_picture *pictures;
-    uint32_t count, room;
+    uint32_t count;
+    size_t room;
     chart_shots *of_cell; /* one per cell of the points */
     uint32_t missing;     /* renders that the tables name and the folders lack */
     uint32_t left_out;    /* renders that there was no room for */
     size_t bytes;         /* of all PNG files together */
     chart_texts paths;    /* looked up so far */
     uint32_t *of_path;
-    uint32_t path_room;
+    size_t path_room;
 } chart_pictures;
 
 /* Reads a row's `picture`, and target.png and mask.png next to it, as FOLDER/picture or FOLDER/scene/picture, up to

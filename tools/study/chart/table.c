@@ -9,6 +9,7 @@
 
 #include "cli/tables/csv_read.h"
 #include "host/file_bytes.h"
+#include "host/grow.h"
 #include "host/reason.h"
 
 #define NO_COLUMN UINT32_MAX
@@ -109,15 +110,11 @@ static int number_case(chart_table *table, const csv_reader *reader, const layou
         chart_texts_number(&table->case_keys, key, number) != 0) {
         return -1;
     }
-    if (table->case_keys.count > table->case_room) {
-        uint32_t room = table->case_room == 0 ? 64 : table->case_room * 2;
-        chart_case *cases = realloc(table->cases, room * sizeof *cases);
-        if (cases == NULL) {
-            return -1;
-        }
-        table->cases = cases;
-        table->case_room = room;
+    chart_case *cases = t3r_grow(table->cases, *number, &table->case_room, sizeof *cases);
+    if (cases == NULL) {
+        return -1;
     }
+    table->cases = cases;
     table->cases[*number] = is;
     return 0;
 }
@@ -167,16 +164,9 @@ static bool stays_within(const char *path)
 
 static chart_row *new_row(chart_table *table)
 {
-    if (table->row_count == table->row_room) {
-        uint32_t room = table->row_room == 0 ? 256 : table->row_room * 2;
-        chart_row *rows = realloc(table->rows, room * sizeof *rows);
-        if (rows == NULL) {
-            return NULL;
-        }
-        table->rows = rows;
-        table->row_room = room;
-    }
-    return &table->rows[table->row_count];
+    chart_row *rows = t3r_grow(table->rows, table->row_count, &table->row_room, sizeof *rows);
+    table->rows = rows != NULL ? rows : table->rows;
+    return rows != NULL ? &rows[table->row_count] : NULL;
 }
 
 static int read_row(chart_table *table, const csv_reader *reader, const layout *l, char *error, size_t error_bytes)

@@ -77,9 +77,10 @@ typedef struct chart_case {
 typedef struct chart_table {
     chart_texts texts, scenes, case_keys;
     chart_case *cases; /* case_keys.count entries */
-    uint32_t case_room;
+    size_t case_room;
     chart_row *rows;
-    uint32_t row_count, row_room;
+    uint32_t row_count;
+    size_t row_room;
     uint32_t file_count;
     int has_pictures; /* whether a table names pictures */
 } chart_table;        /* all zeros: empty */

@@ -39,7 +39,7 @@ typedef struct options {
     bool dark;
 } options;
 
-enum { KEY_SVG = 0x100, KEY_PNG, KEY_PICTURES, KEY_MIB, KEY_ALL, KEY_QUALITY, KEY_AGAINST, KEY_SCENE, KEY_DARK };
+enum { KEY_PICTURES = 0x100, KEY_MIB, KEY_ALL, KEY_QUALITY, KEY_AGAINST };
 
 /* ---- arguments ------------------------------------------------------------------------------------------------- */
 
@@ -98,12 +98,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case 'o':
         o->page = arg;
         return 0;
-    case KEY_SVG:
-        o->svg = arg;
-        return 0;
-    case KEY_PNG:
-        o->png = arg;
-        return 0;
     case KEY_PICTURES:
         o->folders[o->folder_count++] = arg; /* one slot per argument: there is room */
         return 0;
@@ -119,12 +113,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_AGAINST:
         parse_against(state, o, arg);
         return 0;
-    case KEY_SCENE:
-        o->scene = arg;
-        return 0;
-    case KEY_DARK:
-        o->dark = true;
-        return 0;
     case ARGP_KEY_ARGS:
         option_arguments(state, &o->tables, &o->table_count);
         return 0;
@@ -132,7 +120,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         check_options(state, o);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 
@@ -141,9 +129,9 @@ static const struct argp_option argp_options[] = {
     {NULL, 0, NULL, 0, "What is written:", 1},
     {"output", 'o', "REPORT.html", OPTION_WRITES(FILE_PAGE),
      "report to write: every quality against every cost, in one file that fetches nothing", 0},
-    {"svg", KEY_SVG, "FILE", OPTION_WRITES(FILE_SVG), "picture to write: a panel for each cost", 0},
-    {"png", KEY_PNG, "FILE", OPTION_WRITES(FILE_PICTURE), "the same picture to write, in pixels", 0},
-    {"dark", KEY_DARK, NULL, 0, "draw the PNG on a dark ground", 0},
+    {"svg", OPTION_TO(options, svg), "FILE", OPTION_WRITES(FILE_SVG), "picture to write: a panel for each cost", 0},
+    {"png", OPTION_TO(options, png), "FILE", OPTION_WRITES(FILE_PICTURE), "the same picture to write, in pixels", 0},
+    {"dark", OPTION_TO(options, dark), NULL, 0, "draw the PNG on a dark ground", 0},
     {NULL, 0, NULL, 0, "What is shown:", 2},
     {"quality", KEY_QUALITY, "NAME", 0,
      "quality to draw: psnr (default), ssim, perceptual or planar_psnr; the report begins with it", 0},
@@ -151,7 +139,8 @@ static const struct argp_option argp_options[] = {
      "costs to draw it against: build_ms, render_ms, arena_bytes, scene_bytes (all that the tables have); the report "
      "begins with the first",
      0},
-    {"scene", KEY_SCENE, "NAME", 0, "scene to draw, alone (the mean over all); the report begins with it", 0},
+    {"scene", OPTION_TO(options, scene), "NAME", 0,
+     "scene to draw, alone (the mean over all); the report begins with it", 0},
     {"pictures", KEY_PICTURES, "DIR", OPTION_READS | OPTION_FOLDER,
      "folder that eval --images wrote, for the report: one for all tables, or one for each in their order", 0},
     {"picture-mib", KEY_MIB, "N", 0,

@@ -37,7 +37,7 @@ typedef struct options {
     bool json;
 } options;
 
-enum { KEY_WEIGHTS = 0x100, KEY_ACTIVATIONS, KEY_CALIBRATE, KEY_PERCENTILE, KEY_NAME, KEY_SIZE, KEY_JSON };
+enum { KEY_WEIGHTS = 0x100, KEY_ACTIVATIONS, KEY_CALIBRATE, KEY_PERCENTILE, KEY_SIZE };
 
 static uint32_t option_bits(struct argp_state *state, const char *option, const char *text)
 {
@@ -84,14 +84,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_PERCENTILE:
         option_percents(state, "percentile", argument, &o->percentile, 1, &count);
         return 0;
-    case KEY_NAME:
-        o->name = argument;
-        return 0;
     case KEY_SIZE:
         option_size(state, "size", argument, T3R_MIN_SIDE, &o->width, &o->height);
-        return 0;
-    case KEY_JSON:
-        o->json = true;
         return 0;
     case 'o':
         o->output = argument;
@@ -107,7 +101,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         check_options(state, o);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, argument, state);
     }
 }
 
@@ -126,8 +120,8 @@ static const struct argp_option argp_options[] = {
      "largest value)",
      0},
     {"size", KEY_SIZE, "WxH", 0, "size to which --calibrate crops and averages images (256x256)", 0},
-    {"name", KEY_NAME, "NAME", 0, "name of the head: 1 to 15 of a-z 0-9 _ (the one in HEAD)", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"name", OPTION_TO(options, name), "NAME", 0, "name of the head: 1 to 15 of a-z 0-9 _ (the one in HEAD)", 0},
+    {"json", OPTION_TO(options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 

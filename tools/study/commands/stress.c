@@ -33,18 +33,7 @@ typedef struct options {
     bool grade[STRESS_GRADES + 1];
 } options;
 
-enum {
-    KEY_METHODS = 0x200,
-    KEY_KEEP,
-    KEY_ROWS,
-    KEY_STRENGTHS,
-    KEY_CAPTURES,
-    KEY_TRIPLETS,
-    KEY_CSV,
-    KEY_HTML,
-    KEY_WORST,
-    KEY_JSON
-};
+enum { KEY_METHODS = 0x200, KEY_KEEP, KEY_ROWS, KEY_STRENGTHS, KEY_CAPTURES, KEY_TRIPLETS, KEY_WORST };
 
 /* ---- arguments --------------------------------------------------------------------------------------------------- */
 
@@ -121,17 +110,8 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
     case KEY_TRIPLETS:
         o->triplets = option_number(state, "triplets", arg, 1, UINT32_MAX);
         return 0;
-    case KEY_CSV:
-        o->to.csv = arg;
-        return 0;
-    case KEY_HTML:
-        o->to.page = arg;
-        return 0;
     case KEY_WORST:
         o->to.worst = option_number(state, "worst", arg, 1, STRESS_WORST_MOST);
-        return 0;
-    case KEY_JSON:
-        o->to.json = true;
         return 0;
     case ARGP_KEY_ARGS:
         option_arguments(state, &o->inputs, &o->input_count);
@@ -143,7 +123,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
         }
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 
@@ -158,12 +138,12 @@ static const struct argp_option argp_options[] = {
     {"triplets", KEY_TRIPLETS, "N", 0,
      "number of triplets of each recording, spread evenly over those that it carries (1)", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
-    {"csv", KEY_CSV, "FILE", OPTION_WRITES(FILE_TABLE),
+    {"csv", OPTION_TO(options, to.csv), "FILE", OPTION_WRITES(FILE_TABLE),
      "table to write; each row appears when it is made, or all at the end where a table stands", 0},
-    {"html", KEY_HTML, "PAGE.html", OPTION_WRITES(FILE_PAGE),
+    {"html", OPTION_TO(options, to.page), "PAGE.html", OPTION_WRITES(FILE_PAGE),
      "page to write, with pictures of the worst cases; it needs no other file", 0},
     {"worst", KEY_WORST, "N", 0, "number of cases on the page, 1..64, one for each perturbation at most (12)", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout: the rows", 0},
+    {"json", OPTION_TO(options, to.json), NULL, 0, "print one JSON object on stdout: the rows", 0},
     {0},
 };
 

@@ -180,9 +180,9 @@ static int prune(rival_source *source, method_kind kind, uint32_t count, scene_f
     return code;
 }
 
-/* Makes the unpruned scene and its scores. *told covers everything up to here, for the budget of `options`. */
+/* Makes the unpruned scene and its scores. *account covers everything up to here, for the budget of `options`. */
 static int rank_whole(rival_source *source, method_kind kind, const reconstruction_options *options,
-                      reconstruction_account *told)
+                      reconstruction_account *account)
 {
     int code = source->built ? CLI_OK : build_whole(source);
     if (code == CLI_OK) {
@@ -191,37 +191,37 @@ static int rank_whole(rival_source *source, method_kind kind, const reconstructi
     if (code != CLI_OK) {
         return code;
     }
-    *told = reconstruction_told(&source->whole);
-    told->requested =
-        options->gaussians != 0 ? options->gaussians : reconstruction_budget(told->valid_points, options->keep_percent);
-    told->seconds += source->project_seconds + source->score_seconds[kind];
+    *account = reconstruction_account_of(&source->whole);
+    account->requested = options->gaussians != 0 ? options->gaussians
+                                                 : reconstruction_budget(account->valid_points, options->keep_percent);
+    account->seconds += source->project_seconds + source->score_seconds[kind];
     return CLI_OK;
 }
 
 static int prune_whole(rival_source *source, method_kind kind, const reconstruction_options *options, scene_file *scene,
-                       reconstruction_account *told)
+                       reconstruction_account *account)
 {
-    int code = rank_whole(source, kind, options, told);
+    int code = rank_whole(source, kind, options, account);
     if (code != CLI_OK) {
         return code;
     }
     double start = cli_now();
-    code = prune(source, kind, T3R_MIN(told->requested, source->whole.scene.count), scene);
-    told->seconds += cli_now() - start;
+    code = prune(source, kind, T3R_MIN(account->requested, source->whole.scene.count), scene);
+    account->seconds += cli_now() - start;
     return code;
 }
 
 /* ---- ours, to be fine-tuned ------------------------------------------------------------------------------------- */
 
 static int build_ours(rival_source *source, const reconstruction_options *options, scene_file *scene,
-                      reconstruction_account *told)
+                      reconstruction_account *account)
 {
     reconstruction r;
     int code = reconstruction_build(&r, source->recording, source->path, options);
     if (code != CLI_OK) {
         return code;
     }
-    *told = reconstruction_told(&r);
+    *account = reconstruction_account_of(&r);
     *scene = (scene_file){.frame = r.scene.frame, .count = r.scene.count};
     scene->gaussians = malloc(((size_t)r.scene.count + 1) * sizeof *scene->gaussians);
     if (scene->gaussians == NULL) {
@@ -252,7 +252,7 @@ static int trace_chosen(const rival_source *source, method_kind kind, uint32_t c
 }
 
 static int build_by_head(rival_source *source, method_kind kind, const reconstruction_options *options,
-                         reconstruction *made, reconstruction_account *told)
+                         reconstruction *made, reconstruction_account *account)
 {
     traced_points points = {0};
     reconstruction_account before = {0};
@@ -273,9 +273,9 @@ static int build_by_head(rival_source *source, method_kind kind, const reconstru
         code = reconstruction_build(made, source->recording, source->path, &given);
     }
     if (code == CLI_OK) {
-        *told = reconstruction_told(made);
-        told->arena_bytes = T3R_MAX(told->arena_bytes, before.arena_bytes);
-        told->seconds += before.seconds;
+        *account = reconstruction_account_of(made);
+        account->arena_bytes = T3R_MAX(account->arena_bytes, before.arena_bytes);
+        account->seconds += before.seconds;
     }
     traced_points_free(&points);
     return code;
@@ -306,7 +306,7 @@ static int tune(const rival_source *source, uint32_t iterations, scene_file *sce
 }
 
 int rival_build(method_source *shared, const t3r_recording *recording, const char *path,
-                const reconstruction_options *options, reconstruction *made, reconstruction_account *told)
+                const reconstruction_options *options, reconstruction *made, reconstruction_account *account)
 {
     const method *m = options->method;
     if (options->automatic) {
@@ -318,16 +318,16 @@ int rival_build(method_source *shared, const t3r_recording *recording, const cha
     }
     const method_kind kind = method_kind_of(m);
     if (method_way_of(m) == METHOD_HEAD) {
-        return build_by_head(source, kind, options, made, told);
+        return build_by_head(source, kind, options, made, account);
     }
     scene_file scene = {0};
-    int code = kind == METHOD_TRIM3R ? build_ours(source, options, &scene, told)
-                                     : prune_whole(source, kind, options, &scene, told);
+    int code = kind == METHOD_TRIM3R ? build_ours(source, options, &scene, account)
+                                     : prune_whole(source, kind, options, &scene, account);
     if (code == CLI_OK && method_way_of(m) == METHOD_FINETUNE) {
         double start = cli_now();
         const uint32_t iterations = options->finetune_iterations;
         code = tune(source, iterations != 0 ? iterations : FINETUNE_ITERATIONS, &scene);
-        told->seconds += cli_now() - start;
+        account->seconds += cli_now() - start;
     }
     if (code == CLI_OK) {
         uint32_t width =

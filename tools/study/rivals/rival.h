@@ -29,10 +29,10 @@ typedef struct rival_source {
 } rival_source;
 
 /* The `build` of every method except trim3r, in an arena that only renders, or with +head in the arena of its build.
- * In *told the arena is the runtime's largest; the time is the total, including the unpruned scene, scoring and
+ * In *account the arena is the runtime's largest; the time is the total, including the unpruned scene, scoring and
  * fine-tuning. A scene from a file cannot be traced to points for a rival's +head: there the points are its
  * Gaussians, and the head is "". */
 int rival_build(method_source *source, const t3r_recording *recording, const char *path,
-                const reconstruction_options *options, reconstruction *made, reconstruction_account *told);
+                const reconstruction_options *options, reconstruction *made, reconstruction_account *account);
 
 #endif

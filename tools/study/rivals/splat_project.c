@@ -98,8 +98,7 @@ static bool project(const splat_camera *camera, const double *p, projection *j)
     return isfinite(j->det); /* an optimiser may produce any value */
 }
 
-/* The pixels within `reach` of `centre`, cut to the picture. */
-static void cut(double centre, double reach, uint32_t side, int32_t *low, int32_t *high)
+void splat_cut(double centre, double reach, uint32_t side, int32_t *low, int32_t *high)
 {
     double least = ceil(centre - reach), most = floor(centre + reach);
     *low = least < 0 ? 0 : least > side ? (int32_t)side : (int32_t)least;
@@ -126,8 +125,8 @@ splat splat_project(const splat_camera *camera, const double *p, double alpha_le
         s.colour[i] = (float)p[SPLAT_COLOUR + i];
     }
     s.depth_key = (uint32_t)fmin(floor(ldexp(z, 20) + 0.5), KEY_MOST);
-    cut(x, sqrt(level * j.A), camera->width, &s.left, &s.right);
-    cut(y, sqrt(level * j.C), camera->height, &s.top, &s.bottom);
+    splat_cut(x, sqrt(level * j.A), camera->width, &s.left, &s.right);
+    splat_cut(y, sqrt(level * j.C), camera->height, &s.top, &s.bottom);
     if (s.bottom < s.top) {
         s.right = s.left - 1;
     }

@@ -81,6 +81,8 @@ void splat_chain(const splat_camera *camera, const double *parameters, const spl
 
 /* Projects one Gaussian; right < left if it is culled. */
 splat splat_project(const splat_camera *camera, const double *parameters, double alpha_least);
+/* Sets the first and the last pixel within `reach` of `centre`, cut to a picture of that side. */
+void splat_cut(double centre, double reach, uint32_t side, int32_t *low, int32_t *high);
 /* Fills `first` and `list` from the projected splats. */
 bool splat_view_bin(splat_view *view);
 

@@ -2,6 +2,7 @@
 """Measurements on recorded scenes, made when first asked for and kept in build/results until the program changes: what the
 measuring tools share."""
 import csv
+import glob
 import hashlib
 import json
 import os
@@ -42,9 +43,11 @@ class Measurements:
         for need in (program, DATA):
             if not os.path.exists(need):
                 sys.exit(f"{script}: {os.path.relpath(need)} is not there")
-        with open(program, "rb") as file:
-            stamp = hashlib.sha256(file.read()).hexdigest()[:12]
-        self.folder = os.path.join(cache, stamp)
+        stamp = hashlib.sha256()
+        for path in (program, *sorted(glob.glob(os.path.join(os.path.dirname(program), "libtrim3r_*.so")))):  # its modules
+            with open(path, "rb") as file:
+                stamp.update(file.read())
+        self.folder = os.path.join(cache, stamp.hexdigest()[:12])
         os.makedirs(self.folder, exist_ok=True)
         with open(os.path.join(DATA, "splits.json"), encoding="utf-8") as file:
             self.test_scenes = json.load(file)["test"]

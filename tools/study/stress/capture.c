@@ -7,6 +7,7 @@
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
+#include "reconstruction/developed_frame.h"
 
 bool stress_capture_open(stress_capture *capture, uint32_t width, uint32_t height, uint32_t views, double depth_unit)
 {
@@ -76,28 +77,14 @@ static t3r_recorded_camera camera_of(const t3r_camera *camera, uint32_t width, u
 
 static int develop(stress_capture *capture, uint32_t v, const t3r_capture_frame *frame, const char *path)
 {
-    t3r_config config = t3r_default_config(capture->width, capture->height, 1, 1);
-    t3r_plan_info plan;
-    t3r_runtime *runtime;
     t3r_camera camera;
-    void *arena = NULL;
-    t3r_status status = t3r_plan(&config, &plan);
-    if (status == T3R_OK && posix_memalign(&arena, T3R_ARENA_ALIGN, plan.min_bytes) != 0) {
-        return cli_error(CLI_BAD_INPUT, "out of memory");
+    uint16_t *depth = frame->frame.depth == NULL ? NULL : capture->view[v].depth;
+    const int code = developed_capture(frame, path, frame->index, capture->width, capture->height, capture->view[v].rgb,
+                                       depth, &camera);
+    if (code == CLI_OK) {
+        capture->view[v].camera = camera_of(&camera, capture->width, capture->height);
     }
-    if (status == T3R_OK) {
-        status = t3r_init(&runtime, arena, plan.min_bytes, &config);
-    }
-    if (status == T3R_OK) {
-        status = t3r_develop(runtime, &frame->frame, &frame->camera, capture->view[v].rgb,
-                             frame->frame.depth == NULL ? NULL : capture->view[v].depth, &camera);
-    }
-    free(arena);
-    if (status != T3R_OK) {
-        return cli_error(CLI_BAD_INPUT, "%s: frame %u: %s", path, (unsigned)frame->index, t3r_error_text(status));
-    }
-    capture->view[v].camera = camera_of(&camera, capture->width, capture->height);
-    return CLI_OK;
+    return code;
 }
 
 int stress_capture_read(stress_capture *capture, const evaluation_case *what, const reconstruction_options *settings)

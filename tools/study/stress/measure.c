@@ -84,27 +84,27 @@ static int measure_row(const cell *it, stress_run *run, uint32_t keep, uint32_t 
     reconstruction_options options = stress_run_options(run, it->c, it->contest, keep);
     options.method = row->method;
     reconstruction built;
-    reconstruction_account told;
+    reconstruction_account account;
     char reason[STRESS_REASON_BYTES] = "";
     cli_keep_errors(reason, sizeof reason);
-    int code = stress_run_build(run, &options, &built, &told);
+    int code = stress_run_build(run, &options, &built, &account);
     cli_keep_errors(NULL, 0);
     if (code != CLI_OK) {
         return refuse(it, row, code, reason);
     }
     const bool stereo = options.config.depth == T3R_DEPTH_STEREO;
-    uint32_t valid = stereo ? told.valid_points : stress_capture_valid(&run->capture);
+    uint32_t valid = stereo ? account.valid_points : stress_capture_valid(&run->capture);
     uint32_t expected = T3R_MIN(options.gaussians, valid);
     const char *broken = stress_broken_invariant(&built.scene, expected, options.automatic);
     if (broken != NULL) {
         set_status(row, STRESS_BROKEN, broken);
     }
-    double ms = told.seconds * 1000;
+    double ms = account.seconds * 1000;
     row->value[STRESS_BUILD_MS] = capture == 0 ? ms : fmin(ms, row->value[STRESS_BUILD_MS]);
     cli_keep_errors(reason, sizeof reason);
     if (capture == 0) {
         row->value[STRESS_GAUSSIANS] = built.scene.count;
-        row->value[STRESS_ARENA_BYTES] = (double)told.arena_bytes;
+        row->value[STRESS_ARENA_BYTES] = (double)account.arena_bytes;
         evaluation_row scores = {0};
         code = evaluation_score(&scores, it->renders + index * picture_bytes(it), &run->views, &run->what, &built);
         if (code == CLI_OK) {
@@ -126,10 +126,10 @@ static int measure_all_points(cell *it, stress_run *run, uint32_t capture)
     options.method = RIVAL_METHOD(METHOD_RANDOM, METHOD_PLAIN);
     uint8_t *render = it->now + stress_row_count(it->contest) * picture_bytes(it);
     reconstruction built;
-    reconstruction_account told;
+    reconstruction_account account;
     char reason[STRESS_REASON_BYTES] = "";
     cli_keep_errors(reason, sizeof reason);
-    int code = stress_run_build(run, &options, &built, &told);
+    int code = stress_run_build(run, &options, &built, &account);
     if (code == CLI_OK) {
         evaluation_row scores = {0};
         code = capture == 0 ? evaluation_score(&scores, render, &run->views, &run->what, &built)

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/cli.h"
 #include "cli/tables/json_output.h"
@@ -12,13 +11,11 @@
 #include "study/stress/verdict.h"
 
 #define ERROR_BYTES 512
-#define WORTH_TELLING 2.0 /* seconds of work before an estimate is drawn */
 
 int stress_report_open(stress_report *report, const stress_outputs *to, const stress_contest *contest, uint32_t cells)
 {
     char error[ERROR_BYTES] = "";
-    *report = (stress_report){
-        .to = *to, .contest = contest, .row_total = cells * stress_row_count(contest), .started = cli_now()};
+    *report = (stress_report){.to = *to, .contest = contest, .row_total = cells * stress_row_count(contest)};
     report->rows = calloc(report->row_total, sizeof *report->rows);
     if (report->rows == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
@@ -33,20 +30,8 @@ int stress_report_open(stress_report *report, const stress_outputs *to, const st
         }
         stress_csv_header(&report->csv.table);
     }
+    cli_progress_within("rows", 0, 0, report->row_total);
     return CLI_OK;
-}
-
-/* Shows the progress; cells take similar times. */
-static void show_progress(const stress_report *report)
-{
-    double spent = cli_now() - report->started;
-    if (!isatty(STDERR_FILENO) || spent < WORTH_TELLING) {
-        return;
-    }
-    double left = spent * (report->row_total - report->row_count) / report->row_count;
-    fprintf(stderr, "\r%-40s\r%u of %u rows, %.0f:%02.0f min left", "", (unsigned)report->row_count,
-            (unsigned)report->row_total, (double)(long)(left / 60), (double)((long)left % 60));
-    fflush(stderr);
 }
 
 int stress_report_cell(stress_report *report, const stress_row *rows, const uint8_t *renders, const uint8_t *plain,
@@ -58,7 +43,7 @@ int stress_report_cell(stress_report *report, const stress_row *rows, const uint
     for (uint32_t i = 0; i < count && report->csv.table.file != NULL; i++) {
         stress_csv_row(&report->csv.table, &rows[i]);
     }
-    show_progress(report);
+    cli_progress_within("rows", 0, report->row_count, report->row_total);
     if (report->to.page != NULL && !stress_album_offer(&report->album, rows, renders, plain, c, report->contest, p)) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
@@ -105,9 +90,7 @@ static int finish(stress_report *report)
 
 int stress_report_close(stress_report *report, int code)
 {
-    if (isatty(STDERR_FILENO)) {
-        fputs("\r\033[K", stderr);
-    }
+    cli_progress_end();
     const bool is_whole = code == CLI_OK; /* whatever the rows say */
     if (code == CLI_OK) {
         code = finish(report);

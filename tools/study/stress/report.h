@@ -22,7 +22,6 @@ typedef struct stress_report {
     stress_album album;
     stress_row *rows; /* room for all */
     uint32_t row_count, row_total;
-    double started;
 } stress_report;
 
 /* These report on stderr and return an exit status of cli.h. Opening opens every output possible, so that a bad path

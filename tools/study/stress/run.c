@@ -109,7 +109,7 @@ reconstruction_options stress_run_options(const stress_run *run, const stress_ca
 }
 
 int stress_run_build(stress_run *run, const reconstruction_options *options, reconstruction *built,
-                     reconstruction_account *told)
+                     reconstruction_account *account)
 {
-    return options->method->build(&run->views.source, run->recording, run->what.path, options, built, told);
+    return options->method->build(&run->views.source, run->recording, run->what.path, options, built, account);
 }

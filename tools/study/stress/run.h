@@ -58,6 +58,6 @@ reconstruction_options stress_run_options(const stress_run *run, const stress_ca
                                           uint32_t keep);
 /* Builds the run's scene by the options' method: *built, to be closed. An exit status of cli.h. */
 int stress_run_build(stress_run *run, const reconstruction_options *options, reconstruction *built,
-                     reconstruction_account *told);
+                     reconstruction_account *account);
 
 #endif

@@ -107,8 +107,8 @@ static int take(snapshot *s, const stress_row *row, const stress_case *c, stress
                 const reconstruction_options *options)
 {
     reconstruction built;
-    reconstruction_account told;
-    int code = stress_run_build(run, options, &built, &told);
+    reconstruction_account account;
+    int code = stress_run_build(run, options, &built, &account);
     if (code != CLI_OK) {
         return code;
     }

@@ -46,12 +46,12 @@ static void print_invariants(FILE *out, const stress_row *rows, uint32_t count)
         (unsigned)count, (unsigned)(count - refused - broken), (unsigned)refused, (unsigned)broken, ", still scene");
     /* each reason once a perturbation and strength */
     for (uint32_t i = 0; i < count; i++) {
-        bool told = rows[i].status != STRESS_REFUSED;
-        for (uint32_t earlier = 0; earlier < i && !told; earlier++) {
-            told = rows[earlier].status == STRESS_REFUSED && strcmp(rows[earlier].what, rows[i].what) == 0 &&
-                   rows[earlier].grade == rows[i].grade && strcmp(rows[earlier].reason, rows[i].reason) == 0;
+        bool reported = rows[i].status != STRESS_REFUSED;
+        for (uint32_t earlier = 0; earlier < i && !reported; earlier++) {
+            reported = rows[earlier].status == STRESS_REFUSED && strcmp(rows[earlier].what, rows[i].what) == 0 &&
+                       rows[earlier].grade == rows[i].grade && strcmp(rows[earlier].reason, rows[i].reason) == 0;
         }
-        if (!told) {
+        if (!reported) {
             char strength[32];
             stress_strength(&rows[i], strength, sizeof strength);
             fprintf(out, "refused  %s %s: %s\n", rows[i].what, strength, rows[i].reason);

@@ -34,10 +34,25 @@ def build(name, sources, flags, headers=(), folder=None):
     return library
 
 
+def here(*pattern):
+    return sorted(glob.glob(os.path.join(HERE, "..", "..", "..", *pattern), recursive=True))
+
+
+def rivals(*parts):
+    """Sources of tools/study/rivals, and what they are made of."""
+    tools = [path for part in ("geometry/quaternion", "scene/gaussian_shape", "scene/splat_camera")
+             for path in here("tools", part + ".c")]  # fmt: skip
+    return tools + [path for part in parts for path in here("tools", "study", "rivals", part + ".c")]
+
+
+RIVAL_HEADERS = here("tools", "study", "rivals", "*.h") + here("tools", "scene", "*.h") + here("tools", "geometry", "*.h")
+INCLUDES = ["-I" + folder for folder in (RUNTIME, os.path.join(RUNTIME, "include"), os.path.join(HERE, "..", ".."), HEADS)]
+
+
 def splatter(*more):
     """splat.c: the differentiable splatter and the refinement. more: compiler flags."""
-    flags = ("-std=gnu11", "-O3", "-march=native", "-ffast-math", "-fno-finite-math-only", "-fopenmp", *more)
-    library = ctypes.CDLL(build("splat", [os.path.join(HERE, "splat.c")], flags))
+    flags = ("-std=gnu11", "-O3", "-march=native", "-ffast-math", "-fno-finite-math-only", "-fopenmp", *INCLUDES, *more)
+    library = ctypes.CDLL(build("splat", [os.path.join(HERE, "splat.c"), *rivals("splat_*")], flags, RIVAL_HEADERS))
     pointer, number = ctypes.c_void_p, ctypes.c_int32
     library.splat_forward.argtypes = [number] * 3 + [pointer] * 4
     library.splat_backward.argtypes = [number] * 3 + [pointer] * 6
@@ -47,18 +62,10 @@ def splatter(*more):
 
 def preparer():
     """prepare.c, the runtime that it calls, and what rivals rank with."""
-
-    def here(*pattern):
-        return sorted(glob.glob(os.path.join(HERE, "..", "..", "..", *pattern), recursive=True))
-
-    rivals = [path for part in ("gaussian_shape", "splat_camera") for path in here("tools", "scene", part + ".c")]
-    rivals += [path for part in ("choose", "score*", "splat_*") for path in here("tools", "study", "rivals", part + ".c")]
-    sources = [os.path.join(HERE, name) for name in ("prepare.c", "prepare_rival.c")] + rivals
+    sources = [os.path.join(HERE, name) for name in ("prepare.c", "prepare_rival.c")] + rivals("choose", "score*", "splat_*")
     sources += here("quant", "heads", "small.c") + here("runtime", "**", "*.c")
-    headers = here("runtime", "**", "*.h") + here("tools", "study", "rivals", "*.h")
-    headers += here("tools", "scene", "*.h") + here("tools", "study", "train", "prepare_rival.h")
-    includes = (RUNTIME, os.path.join(RUNTIME, "include"), os.path.join(HERE, "..", ".."), HEADS)
-    flags = ("-std=c11", "-O3", "-march=native", "-ffp-contract=off", *("-I" + folder for folder in includes))
+    headers = RIVAL_HEADERS + here("runtime", "**", "*.h") + here("tools", "study", "train", "prepare_rival.h")
+    flags = ("-std=c11", "-O3", "-march=native", "-ffp-contract=off", *INCLUDES)
     library = ctypes.CDLL(build("prepare", sources, flags, headers))
     library.prepare.restype = ctypes.c_int32
     library.prepare.argtypes = [ctypes.c_void_p] * 6

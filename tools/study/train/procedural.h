@@ -198,6 +198,15 @@ void develop(const camera_look *look, generator *noise, int width, int height, f
  * as data */
 void blur_planes(float *data, float *scratch, int width, int height, int channels, float sigma);
 
+/* The owner of some of a pixel's subsamples: their number, and the sums of their places from the pixel's centre */
+typedef struct {
+    uint16_t owner;
+    float count, x, y;
+} seen;
+
+/* Finds each owner that a pixel sees; `owner` has SUBSAMPLES^2 entries a pixel. Returns their number */
+int pixel_owners(const uint16_t *owner, int width, int x, int y, seen found[SUBSAMPLES * SUBSAMPLES]);
+
 /* ---- what Python calls ------------------------------------------------------------------------------------------ */
 
 /* NULL without memory. Free with free(). */

@@ -136,6 +136,28 @@ static void tone_curve(float *curve, float contrast)
     }
 }
 
+int pixel_owners(const uint16_t *owner, int width, int x, int y, seen found[SUBSAMPLES * SUBSAMPLES])
+{
+    int count = 0;
+    const float step = 1.0f / SUBSAMPLES, first = 0.5f * step - 0.5f;
+    for (int j = 0; j < SUBSAMPLES; j++) {
+        const uint16_t *row = owner + (size_t)(y * SUBSAMPLES + j) * width * SUBSAMPLES + x * SUBSAMPLES;
+        for (int i = 0; i < SUBSAMPLES; i++) {
+            int k = 0;
+            while (k < count && found[k].owner != row[i]) {
+                k++;
+            }
+            if (k == count) {
+                found[count++] = (seen){.owner = row[i]};
+            }
+            found[k].count += 1.0f;
+            found[k].x += first + step * (float)i;
+            found[k].y += first + step * (float)j;
+        }
+    }
+    return count;
+}
+
 void develop(const camera_look *look, generator *noise, int width, int height, float *linear, float *scratch,
              uint8_t *image)
 {

@@ -204,36 +204,21 @@ static inline __attribute__((always_inline)) void mark(painting *p, int index, c
 static void mark_leaf(painting *p, int index)
 {
     switch (p->leaves[index].shape) {
-    case SHAPE_ELLIPSE:
-        mark(p, index, SHAPE_ELLIPSE);
-        break;
-    case SHAPE_BAR:
-        mark(p, index, SHAPE_BAR);
-        break;
-    case SHAPE_ROUNDED:
-        mark(p, index, SHAPE_ROUNDED);
-        break;
-    case SHAPE_LENS:
-        mark(p, index, SHAPE_LENS);
-        break;
-    case SHAPE_POLYGON:
-        mark(p, index, SHAPE_POLYGON);
-        break;
-    case SHAPE_RING:
-        mark(p, index, SHAPE_RING);
-        break;
-    case SHAPE_FRAME:
-        mark(p, index, SHAPE_FRAME);
-        break;
-    case SHAPE_ARC:
-        mark(p, index, SHAPE_ARC);
-        break;
-    case SHAPE_BLOB:
-        mark(p, index, SHAPE_BLOB);
-        break;
+#define MARK(shape)                                                                                                    \
+    case shape:                                                                                                        \
+        mark(p, index, shape);                                                                                         \
+        break
+        MARK(SHAPE_ELLIPSE);
+        MARK(SHAPE_BAR);
+        MARK(SHAPE_ROUNDED);
+        MARK(SHAPE_LENS);
+        MARK(SHAPE_POLYGON);
+        MARK(SHAPE_RING);
+        MARK(SHAPE_FRAME);
+        MARK(SHAPE_ARC);
+        MARK(SHAPE_BLOB);
     default:
         mark(p, index, SHAPE_GLYPH);
-        break;
     }
 }
 
@@ -462,31 +447,12 @@ static void shade(const painting *p, const leaf *l, float x, float y, float rgb[
 /* Shades every leaf that a pixel's subsamples see once, at their mean, weighted by their number */
 static void shade_pixel(painting *p, int x, int y)
 {
-    int columns = p->width * SUBSAMPLES, found = 0;
-    const float step = 1.0f / SUBSAMPLES, first = 0.5f * step - 0.5f;
-    uint16_t owners[SUBSAMPLES * SUBSAMPLES];
-    float counts[SUBSAMPLES * SUBSAMPLES], xs[SUBSAMPLES * SUBSAMPLES], ys[SUBSAMPLES * SUBSAMPLES];
-    for (int j = 0; j < SUBSAMPLES; j++) {
-        const uint16_t *row = p->owner + (size_t)(y * SUBSAMPLES + j) * columns + x * SUBSAMPLES;
-        for (int i = 0; i < SUBSAMPLES; i++) {
-            int k = 0;
-            while (k < found && owners[k] != row[i]) {
-                k++;
-            }
-            if (k == found) {
-                owners[k] = row[i];
-                counts[k] = xs[k] = ys[k] = 0.0f;
-                found++;
-            }
-            counts[k] += 1.0f;
-            xs[k] += first + step * (float)i;
-            ys[k] += first + step * (float)j;
-        }
-    }
-    for (int k = 0; k < found; k++) {
-        const leaf *l = &p->leaves[owners[k]];
-        float rgb[3], share = counts[k] * (1.0f / (SUBSAMPLES * SUBSAMPLES));
-        shade(p, l, (float)x + xs[k] / counts[k], (float)y + ys[k] / counts[k], rgb);
+    seen found[SUBSAMPLES * SUBSAMPLES];
+    for (int k = pixel_owners(p->owner, p->width, x, y, found), i = 0; i < k; i++) {
+        const seen *f = &found[i];
+        const leaf *l = &p->leaves[f->owner];
+        float rgb[3], share = f->count * (1.0f / (SUBSAMPLES * SUBSAMPLES));
+        shade(p, l, (float)x + f->x / f->count, (float)y + f->y / f->count, rgb);
         float *to = p->layer[layer_of(p, l->w)] + 4 * (y * p->width + x);
         for (int c = 0; c < 3; c++) {
             to[c] += share * rgb[c];

@@ -156,7 +156,7 @@ void see_room(const room *r, const viewpoint *v, int width, int height, float *n
               float *depth)
 {
     int columns = width * SUBSAMPLES, rows = height * SUBSAMPLES;
-    const float step = 1.0f / SUBSAMPLES, first = 0.5f * step - 0.5f;
+    const float step = 1.0f / SUBSAMPLES;
     for (size_t i = 0; i < (size_t)columns * rows; i++) {
         near[i] = INFINITY;
     }
@@ -165,31 +165,13 @@ void see_room(const room *r, const viewpoint *v, int width, int height, float *n
     }
     for (int y = 0; y < height; y++) {
         for (int x = 0; x < width; x++) {
-            int seen = 0;
-            float sum[3] = {0.0f, 0.0f, 0.0f};
-            bool done[SUBSAMPLES * SUBSAMPLES] = {false};
-            uint16_t owners[SUBSAMPLES * SUBSAMPLES];
-            for (int j = 0; j < SUBSAMPLES * SUBSAMPLES; j++) {
-                owners[j] =
-                    owner[(size_t)(y * SUBSAMPLES + j / SUBSAMPLES) * columns + x * SUBSAMPLES + j % SUBSAMPLES];
-            }
-            for (int j = 0; j < SUBSAMPLES * SUBSAMPLES; j++) {
-                if (done[j]) {
-                    continue;
-                }
-                float sx = 0.0f, sy = 0.0f, rgb[3];
-                seen = 0;
-                for (int k = j; k < SUBSAMPLES * SUBSAMPLES; k++) {
-                    if (owners[k] == owners[j]) {
-                        done[k] = true;
-                        seen++;
-                        sx += first + step * (float)(k % SUBSAMPLES);
-                        sy += first + step * (float)(k / SUBSAMPLES);
-                    }
-                }
-                shade_hit(r, v, owners[j], (float)x + sx / (float)seen, (float)y + sy / (float)seen, rgb);
+            seen found[SUBSAMPLES * SUBSAMPLES];
+            float sum[3] = {0.0f, 0.0f, 0.0f}, rgb[3];
+            for (int k = pixel_owners(owner, width, x, y, found), i = 0; i < k; i++) {
+                const seen *f = &found[i];
+                shade_hit(r, v, f->owner, (float)x + f->x / f->count, (float)y + f->y / f->count, rgb);
                 for (int c = 0; c < 3; c++) {
-                    sum[c] += rgb[c] * (float)seen * step * step;
+                    sum[c] += rgb[c] * f->count * step * step;
                 }
             }
             memcpy(linear + 3 * (y * width + x), sum, sizeof sum);

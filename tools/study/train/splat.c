@@ -1,293 +1,108 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The differentiable splatter of the training: splats of an image plane, blended front to back, with derivatives.
+/* The differentiable splatter of the training: splats of an image plane, drawn, differentiated and refined in float32
+ * by the splatter of the rivals.
  *
- * What it draws is what runtime/raster draws (alpha = min(0.99, opacity exp(-q)), skipped below 1/255, pixels closed
- * below a transmittance of 1e-4), in float32. A splat is nine floats: centre x, y; conic a, b, c with
- * q = (a dx^2 + 2 b dx dy + c dy^2) / 2; opacity; red, green, blue. Pictures of a batch are drawn by OpenMP threads,
- * each picture by one, so that sums have one order and training is deterministic. */
+ * A splat is nine floats: centre x, y; conic a, b, c with q = (a dx^2 + 2 b dx dy + c dy^2) / 2; opacity; red, green,
+ * blue. Pictures are [pictures][height][width][3]. OpenMP threads share a batch, each picture by one, so that sums have
+ * one order and training is deterministic. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define SIDE 16
+#include "study/rivals/splat_blend.h"
+#include "study/rivals/splat_view.h"
+
 #define PARAMETERS 9
-#define ALPHA_MOST 0.99f
 #ifndef ALPHA_LEAST /* a test sets it lower: the cut has no derivative */
-#define ALPHA_LEAST (1.0f / 255.0f)
+#define ALPHA_LEAST SPLAT_ALPHA_LEAST
 #endif
-#define STOP 1e-4f
 
-typedef struct picture {
-    int32_t width, height, tiles_across, tiles;
-    const float *splats;
-    int32_t *first; /* tiles + 1 places in `list` */
-    int32_t *list;  /* splats of each tile, front to back */
-} picture;
+/* A batch: splats of picture b are start[b]..start[b + 1] - 1; `order` lists each picture's, front to back, counted
+ * from its start. */
+typedef struct batch {
+    uint32_t width, height;
+    const int32_t *start, *order;
+} batch;
 
-typedef struct box {
-    int32_t x0, y0, x1, y1; /* tiles, inclusive; x1 < x0: none */
-} box;
-
-static int32_t clamp_tile(float pixel, int32_t tiles)
+static splat splat_of(const float *row, uint32_t place, const splat_camera *camera)
 {
-    float t = floorf(pixel / SIDE);
-    return t < 0 ? 0 : t > (float)(tiles - 1) ? tiles - 1 : (int32_t)t;
+    splat s = {.x = row[0], .y = row[1], .a = row[2], .b = row[3], .c = row[4], .opacity = row[5], .right = -1};
+    float level = 2 * logf(s.opacity / (float)ALPHA_LEAST), determinant = s.a * s.c - s.b * s.b;
+    memcpy(s.colour, row + 6, sizeof s.colour);
+    s.depth_key = place;
+    if (s.opacity > (float)ALPHA_LEAST && determinant > 0) {
+        splat_cut(s.x, sqrtf(level * s.c / determinant), camera->width, &s.left, &s.right);
+        splat_cut(s.y, sqrtf(level * s.a / determinant), camera->height, &s.top, &s.bottom);
+        s.right = s.bottom < s.top ? s.left - 1 : s.right;
+    }
+    return s;
 }
 
-static box reach(const picture *p, const float *s)
+/* Opens the view of picture b. False without memory; splat_view_close() in any case. */
+static bool open_view(splat_view *view, const batch *of, int32_t b, const float *splats)
 {
-    box none = {0, 0, -1, -1};
-    float level = 2 * logf(s[5] / ALPHA_LEAST), det = s[2] * s[4] - s[3] * s[3];
-    if (!(s[5] > ALPHA_LEAST) || !(det > 0)) {
-        return none;
+    const splat_camera camera = {.width = of->width, .height = of->height};
+    const int32_t first = of->start[b], count = of->start[b + 1] - first;
+    if (!splat_view_open(view, &camera, (uint32_t)count)) {
+        return false;
     }
-    float rx = sqrtf(level * s[4] / det), ry = sqrtf(level * s[2] / det);
-    if (s[0] + rx < 0 || s[1] + ry < 0 || s[0] - rx > p->width - 1 || s[1] - ry > p->height - 1) {
-        return none;
+    view->alpha_least = ALPHA_LEAST;
+    for (int32_t n = 0; n < count; n++) {
+        const int32_t at = of->order[first + n];
+        view->splats[at] = splat_of(splats + (size_t)PARAMETERS * (first + at), (uint32_t)n, &camera);
     }
-    int32_t down = p->tiles / p->tiles_across;
-    return (box){clamp_tile(s[0] - rx, p->tiles_across), clamp_tile(s[1] - ry, down),
-                 clamp_tile(s[0] + rx, p->tiles_across), clamp_tile(s[1] + ry, down)};
+    return splat_view_bin(view);
 }
 
-/* Bins the splats; 0 when memory lacks. */
-static int bin(picture *p, const int32_t *order, int32_t count)
-{
-    p->first = calloc((size_t)p->tiles + 2, sizeof *p->first);
-    p->list = NULL;
-    if (p->first == NULL) {
-        return 0;
-    }
-    for (int pass = 0; pass < 2; pass++) {
-        for (int32_t n = 0; n < count; n++) {
-            box b = reach(p, p->splats + (size_t)PARAMETERS * order[n]);
-            for (int32_t y = b.y0; y <= b.y1; y++) {
-                for (int32_t x = b.x0; x <= b.x1; x++) {
-                    int32_t *at = &p->first[y * p->tiles_across + x + 2 - pass];
-                    if (pass == 1) {
-                        p->list[*at] = order[n];
-                    }
-                    (*at)++;
-                }
-            }
-        }
-        if (pass == 0) {
-            for (int32_t t = 1; t <= p->tiles; t++) {
-                p->first[t + 1] += p->first[t];
-            }
-            p->list = malloc(((size_t)p->first[p->tiles + 1] + 1) * sizeof *p->list);
-            if (p->list == NULL) {
-                free(p->first);
-                return 0;
-            }
-        }
-    }
-    return 1;
-}
-
-typedef struct tile {
-    float colour[3][SIDE][SIDE];
-    float transmittance[SIDE][SIDE];
-} tile;
-
-/* exp(-q) * opacity, cut as the rasterizer cuts, over a row of 16 pixels */
-static inline void alphas(const float *s, float dy, float left, float transmittance[SIDE], float alpha[SIDE],
-                          float decay[SIDE])
-{
-    for (int i = 0; i < SIDE; i++) {
-        float dx = left + (float)i - s[0];
-        float q = 0.5f * (s[2] * dx * dx + s[4] * dy * dy) + s[3] * dx * dy;
-        float e = expf(-q);
-        float a = s[5] * e;
-        a = a > ALPHA_MOST ? ALPHA_MOST : a;
-        a = a < ALPHA_LEAST || transmittance[i] < STOP ? 0.0f : a;
-        alpha[i] = a;
-        decay[i] = e;
-    }
-}
-
-/* Rows of the tile at `top` that the splat may reach. */
-static void rows_of(const float *s, float top, int *first, int *last)
-{
-    float ry = sqrtf(2 * logf(s[5] / ALPHA_LEAST) * s[2] / (s[2] * s[4] - s[3] * s[3]));
-    float a = ceilf(s[1] - ry - top), b = floorf(s[1] + ry - top);
-    *first = a < 0 ? 0 : a > SIDE ? SIDE : (int)a;
-    *last = b > SIDE - 1 ? SIDE - 1 : b < -1 ? -1 : (int)b;
-}
-
-static void draw_tile(const picture *p, int32_t t, tile *out)
-{
-    float left = (float)(t % p->tiles_across * SIDE), top = (float)(t / p->tiles_across * SIDE);
-    memset(out->colour, 0, sizeof out->colour);
-    for (int j = 0; j < SIDE; j++) {
-        for (int i = 0; i < SIDE; i++) {
-            out->transmittance[j][i] = 1.0f;
-        }
-    }
-    for (int32_t n = p->first[t]; n < p->first[t + 1]; n++) {
-        const float *s = p->splats + (size_t)PARAMETERS * p->list[n];
-        int first, last;
-        rows_of(s, top, &first, &last);
-        for (int j = first; j <= last; j++) {
-            float alpha[SIDE], decay[SIDE];
-            float *T = out->transmittance[j];
-            alphas(s, top + (float)j - s[1], left, T, alpha, decay);
-            for (int i = 0; i < SIDE; i++) {
-                float w = T[i] * alpha[i];
-                out->colour[0][j][i] += w * s[6];
-                out->colour[1][j][i] += w * s[7];
-                out->colour[2][j][i] += w * s[8];
-                T[i] -= w;
-            }
-        }
-    }
-}
-
-static picture picture_of(int32_t width, int32_t height, const float *splats)
-{
-    int32_t across = (width + SIDE - 1) / SIDE, down = (height + SIDE - 1) / SIDE;
-    return (picture){width, height, across, across * down, splats, NULL, NULL};
-}
-
-static void copy_tile(const picture *p, int32_t t, const tile *from, float *rgb)
-{
-    int32_t x0 = t % p->tiles_across * SIDE, y0 = t / p->tiles_across * SIDE;
-    size_t plane = (size_t)p->width * p->height;
-    for (int c = 0; c < 3; c++) {
-        for (int32_t j = 0; j < SIDE && y0 + j < p->height; j++) {
-            for (int32_t i = 0; i < SIDE && x0 + i < p->width; i++) {
-                rgb[c * plane + (size_t)(y0 + j) * p->width + x0 + i] = from->colour[c][j][i];
-            }
-        }
-    }
-}
-
-/* Draws `pictures` pictures of width x height. Splats of picture b are start[b]..start[b + 1] - 1 of `splats`; `order`
- * lists each picture's, front to back, counted from its start. rgb: [pictures][3][height][width]. 0 = out of memory. */
-int splat_forward(int32_t pictures, int32_t width, int32_t height, const int32_t *start, const float *splats,
+/* Draws the pictures into rgb. Returns 0 when memory is out. */
+int splat_forward(int32_t pictures, uint32_t width, uint32_t height, const int32_t *start, const float *splats,
                   const int32_t *order, float *rgb)
 {
+    const batch of = {width, height, start, order};
     int good = 1;
 #pragma omp parallel for schedule(dynamic) reduction(&& : good)
     for (int32_t b = 0; b < pictures; b++) {
-        picture p = picture_of(width, height, splats + (size_t)PARAMETERS * start[b]);
-        if (!bin(&p, order + start[b], start[b + 1] - start[b])) {
+        splat_view view;
+        if (open_view(&view, &of, b, splats)) {
+            splat_view_draw(&view, rgb + (size_t)b * 3 * width * height, NULL);
+        } else {
             good = 0;
-            continue;
         }
-        for (int32_t t = 0; t < p.tiles; t++) {
-            tile out;
-            draw_tile(&p, t, &out);
-            copy_tile(&p, t, &out, rgb + (size_t)b * 3 * width * height);
-        }
-        free(p.first);
-        free(p.list);
+        splat_view_close(&view);
     }
     return good;
 }
 
-/* Loads a tile's pixels of a planar picture; zeros beyond the border. */
-static void load_tile(const picture *p, int32_t t, const float *rgb, float out[3][SIDE][SIDE])
-{
-    int32_t x0 = t % p->tiles_across * SIDE, y0 = t / p->tiles_across * SIDE;
-    size_t plane = (size_t)p->width * p->height;
-    memset(out, 0, sizeof(float) * 3 * SIDE * SIDE);
-    for (int c = 0; c < 3; c++) {
-        for (int32_t j = 0; j < SIDE && y0 + j < p->height; j++) {
-            for (int32_t i = 0; i < SIDE && x0 + i < p->width; i++) {
-                out[c][j][i] = rgb[c * plane + (size_t)(y0 + j) * p->width + x0 + i];
-            }
-        }
-    }
-}
-
-/* The tile drawn again, each splat's derivatives summed on the way. What lies behind a splat is the finished colour
- * less what was drawn so far, so no second walk back to front is needed: dC / d alpha = T c - (C - C_drawn) / (1 -
- * alpha). */
-static void tile_backward(const picture *p, int32_t t, float final[3][SIDE][SIDE], float g[3][SIDE][SIDE], float *out)
-{
-    float left = (float)(t % p->tiles_across * SIDE), top = (float)(t / p->tiles_across * SIDE);
-    float T[SIDE][SIDE];
-    for (int j = 0; j < SIDE; j++) {
-        for (int i = 0; i < SIDE; i++) {
-            T[j][i] = 1.0f;
-        }
-    }
-    for (int32_t n = p->first[t]; n < p->first[t + 1]; n++) {
-        const float *s = p->splats + (size_t)PARAMETERS * p->list[n];
-        float *d = out + (size_t)PARAMETERS * p->list[n];
-        int first, last;
-        rows_of(s, top, &first, &last);
-        float sum[PARAMETERS] = {0};
-        for (int j = first; j <= last; j++) {
-            float alpha[SIDE], decay[SIDE];
-            float dy = top + (float)j - s[1];
-            alphas(s, dy, left, T[j], alpha, decay);
-            float dr = 0, dg = 0, db = 0, dop = 0, dmx = 0, dmy = 0, da = 0, dbb = 0, dc = 0;
-            for (int i = 0; i < SIDE; i++) {
-                float w = T[j][i] * alpha[i];
-                final[0][j][i] -= w * s[6]; /* from here on: what is still behind */
-                final[1][j][i] -= w * s[7];
-                final[2][j][i] -= w * s[8];
-                float front = g[0][j][i] * s[6] + g[1][j][i] * s[7] + g[2][j][i] * s[8];
-                float behind = g[0][j][i] * final[0][j][i] + g[1][j][i] * final[1][j][i] + g[2][j][i] * final[2][j][i];
-                float d_alpha = T[j][i] * front - behind / (1.0f - alpha[i]);
-                float d_q = -d_alpha * alpha[i];
-                d_alpha = alpha[i] == 0.0f || alpha[i] == ALPHA_MOST ? 0.0f : d_alpha;
-                d_q = alpha[i] == 0.0f || alpha[i] == ALPHA_MOST ? 0.0f : d_q;
-                float dx = left + (float)i - s[0];
-                dr += w * g[0][j][i];
-                dg += w * g[1][j][i];
-                db += w * g[2][j][i];
-                dop += d_alpha * decay[i];
-                dmx -= d_q * (s[2] * dx + s[3] * dy);
-                dmy -= d_q * (s[3] * dx + s[4] * dy);
-                da += 0.5f * d_q * dx * dx;
-                dbb += d_q * dx * dy;
-                dc += 0.5f * d_q * dy * dy;
-                T[j][i] -= w;
-            }
-            sum[0] += dmx;
-            sum[1] += dmy;
-            sum[2] += da;
-            sum[3] += dbb;
-            sum[4] += dc;
-            sum[5] += dop;
-            sum[6] += dr;
-            sum[7] += dg;
-            sum[8] += db;
-        }
-        for (int k = 0; k < PARAMETERS; k++) {
-            d[k] += sum[k];
-        }
-    }
-}
-
-/* Derivatives of a loss with respect to every parameter, from those with respect to the picture; `rgb` is what
- * splat_forward() drew. gradient: like splats. */
-int splat_backward(int32_t pictures, int32_t width, int32_t height, const int32_t *start, const float *splats,
+/* Writes derivatives of a loss with respect to every parameter, from those with respect to the pictures that
+ * splat_forward() drew. gradient: like splats. Returns 0 when memory is out. */
+int splat_backward(int32_t pictures, uint32_t width, uint32_t height, const int32_t *start, const float *splats,
                    const int32_t *order, const float *rgb, const float *rgb_gradient, float *gradient)
 {
+    const batch of = {width, height, start, order};
+    const size_t samples = (size_t)3 * width * height;
     int good = 1;
-    size_t plane = (size_t)3 * width * height;
 #pragma omp parallel for schedule(dynamic) reduction(&& : good)
     for (int32_t b = 0; b < pictures; b++) {
-        picture p = picture_of(width, height, splats + (size_t)PARAMETERS * start[b]);
+        const int32_t count = start[b + 1] - start[b];
+        splat_gradient *sums = calloc((size_t)count + 1, sizeof *sums);
         float *out = gradient + (size_t)PARAMETERS * start[b];
-        memset(out, 0, sizeof(float) * PARAMETERS * (size_t)(start[b + 1] - start[b]));
-        if (!bin(&p, order + start[b], start[b + 1] - start[b])) {
+        splat_view view;
+        if (open_view(&view, &of, b, splats) && sums != NULL) {
+            splat_view_differentiate(&view, rgb + b * samples, rgb_gradient + b * samples, sums);
+            for (int32_t n = 0; n < count; n++, out += PARAMETERS) {
+                const splat_gradient *g = &sums[n];
+                const double of_splat[PARAMETERS] = {g->x,       g->y,         g->a,         g->b,        g->c,
+                                                     g->opacity, g->colour[0], g->colour[1], g->colour[2]};
+                for (int k = 0; k < PARAMETERS; k++) {
+                    out[k] = (float)of_splat[k];
+                }
+            }
+        } else {
             good = 0;
-            continue;
         }
-        for (int32_t t = 0; t < p.tiles; t++) {
-            float final[3][SIDE][SIDE], g[3][SIDE][SIDE];
-            load_tile(&p, t, rgb + b * plane, final);
-            load_tile(&p, t, rgb_gradient + b * plane, g);
-            tile_backward(&p, t, final, g, out);
-        }
-        free(p.first);
-        free(p.list);
+        splat_view_close(&view);
+        free(sums);
     }
     return good;
 }
@@ -299,7 +114,7 @@ int splat_backward(int32_t pictures, int32_t width, int32_t height, const int32_
  * do. */
 #define UNKNOWNS 6
 #define MOMENTS 15
-#define DILATION 0.3f
+#define DILATION ((float)SPLAT_LOW_PASS)
 #define VARIANCE_LEAST 0.02f
 #define COLOUR_STEP 0.8125f
 #define SHARE_FIRST 0.171875f /* of the Gauss-Newton step */
@@ -323,38 +138,44 @@ typedef struct axes {
     float l11, l21, l22, k[2][2];
 } axes;
 
-static axes axes_of(const float *s)
+static axes axes_of(float ca, float cb, float cc)
 {
-    float det = s[2] * s[4] - s[3] * s[3];
-    float xx = fmaxf(s[4] / det - DILATION, VARIANCE_LEAST), xy = -s[3] / det;
-    float yy = fmaxf(s[2] / det - DILATION, VARIANCE_LEAST);
+    float det = ca * cc - cb * cb;
+    float xx = fmaxf(cc / det - DILATION, VARIANCE_LEAST), xy = -cb / det;
+    float yy = fmaxf(ca / det - DILATION, VARIANCE_LEAST);
     axes a;
     a.l11 = sqrtf(xx);
     a.l21 = xy / a.l11;
     a.l22 = sqrtf(fmaxf(yy - a.l21 * a.l21, VARIANCE_LEAST));
-    a.k[0][0] = a.l11 * s[2] + a.l21 * s[3];
-    a.k[0][1] = a.l11 * s[3] + a.l21 * s[4];
-    a.k[1][0] = a.l22 * s[3];
-    a.k[1][1] = a.l22 * s[4];
+    a.k[0][0] = a.l11 * ca + a.l21 * cb;
+    a.k[0][1] = a.l11 * cb + a.l21 * cc;
+    a.k[1][0] = a.l22 * cb;
+    a.k[1][1] = a.l22 * cc;
     return a;
 }
 
-static void add_row(const float *s, const axes *a, float left, float dy, float T[SIDE], float behind[3][SIDE],
-                    float residual[3][SIDE], sums *total)
+/* A tile, row by row: what no splat so far has drawn, and what the picture lacks, 0 where a pixel has no say. */
+typedef struct tile {
+    float transmittance[SPLAT_TILE][SPLAT_TILE];
+    float behind[SPLAT_TILE][3][SPLAT_TILE], residual[SPLAT_TILE][3][SPLAT_TILE];
+} tile;
+
+static void add_row(const splat *s, const axes *a, float left, float dy, float T[SPLAT_TILE],
+                    float behind[3][SPLAT_TILE], float residual[3][SPLAT_TILE], sums *total)
 {
-    float alpha[SIDE], decay[SIDE];
-    alphas(s, dy, left, T, alpha, decay);
+    float alpha[SPLAT_TILE], distance[SPLAT_TILE];
+    splat_alphas(s, (float)ALPHA_LEAST, left, dy, T, alpha, distance);
     float colour[3] = {0}, weight = 0, b[UNKNOWNS] = {0}, h[MOMENTS] = {0};
-    for (int i = 0; i < SIDE; i++) {
+    for (int i = 0; i < SPLAT_TILE; i++) {
         float w = T[i] * alpha[i], after = T[i] - w, gr = 0, gg = 0;
         for (int c = 0; c < 3; c++) {
-            behind[c][i] -= w * s[6 + c];
-            float g = w * (s[6 + c] - fminf(behind[c][i] / fmaxf(after, 1e-5f), 1.0f));
+            behind[c][i] -= w * s->colour[c];
+            float g = w * (s->colour[c] - fminf(behind[c][i] / fmaxf(after, 1e-5f), 1.0f));
             gr += g * residual[c][i];
             gg += g * g;
             colour[c] += w * residual[c][i];
         }
-        float dx = left + (float)i - s[0];
+        float dx = distance[i];
         float x = a->k[0][0] * dx + a->k[0][1] * dy, y = a->k[1][0] * dx + a->k[1][1] * dy;
         float xx = x * x, xy = x * y, yy = y * y;
         weight += w;
@@ -393,30 +214,36 @@ static void add_row(const float *s, const axes *a, float left, float dy, float T
     }
 }
 
-static void gather_tile(const picture *p, int32_t t, float behind[3][SIDE][SIDE], float residual[3][SIDE][SIDE],
-                        sums *out)
+static void load_tile(const splat_view *view, uint32_t left, uint32_t top, const float *rgb, const float *wanted,
+                      const uint8_t *counts, tile *out)
 {
-    float left = (float)(t % p->tiles_across * SIDE), top = (float)(t / p->tiles_across * SIDE);
-    float T[SIDE][SIDE];
-    for (int j = 0; j < SIDE; j++) {
-        for (int i = 0; i < SIDE; i++) { /* beyond the picture's border nothing counts */
-            T[j][i] = left + (float)i < (float)p->width && top + (float)j < (float)p->height ? 1.0f : 0.0f;
+    *out = (tile){0}; /* beyond the picture's border nothing counts */
+    for (uint32_t j = 0; j < SPLAT_TILE && top + j < view->camera.height; j++) {
+        for (uint32_t i = 0; i < SPLAT_TILE && left + i < view->camera.width; i++) {
+            const size_t pixel = (size_t)(top + j) * view->camera.width + left + i;
+            out->transmittance[j][i] = 1;
+            for (size_t c = 0; c < 3; c++) {
+                out->behind[j][c][i] = rgb[pixel * 3 + c];
+                out->residual[j][c][i] = counts[pixel] ? wanted[pixel * 3 + c] - rgb[pixel * 3 + c] : 0;
+            }
         }
     }
-    for (int32_t n = p->first[t]; n < p->first[t + 1]; n++) {
-        const float *s = p->splats + (size_t)PARAMETERS * p->list[n];
-        axes a = axes_of(s);
-        int first, last;
-        rows_of(s, top, &first, &last);
-        for (int j = first; j <= last; j++) {
-            float behind_row[3][SIDE], residual_row[3][SIDE];
-            for (int c = 0; c < 3; c++) {
-                memcpy(behind_row[c], behind[c][j], sizeof behind_row[c]);
-                memcpy(residual_row[c], residual[c][j], sizeof residual_row[c]);
-            }
-            add_row(s, &a, left, top + (float)j - s[1], T[j], behind_row, residual_row, &out[p->list[n]]);
-            for (int c = 0; c < 3; c++) {
-                memcpy(behind[c][j], behind_row[c], sizeof behind_row[c]);
+}
+
+static void gather(const splat_view *view, const float *rgb, const float *wanted, const uint8_t *counts, sums *out)
+{
+    for (uint32_t n = 0; n < view->across * view->down; n++) {
+        const uint32_t left = n % view->across * SPLAT_TILE, top = n / view->across * SPLAT_TILE;
+        tile t;
+        load_tile(view, left, top, rgb, wanted, counts, &t);
+        for (uint32_t at = view->first[n]; at < view->first[n + 1]; at++) {
+            const splat *s = &view->splats[view->list[at]];
+            const axes a = axes_of(s->a, s->b, s->c);
+            int32_t first, last;
+            splat_rows(s, (int32_t)top, &first, &last);
+            for (int32_t j = first; j <= last; j++) {
+                add_row(s, &a, (float)left, (float)((int32_t)top + j) - s->y, t.transmittance[j], t.behind[j],
+                        t.residual[j], &out[view->list[at]]);
             }
         }
     }
@@ -512,10 +339,10 @@ static void correct(const sums *z, float *change, float *s)
     }
     const float *shift = change + 4;
     float a = change[6], b = change[7], c = change[8];
-    axes l = axes_of(s);
+    axes l = axes_of(s[2], s[3], s[4]);
     s[0] += l.l11 * shift[0];
     s[1] += l.l21 * shift[0] + l.l22 * shift[1];
-    s[5] = fminf(fmaxf(s[5] * expf(change[3]), fminf(s[5], 1 / 128.0f)), ALPHA_MOST);
+    s[5] = fminf(fmaxf(s[5] * expf(change[3]), fminf(s[5], 1 / 128.0f)), SPLAT_ALPHA_MOST);
     /* L (I + step), squared and dilated again */
     float t00 = l.l11 * (1 + a), t01 = l.l11 * b;
     float t10 = l.l21 * (1 + a) + l.l22 * b, t11 = l.l21 * b + l.l22 * (1 + c);
@@ -529,44 +356,29 @@ static void correct(const sums *z, float *change, float *s)
 /* One pass of refinement: `rgb` is what splat_forward() drew of `splats`, which are corrected in place
  * towards `wanted`; `counts`, [pictures][height][width], is 0 where a pixel has no say; `changes`, [splats][CHANGES],
  * goes from pass to pass, 0 before the first; NULL: every pass is a first one. */
-int splat_refine(int32_t pictures, int32_t width, int32_t height, const int32_t *start, float *splats,
+int splat_refine(int32_t pictures, uint32_t width, uint32_t height, const int32_t *start, float *splats,
                  const int32_t *order, const float *rgb, const float *wanted, const uint8_t *counts, float *changes)
 {
+    const batch of = {width, height, start, order};
+    const size_t pixels = (size_t)width * height;
     int good = 1;
-    size_t pixels = (size_t)width * height;
 #pragma omp parallel for schedule(dynamic) reduction(&& : good)
     for (int32_t b = 0; b < pictures; b++) {
-        picture p = picture_of(width, height, splats + (size_t)PARAMETERS * start[b]);
-        int32_t count = start[b + 1] - start[b];
+        const int32_t count = start[b + 1] - start[b];
         sums *totals = calloc((size_t)count + 1, sizeof *totals);
-        if (totals == NULL || !bin(&p, order + start[b], count)) {
-            free(totals);
-            good = 0;
-            continue;
-        }
-        for (int32_t t = 0; t < p.tiles; t++) {
-            float behind[3][SIDE][SIDE], residual[3][SIDE][SIDE];
-            load_tile(&p, t, rgb + b * 3 * pixels, behind);
-            load_tile(&p, t, wanted + b * 3 * pixels, residual);
-            int32_t x0 = t % p.tiles_across * SIDE, y0 = t / p.tiles_across * SIDE;
-            for (int32_t j = 0; j < SIDE && y0 + j < height; j++) {
-                for (int32_t i = 0; i < SIDE && x0 + i < width; i++) {
-                    float says = counts[b * pixels + (size_t)(y0 + j) * width + x0 + i] ? 1 : 0;
-                    for (int c = 0; c < 3; c++) {
-                        residual[c][j][i] = says * (residual[c][j][i] - behind[c][j][i]);
-                    }
-                }
+        splat_view view;
+        if (open_view(&view, &of, b, splats) && totals != NULL) {
+            gather(&view, rgb + b * 3 * pixels, wanted + b * 3 * pixels, counts + b * pixels, totals);
+            for (int32_t n = 0; n < count; n++) {
+                const size_t at = (size_t)(start[b] + n);
+                float none[CHANGES] = {0};
+                correct(&totals[n], changes != NULL ? changes + CHANGES * at : none, splats + PARAMETERS * at);
             }
-            gather_tile(&p, t, behind, residual, totals);
+        } else {
+            good = 0;
         }
-        for (int32_t n = 0; n < count; n++) {
-            size_t at = (size_t)(start[b] + n);
-            float none[CHANGES] = {0};
-            correct(&totals[n], changes != NULL ? changes + CHANGES * at : none, splats + PARAMETERS * at);
-        }
+        splat_view_close(&view);
         free(totals);
-        free(p.first);
-        free(p.list);
     }
     return good;
 }

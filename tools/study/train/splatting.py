@@ -23,20 +23,20 @@ class _Draw(torch.autograd.Function):
     @staticmethod
     def forward(context, splats, start, order, width, height):
         splats, count = splats.detach().contiguous(), len(start) - 1
-        picture = torch.empty(count, 3, height, width)
+        picture = torch.empty(count, height, width, 3)
         if not _native().splat_forward(
             count, width, height, start.ctypes.data, splats.data_ptr(), order.ctypes.data, picture.data_ptr()
         ):
             raise MemoryError("splatter: out of memory")
         context.save_for_backward(splats, picture)
         context.rest = start, order, width, height
-        return picture
+        return picture.permute(0, 3, 1, 2)
 
     @staticmethod
     def backward(context, gradient):
         splats, picture = context.saved_tensors
         start, order, width, height = context.rest
-        gradient, out = gradient.contiguous(), torch.empty_like(splats)
+        gradient, out = gradient.permute(0, 2, 3, 1).contiguous(), torch.empty_like(splats)
         if not _native().splat_backward(
             len(start) - 1, width, height, start.ctypes.data, splats.data_ptr(), order.ctypes.data,
             picture.data_ptr(), gradient.data_ptr(), out.data_ptr(),
@@ -54,11 +54,11 @@ def draw(splats, start, order, width, height):
 def refine(splats, start, order, pictures, counts, passes, momentum=True):
     """Splats corrected towards `pictures` by `passes` of the runtime's refinement, or by that less its momentum, every
     step the share of a first pass; no derivatives."""
-    made, pictures = splats.detach().clone().contiguous(), pictures.contiguous()
-    height, width = pictures.shape[2:]
+    made, pictures = splats.detach().clone().contiguous(), pictures.permute(0, 2, 3, 1).contiguous()
+    height, width = pictures.shape[1:3]
     changes = torch.zeros(len(made), CHANGES) if momentum else None
     for _ in range(passes):
-        drawn = draw(made, start, order, width, height)
+        drawn = draw(made, start, order, width, height).permute(0, 2, 3, 1).contiguous()
         if not _native().splat_refine(
             len(start) - 1, width, height, start.ctypes.data, made.data_ptr(), order.ctypes.data,
             drawn.data_ptr(), pictures.data_ptr(), counts.ctypes.data, changes.data_ptr() if momentum else None,

@@ -37,33 +37,25 @@ typedef struct bench_options {
     bool calibrate, profile, json;
 } bench_options;
 
-enum {
-    KEY_POINTS = 0x1000,
-    KEY_HEAD,
-    KEY_DEPTH,
-    KEY_STAGES,
-    KEY_RUNS,
-    KEY_AGAINST,
-    KEY_CALIBRATE,
-    KEY_PROFILE,
-    KEY_JSON
-};
+enum { KEY_HEAD = 0x1000, KEY_DEPTH, KEY_RUNS };
 
 static const struct argp_option options[] = {
-    {"points", KEY_POINTS, "FILE", OPTION_READS, "points to cluster instead of the room's: raw float32, N x 6", 0},
+    {"points", OPTION_TO(bench_options, settings.points), "FILE", OPTION_READS,
+     "points to cluster instead of the room's: raw float32, N x 6", 0},
     {"head", KEY_HEAD, "HEAD", OPTION_READS | OPTION_OR_WORD,
      "network of head_gmac_per_s and network_ms: tiny, small (default), or FILE.t3w", 0},
     {"depth", KEY_DEPTH, "SOURCE", 0,
      "source of depth of the scenes that are built and drawn: sensor (default), or stereo, from the colours", 0},
-    {"stages", KEY_STAGES, "LIST", 0, "rows to time, as kmeans_ms,stereo_ms (all)", 0},
+    {"stages", OPTION_TO(bench_options, stages), "LIST", 0, "rows to time, as kmeans_ms,stereo_ms (all)", 0},
     {"runs", KEY_RUNS, "N", 0, "number of timed runs of each stage, 1..101 (7)", 0},
-    {"against", KEY_AGAINST, "BINARY", OPTION_READS,
+    {"against", OPTION_TO(bench_options, against), "BINARY", OPTION_READS,
      "another trim3r, to run its bench and this one's in --runs turns: how many times as fast each stage is", 0},
-    {"calibrate", KEY_CALIBRATE, NULL, 0,
+    {"calibrate", OPTION_TO(bench_options, calibrate), NULL, 0,
      "measure instead what a unit of each kind of work takes on this machine, for trim3r plan --machine", 0},
     {"output", 'o', "MACHINE.json", OPTION_WRITES(FILE_OTHER), "file that --calibrate writes", 0},
-    {"profile", KEY_PROFILE, NULL, 0, "print for each whole build the time of each of its stages, too", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"profile", OPTION_TO(bench_options, profile), NULL, 0,
+     "print for each whole build the time of each of its stages, too", 0},
+    {"json", OPTION_TO(bench_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -74,35 +66,17 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->settings.processor;
         return 0;
-    case KEY_POINTS:
-        o->settings.points = arg;
-        return 0;
     case KEY_HEAD:
         o->settings.head = option_head(state, "head", arg);
         return 0;
     case KEY_DEPTH:
         o->settings.depth = option_depth(state, "depth", arg);
         return 0;
-    case KEY_STAGES:
-        o->stages = arg;
-        return 0;
     case KEY_RUNS:
         o->runs = option_number(state, "runs", arg, 1, MAX_RUNS);
         return 0;
-    case KEY_AGAINST:
-        o->against = arg;
-        return 0;
-    case KEY_CALIBRATE:
-        o->calibrate = true;
-        return 0;
     case 'o':
         o->output = arg;
-        return 0;
-    case KEY_PROFILE:
-        o->profile = true;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
         return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, NULL, 0);
@@ -117,7 +91,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         }
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 
@@ -450,7 +424,7 @@ static int run_calibration(const bench_options *o)
         json_print(root);
         return CLI_OK;
     }
-    printf("%s: prices of %d kinds of work; largest error of a stage's time in a trial:\n", o->output, T3R_WORK_COUNT);
+    printf("%s: prices of %d kinds of work; largest error of a stage's time in a trial:\n", o->output, WORK_KIND_COUNT);
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
         printf("%-14s %5.1f %%\n", t3r_stage_name((t3r_stage)stage), errors[stage] * 100);
     }

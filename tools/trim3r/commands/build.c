@@ -27,16 +27,16 @@
 
 #define ERROR_BYTES 512
 
-enum { KEY_LOCAL = 0x1000, KEY_COLMAP, KEY_PRUNE, KEY_COMMENTS, KEY_UP, KEY_PROFILE, KEY_JSON };
+enum { KEY_LOCAL = 0x1000, KEY_COMMENTS, KEY_UP };
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
     {"output", 'o', "SCENE.ply", OPTION_WRITES(FILE_SCENE), "scene to write (needed, or --colmap)", 0},
-    {"colmap", KEY_COLMAP, "DIR", OPTION_WRITES(FILE_OTHER) | OPTION_FOLDER,
+    {"colmap", OPTION_TO(build_options, colmap), "DIR", OPTION_WRITES(FILE_OTHER) | OPTION_FOLDER,
      "folder, new or empty, to write the start of an outside optimiser into: the context views, and the means and "
      "colours of the Gaussians, as a COLMAP model in text",
      0},
-    {"prune", KEY_PRUNE, "SCENE.ply", OPTION_READS,
+    {"prune", OPTION_TO(build_options, settings.points_of), "SCENE.ply", OPTION_READS,
      "scene, made elsewhere, to prune instead of building one: the recording gives its views, --context names those it "
      "was made of; percents are of its Gaussians",
      0},
@@ -48,9 +48,9 @@ static const struct argp_option options[] = {
      0},
     {"comments", KEY_COMMENTS, NULL, 0,
      "name bits epoch, scene frame and head in header comments (some readers choke on them)", 0},
-    {"profile", KEY_PROFILE, NULL, 0,
+    {"profile", OPTION_TO(build_options, profile), NULL, 0,
      "print the time of each stage: processor time of one thread, or with more of them elapsed time", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"json", OPTION_TO(build_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -66,12 +66,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case 'o':
         o->output = arg;
         return 0;
-    case KEY_COLMAP:
-        o->colmap = arg;
-        return 0;
-    case KEY_PRUNE:
-        o->settings.points_of = arg;
-        return 0;
     case KEY_LOCAL:
         o->flags |= SCENE_FILE_LOCAL;
         return 0;
@@ -80,12 +74,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_COMMENTS:
         o->flags |= SCENE_FILE_COMMENTS;
-        return 0;
-    case KEY_PROFILE:
-        o->profile = true;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
         return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, (const char **[]){&o->recording}, 1);
@@ -101,7 +89,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         }
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 
@@ -130,7 +118,7 @@ const struct argp build_argp = {
            "--poses estimate: the first context view keeps its recorded pose, or is the origin. Each other view is "
            "joined to the best of those before it. With depth in both views, lengths are those of the depth; from "
            "colour alone, the first two cameras are 1 apart, unless some depth gives their distance. Frames too "
-           "unlike, a camera that only turned, and corners on one plane are refused. `trim3r import --poses estimate` "
+           "unlike, a camera that only turned, and features on one plane are refused. `trim3r import --poses estimate` "
            "keeps the poses in the recording.\n"
            "\n"
            "--colmap: DIR/images/ holds the context views at the working size, undistorted. DIR/sparse/0/ holds "
@@ -141,7 +129,7 @@ const struct argp build_argp = {
     .children = children,
 };
 
-/* What is told besides of the views that a scene was built from. */
+/* Facts about the views that a scene was built from. */
 typedef struct found {
     pose_account estimated[T3R_MAX_VIEWS]; /* of --poses, where it is not `given` */
     pose_correction aligned[T3R_MAX_VIEWS];
@@ -155,18 +143,18 @@ static bool refines(const build_options *o)
 }
 
 /* Frames that stereo could match with no other. */
-static void add_unmatched(cJSON *root, const build_options *o, const reconstruction_account *told,
+static void add_unmatched(cJSON *root, const build_options *o, const reconstruction_account *account,
                           const reconstruction *r)
 {
     cJSON *list = o->settings.config.depth == T3R_DEPTH_STEREO ? cJSON_AddArrayToObject(root, "unmatched") : NULL;
-    for (uint32_t v = 0; v < told->context_count && list != NULL; v++) {
+    for (uint32_t v = 0; v < account->context_count && list != NULL; v++) {
         if (t3r_stereo_pair(r->runtime, v, NULL) != T3R_PAIR_OK) {
-            cJSON_AddItemToArray(list, cJSON_CreateNumber(told->context[v]));
+            cJSON_AddItemToArray(list, cJSON_CreateNumber(account->context[v]));
         }
     }
 }
 
-static void print_json(const build_options *o, const reconstruction_account *told, const reconstruction *r,
+static void print_json(const build_options *o, const reconstruction_account *account, const reconstruction *r,
                        const t3r_recording *recording, const found *f, const work_times *times)
 {
     cJSON *root = cJSON_CreateObject();
@@ -178,36 +166,36 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     }
     cJSON_AddStringToObject(root, "method", o->settings.method->name);
     json_add_integer(root, "gaussians", r->scene.count);
-    json_add_integer(root, "requested", told->requested);
+    json_add_integer(root, "requested", account->requested);
     if (o->settings.automatic) {
         cJSON_AddNumberToObject(root, "max_loss", o->settings.max_loss);
     }
-    json_add_integer(root, "valid_points", told->valid_points);
+    json_add_integer(root, "valid_points", account->valid_points);
     if (refines(o)) {
         json_add_integer(root, "passes", t3r_refinement_passes(r->runtime));
     }
-    json_add_integers(root, "context", told->context, told->context_count);
+    json_add_integers(root, "context", account->context, account->context_count);
     if (o->settings.points_of == NULL) {
         cJSON_AddStringToObject(root, "depth", t3r_depth_name(o->settings.config.depth));
-        add_unmatched(root, o, told, r);
+        add_unmatched(root, o, account, r);
     }
-    cJSON_AddNumberToObject(root, "width", told->width);
-    cJSON_AddNumberToObject(root, "height", told->height);
+    cJSON_AddNumberToObject(root, "width", account->width);
+    cJSON_AddNumberToObject(root, "height", account->height);
     if (o->settings.method->allocates) {
         cJSON_AddStringToObject(root, "allocate", t3r_allocation_name(o->settings.config.allocate));
     }
     if (o->settings.points_of != NULL) {
         cJSON_AddStringToObject(root, "pruned", o->settings.points_of);
     }
-    if (told->head[0] != '\0') {
-        cJSON_AddStringToObject(root, "head", told->head);
+    if (account->head[0] != '\0') {
+        cJSON_AddStringToObject(root, "head", account->head);
     }
-    if (told->bits[0] != '\0') {
-        cJSON_AddStringToObject(root, "head_bits", told->bits);
-        cJSON_AddStringToObject(root, "head_crc", told->crc);
+    if (account->bits[0] != '\0') {
+        cJSON_AddStringToObject(root, "head_bits", account->bits);
+        cJSON_AddStringToObject(root, "head_crc", account->crc);
     }
     settings_add_json(cJSON_AddObjectToObject(root, "settings"), &o->settings.config);
-    json_add_integer(root, "arena_bytes", (int64_t)told->arena_bytes);
+    json_add_integer(root, "arena_bytes", (int64_t)account->arena_bytes);
     work_times_add_json(root, times);
     if (o->profile) {
         stage_times_add_json(root, "stages_ms", &r->stages);
@@ -218,9 +206,9 @@ static void print_json(const build_options *o, const reconstruction_account *tol
     json_add_integer(listed, "widest", f->lists.widest);
     cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
     if (o->settings.poses != POSES_GIVEN) {
-        poses_add_json(root, recording, told->context, told->context_count, f->estimated);
+        poses_add_json(root, recording, account->context, account->context_count, f->estimated);
     }
-    aligned_poses_add_json(root, told, f->aligned);
+    aligned_poses_add_json(root, account, f->aligned);
     /* where float32 positions lose the world's origin: --local and this */
     cJSON *origin = cJSON_AddArrayToObject(root, "origin");
     for (int i = 0; i < 3; i++) {
@@ -234,19 +222,19 @@ static void print_json(const build_options *o, const reconstruction_account *tol
 }
 
 /* "head small crc 1a2b3c4d"; "pruned" of a scene made elsewhere */
-static void note_head(const reconstruction_account *told, char *text, size_t bytes)
+static void note_head(const reconstruction_account *account, char *text, size_t bytes)
 {
-    int length = snprintf(text, bytes, told->head[0] != '\0' ? "head %s" : "pruned%s", told->head);
-    if (told->crc[0] != '\0') {
-        snprintf(text + length, bytes - (size_t)length, " crc %s", told->crc);
+    int length = snprintf(text, bytes, account->head[0] != '\0' ? "head %s" : "pruned%s", account->head);
+    if (account->crc[0] != '\0') {
+        snprintf(text + length, bytes - (size_t)length, " crc %s", account->crc);
     }
 }
 
 static int write_all(const build_options *o, const t3r_recording *recording, const reconstruction *r,
-                     const reconstruction_account *told, whole_folder *folder)
+                     const reconstruction_account *account, whole_folder *folder)
 {
     char note[64], error[ERROR_BYTES] = "";
-    note_head(told, note, sizeof note);
+    note_head(account, note, sizeof note);
     if (o->output != NULL && scene_file_write(o->output, &r->scene, o->flags, note, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
@@ -254,7 +242,7 @@ static int write_all(const build_options *o, const t3r_recording *recording, con
         .recording = recording,
         .path = o->recording,
         .scene = &r->scene,
-        .told = told,
+        .account = account,
         .local = (o->flags & SCENE_FILE_LOCAL) != 0,
         .sourced = o->settings.points_of == NULL || o->settings.method->allocates,
     };
@@ -263,19 +251,19 @@ static int write_all(const build_options *o, const t3r_recording *recording, con
 
 /* What the context views cost to draw: of the one whose tiles list most. */
 static int account_for_lists(const build_options *o, const t3r_recording *recording, const t3r_scene *scene,
-                             const reconstruction_account *told, tile_lists *most)
+                             const reconstruction_account *account, tile_lists *most)
 {
     *most = (tile_lists){0};
-    for (uint32_t v = 0; v < told->context_count; v++) {
+    for (uint32_t v = 0; v < account->context_count; v++) {
         t3r_capture_frame frame;
-        const int code = recorded_frame_read(recording, o->recording, told->context[v], &frame);
+        const int code = recorded_frame_read(recording, o->recording, account->context[v], &frame);
         if (code != CLI_OK) {
             return code;
         }
-        const t3r_camera camera =
-            reconstruction_camera(&frame.camera, frame.frame.width, frame.frame.height, told->width, told->height);
+        const t3r_camera camera = reconstruction_camera(&frame.camera, frame.frame.width, frame.frame.height,
+                                                        account->width, account->height);
         tile_lists lists;
-        if (!tile_lists_of(scene, &camera, told->width, told->height, o->settings.config.tile_splats, &lists)) {
+        if (!tile_lists_of(scene, &camera, account->width, account->height, o->settings.config.tile_splats, &lists)) {
             return cli_error(CLI_BAD_INPUT, "out of memory");
         }
         *most = lists.entries > most->entries ? lists : *most;
@@ -292,27 +280,27 @@ static void print_lists(const tile_lists *lists)
     }
 }
 
-static void print_text(const build_options *o, const reconstruction_account *told, const reconstruction *r,
+static void print_text(const build_options *o, const reconstruction_account *account, const reconstruction *r,
                        const found *f, const work_times *times)
 {
     char text[WORK_TIMES_BYTES];
     if (o->settings.poses != POSES_GIVEN) {
-        poses_print(told->context, told->context_count, f->estimated);
+        poses_print(account->context, account->context_count, f->estimated);
     }
-    aligned_poses_print(told, f->aligned);
+    aligned_poses_print(account, f->aligned);
     printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes; %s\n",
-           o->output != NULL ? o->output : o->colmap, r->scene.count, told->valid_points, told->arena_bytes,
+           o->output != NULL ? o->output : o->colmap, r->scene.count, account->valid_points, account->arena_bytes,
            work_times_text(times, text));
     if (refines(o) && o->settings.config.fit_passes) {
         printf("refined in %" PRIu32 " of at most %" PRIu32 " passes\n", t3r_refinement_passes(r->runtime),
                o->settings.config.refine);
     }
-    for (uint32_t v = 0; v < told->context_count; v++) {
+    for (uint32_t v = 0; v < account->context_count; v++) {
         uint32_t partner;
         t3r_pair pair = t3r_stereo_pair(r->runtime, v, &partner);
         if (pair != T3R_PAIR_OK) {
-            printf("frame %" PRIu32 " has no depth; with frame %" PRIu32 ": %s\n", told->context[v],
-                   told->context[partner], t3r_pair_text(pair));
+            printf("frame %" PRIu32 " has no depth; with frame %" PRIu32 ": %s\n", account->context[v],
+                   account->context[partner], t3r_pair_text(pair));
         }
     }
     print_lists(&f->lists);
@@ -361,28 +349,28 @@ int build_run(build_options *o)
         work_times_end(&times, WORK_POSES);
     }
     reconstruction r;
-    reconstruction_account told;
+    reconstruction_account account;
     method_source source = {0};
     if (code == CLI_OK) {
-        code = o->settings.method->build(&source, recording, o->recording, &o->settings, &r, &told);
+        code = o->settings.method->build(&source, recording, o->recording, &o->settings, &r, &account);
         method_source_close(&source);
     }
     if (code == CLI_OK) {
-        reconstruction_warn_of_budget(&o->settings, told.requested, r.scene.count);
-        times.seconds[WORK_BUILD] = told.seconds; /* without what was opened for it */
+        reconstruction_warn_of_budget(&o->settings, account.requested, r.scene.count);
+        times.seconds[WORK_BUILD] = account.seconds; /* without what was opened for it */
         work_times_pass(&times);
-        code = write_all(o, recording, &r, &told, &folder);
+        code = write_all(o, recording, &r, &account, &folder);
         work_times_end(&times, WORK_WRITE);
         if (code == CLI_OK) {
-            code = account_for_lists(o, recording, &r.scene, &told, &f.lists);
+            code = account_for_lists(o, recording, &r.scene, &account, &f.lists);
         }
         if (code == CLI_OK) {
-            code = aligned_poses_of(recording, o->recording, &told, f.aligned);
+            code = aligned_poses_of(recording, o->recording, &account, f.aligned);
         }
         if (code == CLI_OK && o->json) {
-            print_json(o, &told, &r, recording, &f, &times);
+            print_json(o, &account, &r, recording, &f, &times);
         } else if (code == CLI_OK) {
-            print_text(o, &told, &r, &f, &times);
+            print_text(o, &account, &r, &f, &times);
         }
         reconstruction_close(&r);
     }

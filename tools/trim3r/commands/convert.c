@@ -21,7 +21,7 @@ typedef struct options {
     bool json;
 } options;
 
-enum { KEY_UP = 0x100, KEY_JSON };
+enum { KEY_UP = 0x100 };
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
@@ -36,9 +36,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_UP:
         o->flags |= scene_up_option(state, argument);
         return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         option_argument(state, argument, (const char **[]){&o->scene}, 1);
         return 0;
@@ -49,7 +46,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         scene_output_option(state, "-o", o->output);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, argument, state);
     }
 }
 
@@ -61,7 +58,7 @@ static const struct argp_option argp_options[] = {
      "want "
      "it (not turned; .spz and .glb as for -y)",
      0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"json", OPTION_TO(options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 

@@ -25,11 +25,9 @@ typedef struct diff_options {
     bool json;
 } diff_options;
 
-enum { KEY_JSON = 0x1000 };
-
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("A", OPTION_READS),
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"json", OPTION_TO(diff_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -39,9 +37,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->flags;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
         return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, (const char **[]){&o->path[0], &o->path[1]}, 2);
@@ -54,7 +49,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         }
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 

@@ -22,6 +22,7 @@
 #include "host/cpu.h"
 #include "host/text.h"
 #include "kernels/kernels.h"
+#include "posing/opencv_module.h"
 
 #define CAMERAS_FOLDER "/sys/class/video4linux"
 #define CAMERAS_MOST 64
@@ -33,11 +34,11 @@ typedef struct options {
     processor_options processor;
 } options;
 
-enum { KEY_EXPECT = 0x1000, KEY_JSON };
+enum { KEY_EXPECT = 0x1000 };
 
 static const struct argp_option option_table[] = {
     {"expect", KEY_EXPECT, "HASH", 0, "hash that the self-check must give (this version's)", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"json", OPTION_TO(options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -53,14 +54,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "--expect takes 16 hexadecimal digits, not '%s'", arg);
         }
         return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, NULL, 0);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 
@@ -136,6 +134,8 @@ typedef struct machine {
     long processors;
     int64_t memory, available;
     camera_list cameras;
+    const pose_module *poses; /* NULL: no_poses says why */
+    char no_poses[512];
     uint64_t hash, plain_hash; /* of the self-check; the second where the first is wrong */
 } machine;
 
@@ -150,6 +150,7 @@ static void look_around(machine *m, const options *o)
     m->memory = memory_bytes(_SC_PHYS_PAGES);
     m->available = memory_bytes(_SC_AVPHYS_PAGES);
     find_cameras(&m->cameras);
+    m->poses = pose_module_load(m->no_poses, sizeof m->no_poses);
 }
 
 /* ---- what is printed -----------------------------------------------------------------------------------------------
@@ -179,6 +180,7 @@ static void print_json(const machine *m, const options *o)
     for (uint32_t i = 0; i < m->cameras.count; i++) {
         cJSON_AddItemToArray(cameras, cJSON_CreateString(m->cameras.name[i]));
     }
+    cJSON_AddItemToObject(root, "poses", m->poses != NULL ? cJSON_CreateString(m->poses->version) : cJSON_CreateNull());
     json_add_hash(root, "hash", m->hash);
     json_add_hash(root, "expected", o->expected);
     cJSON_AddBoolToObject(root, "passed", m->hash == o->expected);
@@ -205,6 +207,7 @@ static void print_text(const machine *m, const options *o)
     if (m->cameras.count == 0) {
         printf("%-12s none\n", "cameras");
     }
+    printf("%-12s %s\n", "poses", m->poses != NULL ? m->poses->version : m->no_poses);
     char text[HASH_TEXT_BYTES];
     hash_text(m->hash, text);
     printf("%-12s %s, %s\n", "self-check", text, m->hash == o->expected ? "as on every machine" : "wrong");

@@ -35,7 +35,7 @@ typedef struct head_summary {
     size_t work_total;                     /* the columns under a kernel included */
 } head_summary;
 
-enum { KEY_SIZE = 0x100, KEY_JSON };
+enum { KEY_SIZE = 0x100 };
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
@@ -43,9 +43,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     switch (key) {
     case KEY_SIZE:
         option_size(state, "size", argument, T3R_MIN_SIDE, &o->width, &o->height);
-        return 0;
-    case KEY_JSON:
-        o->json = true;
         return 0;
     case ARGP_KEY_ARG:
         option_argument(state, argument, (const char **[]){&o->path}, 1);
@@ -56,14 +53,14 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         }
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, argument, state);
     }
 }
 
 static const struct argp_option argp_options[] = {
     OPTION_ARGUMENTS("FILE.t3w", OPTION_READS),
     {"size", KEY_SIZE, "WxH", 0, "size of the view that the work bytes are for (256x256)", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"json", OPTION_TO(options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 

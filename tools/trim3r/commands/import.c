@@ -54,27 +54,7 @@ typedef struct totals {
     uint64_t bytes;
 } totals;
 
-enum { KEY_INTRINSICS = 0x100, KEY_POSES, KEY_POINTMAPS, KEY_CONFIDENCE, KEY_UNIT, KEY_JSON };
-
-static int parse_numbers(const char *text, double *numbers, uint32_t most, uint32_t *count)
-{
-    *count = 0;
-    for (;;) {
-        char *end;
-        double value = strtod(text, &end);
-        if (end == text || *count == most || !(value > -1e6 && value < 1e6)) {
-            return -1;
-        }
-        numbers[(*count)++] = value;
-        if (*end == '\0') {
-            return 0;
-        }
-        if (*end != ',') {
-            return -1;
-        }
-        text = end + 1;
-    }
-}
+enum { KEY_INTRINSICS = 0x100, KEY_POSES, KEY_CONFIDENCE, KEY_UNIT };
 
 static void check_options(struct argp_state *state, const options *o)
 {
@@ -98,8 +78,8 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         option_size(state, "size", argument, T3R_MIN_SIDE, &o->width, &o->height);
         return 0;
     case KEY_INTRINSICS:
-        if (parse_numbers(argument, o->intrinsics, 9, &o->intrinsics_count) != 0 ||
-            (o->intrinsics_count != 4 && o->intrinsics_count != 9) || !(o->intrinsics[0] > 0) ||
+        o->intrinsics_count = numbers_of_text(argument, o->intrinsics, 9);
+        if ((o->intrinsics_count != 4 && o->intrinsics_count != 9) || !(o->intrinsics[0] > 0) ||
             !(o->intrinsics[1] > 0)) {
             argp_error(state, "--intrinsics %s: not fx,fy,cx,cy[,k1,k2,p1,p2,k3]", argument);
         }
@@ -108,9 +88,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         if (!poses_named(argument, &o->poses)) {
             argp_error(state, "--poses does not know '%s'; there are %s", argument, POSES_NAMES);
         }
-        return 0;
-    case KEY_POINTMAPS:
-        o->pointmaps.file = argument;
         return 0;
     case KEY_CONFIDENCE:
         o->pointmaps.confidence_least = option_decimal(state, "min-confidence", argument, -1e30, 1e30);
@@ -121,9 +98,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case 'o':
         o->output = argument;
         return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         option_argument(state, argument, (const char **[]){&o->directory}, 1);
         return 0;
@@ -131,7 +105,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         check_options(state, o);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, argument, state);
     }
 }
 
@@ -150,11 +124,11 @@ static const struct argp_option argp_options[] = {
      "it)",
      0},
     {"poses", KEY_POSES, "SOURCE", 0,
-     "source of the poses: given (default), those of the folder; estimate, from corners that frames share, with depth "
+     "source of the poses: given (default), those of the folder; estimate, from features that frames share, with depth "
      "where two of them have it, or of all frames from pointmaps; estimate-colour, from colour alone, without "
      "pointmaps",
      0},
-    {"pointmaps", KEY_POINTMAPS, "FILE.npz", OPTION_READS,
+    {"pointmaps", OPTION_TO(options, pointmaps.file), "FILE.npz", OPTION_READS,
      "depth of all frames: one pointmap each, in the frames' order", 0},
     {"min-confidence", KEY_CONFIDENCE, "C", 0,
      "least confidence of a pointmap's point; points below it get no depth (all points are kept)", 0},
@@ -164,7 +138,7 @@ static const struct argp_option argp_options[] = {
      "pointmaps "
      "(integer_depth_scale of the folder, else a power of two with which the median has 4096 to 8192 steps)",
      0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"json", OPTION_TO(options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 

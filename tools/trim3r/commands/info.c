@@ -38,7 +38,7 @@ typedef struct frame_summary {
     bool mixed;
 } frame_summary;
 
-enum { KEY_JSON = 0x100, KEY_VIEW, KEY_SVG };
+enum { KEY_VIEW = 0x100 };
 
 static void take_argument(struct argp_state *state, options *o, const char *argument)
 {
@@ -71,12 +71,6 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->flags;
         return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
-    case KEY_SVG:
-        o->svg = argument;
-        return 0;
     case KEY_VIEW:
         o->view = option_number(state, "view", argument, 0, UINT32_MAX);
         o->has_view = true;
@@ -88,15 +82,16 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         check_options(state, o);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, argument, state);
     }
 }
 
 static const struct argp_option argp_options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
     {"view", KEY_VIEW, "N", 0, "frame of REC.mcap in whose pixels the scales are shown, too", 0},
-    {"svg", KEY_SVG, "FILE", OPTION_WRITES(FILE_SVG), "picture to write: histograms of the scenes' scales", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"svg", OPTION_TO(options, svg), "FILE", OPTION_WRITES(FILE_SVG),
+     "picture to write: histograms of the scenes' scales", 0},
+    {"json", OPTION_TO(options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 

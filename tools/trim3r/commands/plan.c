@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r plan: what an arena holds and how much work a build is, before anything runs; or which settings fit. */
 #include "trim3r/commands/commands.h"
-#include "trim3r/commands/plan_ram.h"
 
 #include <argp.h>
 #include <inttypes.h>
@@ -16,7 +15,9 @@
 #include "cli/tables/json_output.h"
 #include "core/fixed.h"
 #include "pictures/plan_picture.h"
+#include "planning/choices.h"
 #include "planning/fitting.h"
+#include "planning/ram.h"
 #include "planning/work_table.h"
 #include "reconstruction/options/head_option.h"
 #include "reconstruction/options/option_names.h"
@@ -48,11 +49,7 @@ enum {
     KEY_KEEP_ANALYSIS,
     KEY_ARENA,
     KEY_TIME,
-    KEY_MACHINE,
-    KEY_THREADS,
-    KEY_SVG,
-    KEY_MARKDOWN,
-    KEY_JSON
+    KEY_THREADS
 };
 
 static const struct argp_option options[] = {
@@ -63,22 +60,24 @@ static const struct argp_option options[] = {
     {"arena", KEY_ARENA, "BYTES[K|M|G]", 0,
      "bytes of an arena: list the settings that fit, those of the least expected loss first", 0},
     {"time", KEY_TIME, "TIME", 0, "most time of a build, as 100ms or 0.5s: list the settings that fit", 0},
-    {"machine", KEY_MACHINE, "MACHINE.json", OPTION_READS,
+    {"machine", OPTION_TO(plan_options, fitting.machine), "MACHINE.json", OPTION_READS,
      "machine, measured by trim3r bench --calibrate, whose times are predicted (with --time this one, measured now)",
      0},
     {"within", KEY_WITHIN, "BYTES[K|M|G]", 0,
      "bytes of an arena, for the largest budget that it can hold, at most --gaussians (all points of the views)", 0},
     {"ram", KEY_RAM, "BYTES[K|M|G]", 0,
-     "bytes of a device's RAM, as 256K or 4M: print the settings that serve it best, and what takes it", 0},
+     "bytes of a device's RAM, as 256K or 4M: print the best settings for it, and what takes it", 0},
     {"preset", KEY_PRESET, "fast|balanced|best", 0, "head and refinement that build has for so much work", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
     {"keep-analysis", KEY_KEEP_ANALYSIS, NULL, 0, "keep the analysis after the build, so that the budget can change",
      0},
     {"threads", KEY_THREADS, "N|all", 0,
      "number of threads that share the arena's work, 1..16, or all: one for each processor (1)", 0},
-    {"svg", KEY_SVG, "FILE", OPTION_WRITES(FILE_SVG), "picture of the arena to write: stages across, bytes upwards", 0},
-    {"markdown", KEY_MARKDOWN, NULL, 0, "print the table of the arena, or the list, in Markdown", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"svg", OPTION_TO(plan_options, svg), "FILE", OPTION_WRITES(FILE_SVG),
+     "picture of the arena to write: stages across, bytes upwards", 0},
+    {"markdown", OPTION_TO(plan_options, markdown), NULL, 0, "print the table of the arena, or the list, in Markdown",
+     0},
+    {"json", OPTION_TO(plan_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -90,7 +89,7 @@ static bool lists(const plan_options *o)
 static t3r_config unset(void)
 {
     t3r_config config = t3r_default_config(0, 0, 2, 0);
-    config.refine = T3R_ANY_REFINE;
+    config.refine = CHOICES_ANY_REFINE;
     return config;
 }
 
@@ -155,9 +154,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_TIME:
         o->fitting.nanoseconds = option_time(state, "time", arg);
         return 0;
-    case KEY_MACHINE:
-        o->fitting.machine = arg;
-        return 0;
     case KEY_WITHIN:
         o->within = option_bytes(state, "within", arg);
         return 0;
@@ -176,15 +172,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_THREADS:
         c->workers = option_threads(state, arg);
         return 0;
-    case KEY_SVG:
-        o->svg = arg;
-        return 0;
-    case KEY_MARKDOWN:
-        o->markdown = true;
-        return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, NULL, 0);
         return 0;
@@ -192,7 +179,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         check_options(state, o);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 
@@ -222,8 +209,8 @@ static const struct argp argp = {
     .children = children,
 };
 
-static void print_json(const t3r_config *config, const t3r_plan_info *plan, const t3r_work_counts *work,
-                       const t3r_prices *prices)
+static void print_json(const t3r_config *config, const t3r_plan_info *plan, const work_counts *work,
+                       const work_prices *prices)
 {
     cJSON *root = cJSON_CreateObject();
     json_add_integer(root, "width", config->width);
@@ -308,17 +295,17 @@ static int lower_budget(t3r_config *config, uint64_t bytes)
 static int print_plan(const plan_options *o, const t3r_config *config, const chosen_head *head)
 {
     t3r_plan_info plan;
-    t3r_work_counts work;
+    work_counts work;
     machine m;
     t3r_status status = t3r_plan(config, &plan);
     if (status == T3R_OK) {
         const size_t bytes = o->within != 0 ? (size_t)o->within : plan.bytes;
-        status = t3r_count_work(config, bytes, head->weights, head->bytes, &work);
+        status = work_count(config, bytes, head->weights, &work);
     }
     if (status != T3R_OK) {
         return reconstruction_error(status, "settings", config, 0);
     }
-    const t3r_prices *prices = o->fitting.machine != NULL ? &m.prices : NULL;
+    const work_prices *prices = o->fitting.machine != NULL ? &m.prices : NULL;
     int code = prices != NULL ? fitting_machine(&o->fitting, config->workers, &m) : CLI_OK;
     if (code == CLI_OK && o->svg != NULL) {
         code = write_svg(o->svg, &plan);
@@ -346,7 +333,7 @@ int command_plan(int argc, char **argv)
     plan_options o = {.config = unset()};
     file_options_parse(&argp, argc, argv, &o);
     if (o.ram != 0) {
-        return plan_ram(o.ram, o.json);
+        return ram_print(o.ram, o.json);
     }
 
     t3r_config config = o.config;
@@ -357,7 +344,7 @@ int command_plan(int argc, char **argv)
     if (lists(&o)) {
         return fitting_list(&o.fitting, &config, o.head, o.json, o.markdown);
     }
-    if (config.refine == T3R_ANY_REFINE) {
+    if (config.refine == CHOICES_ANY_REFINE) {
         config.refine = T3R_DEFAULT_REFINE;
     }
     chosen_head head;

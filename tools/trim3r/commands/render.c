@@ -38,35 +38,24 @@ typedef struct render_options {
     reconstruction_options settings;
 } render_options;
 
-enum {
-    KEY_VIEW = 0x1000,
-    KEY_POSE,
-    KEY_TRAJECTORY,
-    KEY_SIZE,
-    KEY_FOV,
-    KEY_DEPTH,
-    KEY_DEPTH_UNIT,
-    KEY_ALPHA,
-    KEY_ARENA,
-    KEY_MAX_MS,
-    KEY_TILE_SPLATS,
-    KEY_JSON
-};
+enum { KEY_VIEW = 0x1000, KEY_SIZE, KEY_FOV, KEY_DEPTH_UNIT, KEY_ARENA, KEY_MAX_MS, KEY_TILE_SPLATS };
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("SCENE.ply", OPTION_READS),
     {NULL, 0, NULL, 0, "Viewpoint:", 1},
     {"view", KEY_VIEW, "N", 0, "frame of REC.mcap whose camera draws", 0},
-    {"pose", KEY_POSE, "FILE", OPTION_READS, "camera as JSON (below)", 0},
-    {"trajectory", KEY_TRAJECTORY, "FILE", OPTION_READS,
+    {"pose", OPTION_TO(render_options, pose), "FILE", OPTION_READS, "camera as JSON (below)", 0},
+    {"trajectory", OPTION_TO(render_options, trajectory), "FILE", OPTION_READS,
      "TUM poses, one numbered picture each; the lens is that of --view, --pose or --fov", 0},
     {"fov", KEY_FOV, "DEGREES", 0, "horizontal angle of view of a trajectory, with --size", 0},
     {"size", KEY_SIZE, "WxH", 0, "size of the picture; the lens is scaled along (the camera's)", 0},
     {NULL, 0, NULL, 0, "Pictures:", 2},
     {"output", 'o', "view.png", OPTION_WRITES(FILE_PICTURE), "picture to write (needed)", 0},
-    {"depth", KEY_DEPTH, "d.png", OPTION_WRITES(FILE_PICTURE), "depth along z to write, 16 bits, 0 = none", 0},
+    {"depth", OPTION_TO(render_options, depth), "d.png", OPTION_WRITES(FILE_PICTURE),
+     "depth along z to write, 16 bits, 0 = none", 0},
     {"depth-unit", KEY_DEPTH_UNIT, "U", 0, "world units in one step of the depth picture (0.001)", 0},
-    {"alpha", KEY_ALPHA, "a.png", OPTION_WRITES(FILE_PICTURE), "coverage to write, 16 bits, 65535 = opaque", 0},
+    {"alpha", OPTION_TO(render_options, alpha), "a.png", OPTION_WRITES(FILE_PICTURE),
+     "coverage to write, 16 bits, 65535 = opaque", 0},
     {NULL, 0, NULL, 0, "Bounds of the time that a view takes:", 3},
     {"max-ms", KEY_MAX_MS, "MS", 0, "give up when a view takes longer (never)", 0},
     {"tile-splats", KEY_TILE_SPLATS, "N", 0,
@@ -74,7 +63,7 @@ static const struct argp_option options[] = {
     {"arena", KEY_ARENA, "BYTES[K|M|G]|min|full", 0,
      "bytes of memory of the runtime; min is the least that works, full the most that helps (full)", PROCESSOR_GROUP},
     {NULL, 0, NULL, 0, "Other:", PROCESSOR_GROUP + 1},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"json", OPTION_TO(render_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -129,12 +118,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->view = option_number(state, "view", arg, 0, UINT32_MAX);
         o->has_view = true;
         return 0;
-    case KEY_POSE:
-        o->pose = arg;
-        return 0;
-    case KEY_TRAJECTORY:
-        o->trajectory = arg;
-        return 0;
     case KEY_FOV:
         o->fov_degrees = parse_positive(state, "fov", arg, 180);
         o->has_fov = true;
@@ -146,14 +129,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case 'o':
         o->output = arg;
         return 0;
-    case KEY_DEPTH:
-        o->depth = arg;
-        return 0;
     case KEY_DEPTH_UNIT:
         o->depth_unit = parse_positive(state, "depth-unit", arg, 1e6);
-        return 0;
-    case KEY_ALPHA:
-        o->alpha = arg;
         return 0;
     case KEY_ARENA:
         reconstruction_parse_arena(state, arg, &o->settings);
@@ -164,9 +141,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_TILE_SPLATS:
         o->settings.config.tile_splats = option_number(state, "tile-splats", arg, 0, T3R_MAX_GAUSSIANS);
         return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, (const char **[]){&o->scene, &o->recording}, 2);
         return 0;
@@ -174,7 +148,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         check_options(state, o);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 

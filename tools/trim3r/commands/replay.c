@@ -45,17 +45,17 @@ typedef struct replayed_view {
     work_times times;
 } replayed_view;
 
-enum { KEY_EXPECT = 0x1000, KEY_JSON, KEY_STREAM, KEY_EVERY, KEY_AT_HAND, KEY_OVERLAP, KEY_IMAGES, KEY_SLIDE };
+enum { KEY_JSON = 0x1000, KEY_EVERY, KEY_AT_HAND, KEY_OVERLAP };
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
-    {"expect", KEY_EXPECT, "HASH|FILE", OPTION_READS | OPTION_OR_WORD,
+    {"expect", OPTION_TO(replay_options, expect), "HASH|FILE", OPTION_READS | OPTION_OR_WORD,
      "expected final hash, or the JSON of an earlier run; exit status 1 when it differs", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout, fit for --expect", 0},
-    {"slide", KEY_SLIDE, NULL, 0,
+    {"slide", OPTION_TO(replay_options, slides), NULL, 0,
      "build a scene at every frame, of it and the one before; print the time of each and the hash of all", 0},
     {NULL, 0, NULL, 0, "A map that follows the camera:", 5},
-    {"stream", KEY_STREAM, NULL, 0,
+    {"stream", OPTION_TO(replay_options, streams), NULL, 0,
      "take all frames in turn: keyframes go into one map of at most --gaussians; the frames between them are drawn and "
      "compared",
      0},
@@ -63,7 +63,7 @@ static const struct argp_option options[] = {
     {"overlap", KEY_OVERLAP, "P%", 0,
      "least percent that a frame shares with the last keyframe; with less it becomes a keyframe too, 1..100", 0},
     {"at-hand", KEY_AT_HAND, "K", 0, "number of keyframes whose planes are kept, for refinement, 1..16 (4)", 0},
-    {"images", KEY_IMAGES, "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
+    {"images", OPTION_TO(replay_options, stream.images), "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
      "folder to write the held-back frames that have a depth and their views into: frame_<frame>.png, mask_, live_, "
      "final_",
      0},
@@ -95,17 +95,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         state->child_inputs[0] = &o->settings;
         state->child_inputs[1] = &o->settings.config;
         return 0;
-    case KEY_EXPECT:
-        o->expect = arg;
-        return 0;
     case KEY_JSON:
         o->json = o->stream.json = true;
-        return 0;
-    case KEY_STREAM:
-        o->streams = true;
-        return 0;
-    case KEY_SLIDE:
-        o->slides = true;
         return 0;
     case KEY_EVERY:
         o->stream.every = option_number(state, "every", arg, 1, 1000);
@@ -119,9 +110,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
     case KEY_AT_HAND:
         o->stream.at_hand = option_number(state, "at-hand", arg, 1, T3R_MAX_VIEWS);
-        return 0;
-    case KEY_IMAGES:
-        o->stream.images = arg;
         return 0;
     case 'o':
         o->stream.output = arg;
@@ -143,7 +131,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         }
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 

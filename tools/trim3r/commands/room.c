@@ -27,7 +27,7 @@ typedef struct options {
     recording_options stored;
 } options;
 
-enum { KEY_FRAMES = 0x100, KEY_SEED, KEY_JSON };
+enum { KEY_FRAMES = 0x100, KEY_SEED };
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
@@ -48,16 +48,13 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case 'o':
         o->output = argument;
         return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_END:
         if (o->output == NULL) {
             argp_error(state, "-o REC.mcap is missing");
         }
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, argument, state);
     }
 }
 
@@ -67,7 +64,7 @@ static const struct argp_option argp_options[] = {
     {"size", 's', "WxH", 0, "size of the pictures (256x256)", 0},
     {"frames", KEY_FRAMES, "N", 0, "number of frames along the arc, 1..1000 (6)", 0},
     {"seed", KEY_SEED, "S", 0, "seed of the textures and of the noise (1)", 0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"json", OPTION_TO(options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 

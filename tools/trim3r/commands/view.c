@@ -34,7 +34,7 @@ typedef struct view_options {
     reconstruction_options settings;
 } view_options;
 
-enum { KEY_PORT = 0x1000, KEY_COMPARE, KEY_JSON };
+enum { KEY_PORT = 0x1000, KEY_COMPARE };
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("INPUT", OPTION_READS),
@@ -44,7 +44,7 @@ static const struct argp_option options[] = {
      "further frames of the recording to look from and to compare with (the one in the middle of the first two context "
      "frames)",
      0},
-    {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
+    {"json", OPTION_TO(view_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
@@ -85,9 +85,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_COMPARE:
         option_frames(state, "compare", arg, o->compare, &o->compare_count);
         return 0;
-    case KEY_JSON:
-        o->json = true;
-        return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, (const char **[]){&o->inputs[0], &o->inputs[1]}, 2);
         return 0;
@@ -95,7 +92,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         check_options(state, o);
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return option_field(key, arg, state);
     }
 }
 

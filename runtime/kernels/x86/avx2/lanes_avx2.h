@@ -16,13 +16,13 @@
 typedef __m256i lanes; /* of 32 bits */
 typedef __m256i_u lanes_there;
 
-#include "kernels/lanes/operations.h"
+#include "kernels/lanes/vectors/operations.h"
 
-#include "kernels/lanes/even_odd.h"
-#include "kernels/lanes/masks.h"
+#include "kernels/lanes/vectors/even_odd.h"
+#include "kernels/lanes/vectors/masks.h"
 
-#include "kernels/lanes/alternating.h"
-#include "kernels/lanes/shifts.h"
+#include "kernels/lanes/vectors/alternating.h"
+#include "kernels/lanes/vectors/shifts.h"
 
 static inline T3R_AVX2 lanes alternating(lanes even, lanes odd)
 {

@@ -4,7 +4,7 @@
 #define T3R_KERNELS_X86_PIXELS_AVX2_H
 
 #include "kernels/blend.h"
-#include "kernels/lanes/tile_planes.h"
+#include "kernels/lanes/vectors/tile_planes.h"
 #include "lanes_avx2.h"
 
 #define PIXELS 16

@@ -16,11 +16,11 @@
 typedef __m512i lanes; /* of 32 bits */
 typedef __m512i_u lanes_there;
 
-#include "kernels/lanes/operations.h"
+#include "kernels/lanes/vectors/operations.h"
 
-#include "kernels/lanes/even_odd.h"
+#include "kernels/lanes/vectors/even_odd.h"
 
-#include "kernels/lanes/shifts.h"
+#include "kernels/lanes/vectors/shifts.h"
 
 /* One of four vectors of 128 bits. */
 static inline T3R_AVX512 lanes joined(const quad x[LANES / 4])

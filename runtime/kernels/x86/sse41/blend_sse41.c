@@ -6,7 +6,7 @@
 
 #include "lanes_sse41.h"
 
-#include "kernels/lanes/pixels_of_eight.h"
+#include "kernels/lanes/vectors/pixels_of_eight.h"
 
 #define BLEND t3r_blend_sse41
 #define BLEND_KEEP t3r_blend_keep_sse41

@@ -16,12 +16,12 @@
 typedef __m128i lanes; /* of 32 bits */
 typedef __m128i_u lanes_there;
 
-#include "kernels/lanes/operations.h"
+#include "kernels/lanes/vectors/operations.h"
 
-#include "kernels/lanes/even_odd.h"
-#include "kernels/lanes/masks.h"
+#include "kernels/lanes/vectors/even_odd.h"
+#include "kernels/lanes/vectors/masks.h"
 
-#include "kernels/lanes/alternating.h"
+#include "kernels/lanes/vectors/alternating.h"
 
 static inline T3R_SSE41 lanes alternating(lanes even, lanes odd)
 {

@@ -6,7 +6,7 @@
 
 #include "lanes_sse41.h"
 
-#include "kernels/lanes/pixels_of_eight.h"
+#include "kernels/lanes/vectors/pixels_of_eight.h"
 
 #define SCATTER t3r_scatter_sse41
 #define T3R_SCATTER T3R_SSE41

@@ -14,7 +14,7 @@ string(COMPARE EQUAL "${VCPKG_LIBRARY_LINKAGE}" "dynamic" WITH_SHARED)
 
 vcpkg_cmake_configure(
   SOURCE_PATH "${SOURCE_PATH}"
-  OPTIONS ${FEATURE_OPTIONS} -DT3R_TOOLS=OFF -DT3R_TESTS=OFF -DT3R_SHARED=${WITH_SHARED})
+  OPTIONS ${FEATURE_OPTIONS} -DT3R_TOOLS=OFF -DT3R_SHARED=${WITH_SHARED})
 vcpkg_cmake_install()
 vcpkg_cmake_config_fixup(CONFIG_PATH lib/cmake/trim3r)
 vcpkg_fixup_pkgconfig()

@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Pose files and trajectories. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "import/viewpoint.h"
+#include "scratch.h"
+#include "test.h"
+
+#define ONE_Q30 (1 << 30)
+
+static const char *path; /* in a folder of the test's own */
+
+static int make_path(void **state)
+{
+    int failed = scratch_setup(state);
+    path = failed ? NULL : scratch_path(*state, "file");
+    return failed;
+}
+
+static void write_text(const char *text)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+#define IDENTITY "[[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]"
+
+TEST(reads_a_pose)
+{
+    viewpoint_list list;
+    char error[256] = "";
+    write_text("{\"fl_x\": 200, \"cx\": 100.5, \"w\": 256, \"h\": 128, \"transform_matrix\": " IDENTITY "}");
+    assert_int_equal(viewpoint_read_pose(path, &list, error, sizeof error), 0);
+    assert_int_equal(list.count, 1);
+    const viewpoint *v = list.items;
+    assert_true(v->width == 256 && v->height == 128);
+    assert_int_equal(v->camera.fx_q16, 200 << 16);
+    assert_int_equal(v->camera.fy_q16, 200 << 16);
+    assert_int_equal(v->camera.cx_q16, 100 << 16); /* from the corner to the first pixel's centre */
+    assert_int_equal(v->camera.cy_q16, (127 << 16) / 2);
+    assert_true(v->camera.position_q32[0] == INT64_C(1) << 32 && v->camera.position_q32[2] == INT64_C(3) << 32);
+    /* y up, z backward against y down, z forward: half a turn around x */
+    assert_true(abs(v->camera.rotation_q30[0]) < 2 && abs(abs(v->camera.rotation_q30[1]) - ONE_Q30) < 2);
+    viewpoint_list_free(&list);
+}
+
+TEST(reads_all_frames_of_a_list)
+{
+    viewpoint_list list;
+    char error[256] = "";
+    write_text(
+        "{\"fl_x\": 200, \"w\": 64, \"h\": 64, \"frames\": [{\"file_path\": \"a.png\", \"transform_matrix\": " IDENTITY
+        "}, {\"file_path\": \"b.png\", \"transform_matrix\": " IDENTITY "}]}");
+    assert_int_equal(viewpoint_read_pose(path, &list, error, sizeof error), 0);
+    assert_int_equal(list.count, 2);
+    viewpoint_list_free(&list);
+}
+
+TEST(refuses_bad_poses)
+{
+    static const struct {
+        const char *text, *reason;
+    } bad[] = {
+        {"", "JSON"},
+        {"[1, 2]", "object"},
+        {"{\"fl_x\": 200, \"w\": 64, \"h\": 64}", "transform_matrix"},
+        {"{\"fl_x\": 200, \"transform_matrix\": " IDENTITY "}", "w or h"},
+        {"{\"w\": 64, \"h\": 64, \"transform_matrix\": " IDENTITY "}", "fl_x"},
+        {"{\"fl_x\": \"wide\", \"w\": 64, \"h\": 64, \"transform_matrix\": " IDENTITY "}", "fl_x"},
+        {"{\"fl_x\": 2, \"w\": 64, \"h\": 64, \"transform_matrix\": " IDENTITY "}", "range"},
+        {"{\"fl_x\": 200, \"w\": 64, \"h\": 64, \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,0,0],[0,0,0,1]]}",
+         "transform_matrix"},
+        {"{\"fl_x\": 200, \"w\": 64, \"h\": 64, \"transform_matrix\": [[1,0,0,2e9],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}",
+         "2^30"},
+        {"{\"fl_x\": 200, \"w\": 64, \"h\": 64, \"k1\": 0.1, \"transform_matrix\": " IDENTITY "}", "pinhole"},
+        {"{\"fl_x\": 200, \"w\": 64, \"h\": 64, \"k1\": 0.1, \"camera_model\": \"OPENCV_FISHEYE\", "
+         "\"transform_matrix\": " IDENTITY "}",
+         "pinhole"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        viewpoint_list list;
+        char error[512] = "";
+        write_text(bad[i].text);
+        assert_int_equal(viewpoint_read_pose(path, &list, error, sizeof error), -1);
+        assert_null(list.items);
+        if (strstr(error, bad[i].reason) == NULL || strstr(error, path) != error) {
+            fail_msg("'%s' does not say '%s'", error, bad[i].reason);
+        }
+    }
+}
+
+TEST(reads_a_trajectory)
+{
+    viewpoint lens;
+    viewpoint_list list;
+    char error[256] = "";
+    assert_int_equal(viewpoint_from_angle(90, 200, 100, &lens), 0);
+    assert_true(abs(lens.camera.fx_q16 - (100 << 16)) < 2);
+    write_text("# stamp tx ty tz qx qy qz qw\n\n0.0 1 2 3 0 0 0 1\r\n  0.1 -1 0 0.5 0 2 0 0");
+    assert_int_equal(viewpoint_read_trajectory(path, &lens, &list, error, sizeof error), 0);
+    assert_int_equal(list.count, 2);
+    assert_int_equal(list.items[0].width, 200);
+    assert_int_equal(list.items[0].camera.rotation_q30[0], ONE_Q30);
+    assert_true(list.items[1].camera.position_q32[0] == -(INT64_C(1) << 32));
+    assert_int_equal(list.items[1].camera.rotation_q30[2], ONE_Q30); /* normalised */
+    viewpoint_list_free(&list);
+}
+
+TEST(refuses_bad_trajectories)
+{
+    static const struct {
+        const char *text, *reason;
+    } bad[] = {
+        {"", "no pose"},
+        {"# nothing\n", "no pose"},
+        {"0 1 2 3 0 0 0 1\n0 1 2 3 0 0 0\n", "line 2"},
+        {"0 1 2 3 0 0 0 1 9\n", "more than eight"},
+        {"0 1 2 nan 0 0 0 1\n", "position"},
+        {"0 1 2 3 0 0 0 0\n", "quaternion"},
+        {"0 1 2 2e9 0 0 0 1\n", "position"},
+        {"a b c d e f g h\n", "not 'stamp"},
+    };
+    viewpoint lens;
+    assert_int_equal(viewpoint_from_angle(60, 64, 64, &lens), 0);
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        viewpoint_list list;
+        char error[512] = "";
+        write_text(bad[i].text);
+        assert_int_equal(viewpoint_read_trajectory(path, &lens, &list, error, sizeof error), -1);
+        assert_null(list.items);
+        if (strstr(error, bad[i].reason) == NULL) {
+            fail_msg("'%s' does not say '%s'", error, bad[i].reason);
+        }
+    }
+    viewpoint wide;
+    assert_int_equal(viewpoint_from_angle(179.9, 64, 64, &wide), -1);
+}
+
+ALL_TESTS_WITH(make_path, scratch_teardown)

@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""build.py TRIM3R: what `trim3r build` refuses, and what it makes."""
+import csv
+import os
+
+from program import check, expect, expect_full, expect_json, in_scratch, room, run
+
+
+def refused():
+    room()
+    expect(2, "build", err="REC.mcap is missing")
+    expect(2, "build", "room.mcap", "--keep", 10, err="-o")
+    expect(2, "build", "room.mcap", "room.mcap", "--keep", 10, "-o", "s.ply", err="too many")
+    expect(2, "build", "room.mcap", "--keep", 10, "-o", "s.obj", err=".ply")
+    expect(2, "build", "room.mcap", "-o", "s.ply", err="budget")
+    expect(2, "build", "room.mcap", "--keep", 10, "--gaussians", 5, "-o", "s.ply", err="exclude")
+    for option, values in {
+        "--keep": ["0", "101", "x", "-3", "10,20", ""],
+        "--gaussians": ["0", "x", "-1", "16777217", "1.5"],
+        "--context": ["", "a", "0,", "-1", ",".join(map(str, range(17)))],
+        "--allocate": ["evenly", ""],
+        "--head": ["big", "", "learned", ".t3w", "small.c"],
+        "--wavelet": ["db9"],
+        "--levels": ["0", "6"],
+        "--clusters": ["513"],
+        "--gamma": ["-1", "2.1", "x", "nan"],
+        "--keep-percent": ["101"],
+        "--fill-radius": ["9"],
+        "--bridge-radius": ["256"],
+        "--planes": ["1", ""],
+        "--flying": ["1", ""],
+        "--redundancy": ["yes"],
+        "--exposure": ["On"],
+        "--seed": ["-1", "4294967296"],
+        "--working": ["64", "4x64", "64x5000"],
+        "--arena": ["x", "-1", "1x", "1KB", "K", ""],
+        "--threads": ["0", "65"],
+        "--cpu-mask": ["every", "avx2,", ",avx2", "0x", "-1", "4294967296", ""],
+        "--depth": ["Stereo", "radar", ""],
+        "--refine": ["33", "x"],
+    }.items():
+        for value in values:
+            expect(2, "build", "room.mcap", "-o", "s.ply", f"{option}={value}", err=option)
+    for loss in ("0", "0.001", "11", "-1", "x", "1e3", ""):
+        expect(2, "build", "room.mcap", "--auto", f"--max-loss={loss}", "-o", "s.ply", err="--max-loss")
+    expect(2, "build", "room.mcap", "--keep", 10, "--max-loss", 1, "-o", "s.ply", err="belongs to --auto")
+    expect(2, "build", "room.mcap", "--auto", "--refine", 0, "-o", "s.ply", err="--refine 1 or more")
+    expect(2, "build", "room.mcap", "--keep", 10, "--context", "1,1", "-o", "s.ply", err="twice")
+    expect(1, "build", "room.mcap", "--keep", 10, "--context", "0,99", "-o", "s.ply", err="no frame 99")
+    expect(1, "build", "room.mcap", "--keep", 10, "-o", "missing/s.ply", err="missing/s.ply")
+    os.mkdir("folder.ply")
+    expect(1, "build", "room.mcap", "--keep", 10, "-o", "folder.ply", err="folder.ply: not a regular file")
+    expect_full("full.ply", "build", "room.mcap", "--keep", 10, "-o", "full.ply")
+
+
+def built():
+    found = expect_json("build", "room.mcap", "--context", "0,2", "--keep", "10%", "-o", "scene.ply")
+    check(found["head"] == "small" and found["head_bits"] == "8", "small is not the head unless another is named")
+    for key in ("gaussians", "arena_bytes", "hash", "valid_points", "bits_epoch", "origin", "exponent"):
+        check(key in found, f"build --json has no {key}")
+    check(found["gaussians"] == (found["valid_points"] * 10 + 50) // 100, "--keep 10% is not a tenth")
+    exact = expect_json("build", "room.mcap", "--gaussians", 777, "-o", "exact.ply")
+    check(exact["gaussians"] == 777, "--gaussians is not met exactly")
+    auto = ["build", "room.mcap", "--context", "0,2", "--working", "64x64", "--auto"]
+    few = expect_json(*auto, "--max-loss", 3, "-o", "few.ply")
+    some = expect_json(*auto, "-o", "some.ply")
+    check(some["max_loss"] == 0.5 and 0 < few["gaussians"] < some["gaussians"] < some["valid_points"],
+          "--auto takes no fewer for more loss")
+    expect(0, "eval", "room.mcap", "--working", "64x64", "--context", "0,2", "--target", 1, "--auto", "--csv", "auto.csv")
+    with open("auto.csv", newline="") as table:
+        row = next(csv.DictReader(table))
+    check(row["settings"] == "max-loss-0.5 working-64x64" and int(row["gaussians"]) == some["gaussians"],
+          "eval --auto does not take what build --auto takes")
+    most = expect_json(*auto, "--gaussians", 50, "-o", "most.ply")
+    check(most["gaussians"] == 50, "--gaussians is not the most of --auto")
+    for command in (["build", "-o", "all.ply"], ["build", "-o", "all.ply", "--json"], ["replay"]):
+        expect(0, *command, "room.mcap", "--working", "32x32", "--gaussians", 100000,
+               err="100000 Gaussians are more than the views have: all ")
+    for command in (["build", "-o", "few.ply"], ["eval"], ["replay"]):
+        line = [*command, "room.mcap", "--working", "32x32", "--keep"]
+        expect(0, *line, 0.5, err="warning: --keep 0.5 is 0.5 percent of the points; a share of 0.5 is --keep 50")
+        check("warning" not in run(*line, 1)[2], f"{line}: a warning of 1 %")
+    expect(0, "build", "room.mcap", "--working", "32x32", "--gaussians", 9, "--head", "none", "--comments",
+           "-o", "named.ply")
+    named = open("named.ply", "rb").read()
+    check(b"comment trim3r bits_epoch" in named, "--comments writes none")
+    check(b"comment trim3r head none\n" in named, "--comments does not name the head")
+    check(b"comment" not in open("exact.ply", "rb").read(), "a comment is in the header unasked")
+
+
+in_scratch(refused, built)

@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""stream.py TRIM3R: `trim3r replay --stream`: keyframes, views that are held back, the same bits every time."""
+import json
+import os
+
+from program import check, expect, expect_json, in_scratch, room, run, write
+
+
+def the_map_in_a_file(recording, base):
+    """What is written is the map as it is in the end: a held-back frame drawn from the file is that of the run."""
+    for name, least in (("map.ply", 60), ("map.spz", 30)):
+        told = expect_json(*base, "--gaussians", 500, "-o", name)
+        check(told["scene"] == name and expect_json("info", name)["scenes"][0]["gaussians"] == 500, f"{name} holds no 500 Gaussians")
+        expect(0, "render", name, recording, "--view", 1, "--size", "64x64", "-o", "view.png")
+        same = json.loads(run("diff", "view.png", "held/final_00001.png", "--json")[1])
+        check(same["equal"] or same["psnr"] > least, f"{name} draws another view: {same['psnr']} dB")
+    expect(0, *base, "--gaussians", 500, "-o", "map.ply", out="map.ply: 500 Gaussians")
+    expect(2, *base, "-o", "map.txt", err="scenes are written as")
+    expect(2, *base, "-o", recording, err="one file")
+    expect(2, "replay", recording, "-o", "map.ply", err="belong to --stream")
+
+
+def stream():
+    recording = room()
+    base = ["replay", recording, "--working", "64x64", "--stream", "--every", 2, "--at-hand", 2]
+    found = expect_json(*base, "--gaussians", 500, "--images", "held")
+    frames = expect_json("info", recording)["frames"]
+    keyframes, held = found["keyframes"], found["held_back"]
+    check([k["frame"] for k in keyframes] == list(range(0, frames, 2)), "every second frame is to be a keyframe")
+    check([h["frame"] for h in held] == list(range(1, frames, 2)), "the others are to be held back")
+    check(all(k["gaussians"] == 500 for k in keyframes) and found["gaussians"] == found["cap"] == 500, "no 500 Gaussians")
+    check(keyframes[0]["shown"] == 0 < keyframes[1]["shown"] <= keyframes[1]["points"], "what the map shows is not told")
+    check(all(k["added"] == k["removed"] + k["crowded"] for k in keyframes[1:]), "a full map is to stay full")
+    check(found["live_psnr"] > 18 and found["final_psnr"] > 18, f"held-back views are poor: {found['live_psnr']}")
+    check(all(os.path.exists(f"held/{what}_00001.png") for what in ("frame", "mask", "live", "final")), "no pictures")
+    the_map_in_a_file(recording, base)
+    write("stream.json", json.dumps(found))
+    base += ["--gaussians", 500]
+    for more in ([], ["--threads", 2], ["--arena", "min"]):
+        expect(0, *base, "--expect", "stream.json", *more, out="as expected")
+        expect(0, *base, "--expect", found["hash"], *more, out="as expected")
+    expect(1, *base, "--expect", "stream.json", "--wavelet", "haar", err="keyframe 0")
+    expect(1, *base, "--expect", "stream.json", "--half-life", 1, err="keyframe 2")
+    remembered = expect_json(*base[:-4], "--at-hand", 1, "--remember", 2, "--gaussians", 500)
+    forgotten = expect_json(*base[:-4], "--at-hand", 1, "--gaussians", 500)
+    check(remembered["keyframes"][1]["hash"] != forgotten["keyframes"][1]["hash"], "what is remembered changes nothing")
+    check(remembered["arena_bytes"] == forgotten["arena_bytes"] + 2 * (64 * 64 * 2 + 128), "two bytes a pixel are remembered")
+    write("remembered.json", json.dumps(remembered))
+    for more in (["--threads", 2], ["--arena", "min"], ["--cpu-mask", 0]):
+        expect(0, *base[:-4], "--at-hand", 1, "--remember", 2, "--gaussians", 500, "--expect", "remembered.json", *more, out="as expected")
+    expect(2, *base, "--remember", 17, err="--remember")
+    expect(2, "replay", recording, "--remember", 2, err="belong to --stream")
+    expect(1, *base, "--expect", "0" * 16, err=found["hash"])
+    expect(0, "replay", recording, "--stream", "--keep", 2, "--working", "32x32", "--refine", 0, out="2 keyframes, one in 3")
+    turned = expect_json("replay", recording, "--working", "64x64", "--stream", "--every", 100, "--overlap", "90%",
+                         "--gaussians", 500)
+    check(0 == turned["keyframes"][0]["frame"] and 1 < len(turned["keyframes"]) < frames, "overlap chooses no keyframes")
+    expect(2, "replay", recording, "--overlap", "80%", err="belong to --stream")
+    expect(2, "replay", recording, "--every", 2, err="belong to --stream")
+    expect(2, "replay", recording, "--stream", "--context", "0,1", err="--context")
+    expect(2, "replay", recording, "--stream", "--auto", err="--auto")
+    expect(2, *base, "--at-hand", 17, err="--at-hand")
+    expect(1, *base, "--images", recording + "/absent", err="absent")
+
+
+in_scratch(stream)

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The pool: every index exactly once, whatever the number of threads, job after job. */
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "host/threads.h"
+#include "test.h"
+
+#define MOST 3000u
+
+typedef struct job {
+    uint32_t threads;
+    atomic_bool busy[T3R_MAX_THREADS];
+    uint8_t visits[MOST];
+} job;
+
+static void visit(void *context, uint32_t index, uint32_t worker)
+{
+    job *j = context;
+    assert_true(worker < j->threads);
+    assert_false(atomic_exchange(&j->busy[worker], true)); /* a worker does one task at a time */
+    j->visits[index]++;                                    /* each index belongs to one thread */
+    atomic_store(&j->busy[worker], false);
+}
+
+TEST(visits_every_index_once)
+{
+    static const uint32_t threads[] = {1, 2, 5, 16}, counts[] = {0, 1, 2, 7, MOST};
+    for (size_t t = 0; t < sizeof threads / sizeof threads[0]; t++) {
+        t3r_threads *pool = t3r_threads_start(threads[t]);
+        assert_non_null(pool);
+        assert_int_equal(t3r_threads_count(pool), threads[t]);
+        for (int repeat = 0; repeat < 40; repeat++) {
+            for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++) {
+                job j;
+                memset(&j, 0, sizeof j);
+                j.threads = threads[t];
+                t3r_threads_run(pool, counts[c], visit, &j);
+                for (uint32_t i = 0; i < MOST; i++) {
+                    assert_int_equal(j.visits[i], i < counts[c] ? 1 : 0);
+                }
+            }
+        }
+        t3r_threads_stop(pool);
+    }
+}
+
+TEST(refuses_impossible_counts)
+{
+    assert_null(t3r_threads_start(0));
+    assert_null(t3r_threads_start(T3R_MAX_THREADS + 1));
+    t3r_threads_stop(NULL);
+}
