@@ -17,7 +17,7 @@ PROGRAM, FOLDER, OWN = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sor
 PAGE = (ROOT / "docs" / "study" / "boards.md").read_text()
 SECTION = re.search(r"## The head `small`\n(.*?)\n## ", PAGE, re.S)[1]
 TABLE = next(part for part in SECTION.split("\n\n") if BOARDS[OWN[0]]["name"] in part)
-NAMES = TABLE.strip().splitlines()[0].strip("| ").split(" | ")
+NAMES = next(line for line in TABLE.splitlines() if line.startswith("|")).strip("| ").split(" | ")
 TOLERANCE = 0.02 # another version of the compiler
 
 

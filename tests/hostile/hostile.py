@@ -2,9 +2,13 @@
 """Every command that reads, over files that were made to hurt it: each is read or refused with one line that names it, in
 3 seconds of the processor and 512 MB, and nothing of its text reaches the terminal raw.
 
-hostile.py TRIM3R [--table]
+hostile.py TRIM3R [--table] [--write]
+
+--table prints what each file took and how it was refused, --write puts the summary into docs/study/hostile.md.
 """
+import collections
 import os
+import pathlib
 import re
 import resource
 import subprocess
@@ -14,25 +18,14 @@ import tempfile
 from cases import CASES
 import formats
 
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools", "study", "scripts"))
+from measured import table, write_block  # noqa: E402
+
 SECONDS, MEGABYTES = 3.0, 512
 TRIM3R = os.path.abspath(sys.argv[1])
-TABLE = "--table" in sys.argv[2:]
+TABLE, WRITE = ("--table" in sys.argv[2:]), ("--write" in sys.argv[2:])
 RAW = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f]|[\u2028-\u202e\u2066-\u2069]")
-PAGE = """# Hostile files
-
-Files that were made to hurt their readers, and what every command that reads them did. The test `hostile` makes them anew
-and holds each command to 3 seconds of the processor and 512 MB, to one line of text, and to text without control
-characters. [SECURITY](../../SECURITY.md) has the limits that they break.
-
-Seconds and megabytes are those of the command that took most; exit statuses are one a command. 0 is read, 1 is refused. The
-message is that of the first refusal. The machine is a shared x86-64 of two cores. This page is what
-
-```sh not-run: it is the test of these files, which takes a minute
-python3 tests/hostile/hostile.py build/release/trim3r --table > docs/study/hostile.md
-```
-
-prints.
-"""
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "study" / "hostile.md"
 failures = []
 
 
@@ -181,6 +174,31 @@ def check_arguments():
         check(RAW.search(ended[2].decode("utf-8", "replace")) is None, f"{name!r}: raw in {ended[2]!r}")
 
 
+def report(rows):
+    if TABLE:
+        print("| input | size | s | MB | exit status | message |\n|---|---:|---:|---:|---|---|")
+        for _, name, size, worst, ended, refusal in rows:
+            refusal = refusal.split(": ", 1)[-1].replace("|", "\\|")
+            statuses = " ".join(str(status) for status in ended)
+            print(f"| `{name}` | {size} | {worst[0]:.2f} | {worst[1]:.0f} | {statuses} | {refusal[:200] or 'read'} |")
+    if WRITE:
+        write_block(PAGE, "hostile", summary(rows))
+    print(f"{len(rows)} files")
+
+
+def summary(rows):
+    """Yields a row a kind of file: how many there are, how many every command refused, and the worst of them."""
+    kinds = collections.defaultdict(list)
+    for kind, name, _, worst, ended, _ in rows:
+        kinds[kind].append((name, worst, 0 not in ended))
+    lines = []
+    for kind, found in kinds.items():
+        slowest, largest = (max(found, key=lambda row, i=i: row[1][i]) for i in (0, 1))
+        lines.append([kind, str(len(found)), str(sum(refused for *_, refused in found)), f"{slowest[1][0]:.2f}", f"`{slowest[0]}`",
+                      f"{largest[1][1]:.0f}", f"`{largest[0]}`"])
+    return table(("read as", "files", "refused by all", "most s", "by", "most MB", "by"), lines)
+
+
 def main():
     rows = []
     make_good()
@@ -189,18 +207,9 @@ def main():
         path = place(kind, name, make)
         size = size_text(path)
         worst, ended, refusal = check_case(kind, name, why, path)
-        rows.append((name, size, worst, ended, refusal))
+        rows.append((kind, name, size, worst, ended, refusal))
         subprocess.run(["rm", "-rf", path], check=True)
-    if TABLE:
-        print(PAGE)
-        print("| input | size | s | MB | exit status | message |\n|---|---:|---:|---:|---|---|")
-        for name, size, worst, ended, refusal in rows:
-            refusal = refusal.split(": ", 1)[-1].replace("|", "\\|")
-            statuses = " ".join(str(status) for status in ended)
-            print(f"| `{name}` | {size} | {worst[0]:.2f} | {worst[1]:.0f} | {statuses} | {refusal[:200] or 'read'} |")
-    else:
-        slowest, largest = max(rows, key=lambda row: row[2][0]), max(rows, key=lambda row: row[2][1])
-        print(f"{len(rows)} files; slowest {slowest[0]}, {slowest[2][0]:.2f} s; largest {largest[0]}, {largest[2][1]:.0f} MB")
+    report(rows)
 
 
 with tempfile.TemporaryDirectory() as work:

@@ -3,8 +3,8 @@
 """Mutants of the fixed-point core, each compiled with the unit tests that should notice it.
 
     mutants.py             a sample, the same each time: every mutant is caught, or listed in equivalent.txt with a reason
-    mutants.py --all       every mutant, and docs/study/mutants.md has the counts of today
-    mutants.py --write     every mutant, and writes that page
+    mutants.py --all       every mutant, and docs/study/proofs.md has the counts of today
+    mutants.py --write     every mutant, and writes the counts into that page
     mutants.py --only FILE those of one file, for who writes tests: prints which survive
 
 Either way the tests are taken away first: a mutant must survive then.
@@ -27,11 +27,12 @@ import mutate
 HERE = pathlib.Path(__file__).resolve().parent
 TESTS, ROOT = HERE.parent, HERE.parent.parent
 RUNTIME = ROOT / "runtime"
-PAGE = ROOT / "docs" / "study" / "mutants.md"
+PAGE = ROOT / "docs" / "study" / "proofs.md"
 LISTED = HERE / "equivalent.txt"
-sys.path.insert(0, str(TESTS))
+sys.path[:0] = [str(TESTS), str(ROOT / "tools" / "study" / "scripts")]
 
 from checks import check, done, skip  # noqa: E402
+from measured import table, write_block  # noqa: E402
 
 # A suite is a program: a test, and what of the runtime it calls.
 SUITES = {
@@ -64,25 +65,8 @@ SANITIZED = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"] # as t
 LINK = ["-Wl,--gc-sections", "-lm"]
 SEED, SAMPLE = 1, 12
 SHARE_LEAST = 0.9
+TITLES = ("file", "mutants", "did not compile", "equivalent", "caught", "survived", "share")
 CAUGHT, SURVIVED, BROKEN = "caught", "survived", "did not compile"
-
-TEXT = """# Mutants of the fixed-point core
-
-Made by `tests/mutants/mutants.py --write`. A mutant is a source of the core with one small mistake. It has `+` for `-`, `<`
-for `<=`, or a constant one more or one less; or it lacks a cast, a rounding half, a negation or a statement.
-[mutate.py](../../tests/mutants/mutate.py) makes them of tokens, and of every sixteenth number of a table. The unit
-tests of that file run on each, as they are and then with sanitizers. A mutant is caught when one fails, crashes or does
-not end.
-
-| file | mutants | did not compile | equivalent | caught | survived | share |
-|---|---:|---:|---:|---:|---:|---:|
-{rows}
-
-The share is caught of those that compile and are not equivalent. Equivalent mutants differ from the source for no value
-that the function allows, so no test can tell them apart. [equivalent.txt](../../tests/mutants/equivalent.txt) has each
-with the reason. A test runs all of them at night. It fails when one survives without a reason, when a listed
-one is caught or exists no longer, and when the share falls below {least} %.
-"""
 
 
 class Bench:
@@ -231,7 +215,7 @@ def can_fail(every, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--all", action="store_true", help="every mutant")
-    parser.add_argument("--write", action="store_true", help="every mutant, and write docs/study/mutants.md")
+    parser.add_argument("--write", action="store_true", help="every mutant, and write their counts into docs/study/proofs.md")
     parser.add_argument("--only", choices=NOTICED_BY, metavar="FILE", help="those of one file")
     options = parser.parse_args()
     if shutil.which("gcc") is None or shutil.which("prlimit") is None:
@@ -252,9 +236,9 @@ def main():
     check(not faults, "\n".join(faults))
     check(len(chosen) < len(every) or share_of(whole) >= SHARE_LEAST, f"{share_of(whole):.1%} are caught")
     if options.write:
-        PAGE.write_text(TEXT.format(rows=rows, least=round(100 * SHARE_LEAST)))
+        write_block(PAGE, "mutants", [*table(TITLES, []), rows])
     elif options.all:
-        check(rows in PAGE.read_text(), f"docs/study/mutants.md has other counts: {HERE / 'mutants.py'} --write")
+        check(rows in PAGE.read_text(), f"docs/study/proofs.md has other counts: {HERE / 'mutants.py'} --write")
     done()
 
 

@@ -16,10 +16,6 @@ def lacks():
     return None
 
 
-def made_with():
-    return [run(COMPILER, "--version").splitlines()[0], run(EMULATOR, "--version").splitlines()[0]]
-
-
 def plugin(options):
     library = options.out / "libinstructions.so"
     if not library.exists() or library.stat().st_mtime < PLUGIN_SOURCE.stat().st_mtime:

@@ -13,15 +13,6 @@ FIRMWARES = (("one view, `analytic`", "analytic", 1, (), 48 << 10),
              ("one view, `tiny`, refinement", "tiny", 1, ("learned", "refinement"), 80 << 10),
              ("one view, `small`, refinement", "small", 1, ("learned", "refinement"), 110 << 10),
              ("two views, `tiny`, refinement", "tiny", 2, ("learned", "refinement", "comparison"), None))
-SECTION = """
-## Flash
-
-What small firmwares take on a Cortex-M7, with `-Os` and `-flto`: code, constants, weights and the port. They read planes
-as a camera leaves them, and no recording, and they run plain C. Their runtime is built
-[without other features](../library.md#leave-out-what-you-do-not-use). Their hashes are those of a desktop, too.
-
-{table}
-"""
 
 
 def measure(path, options, host):

@@ -17,10 +17,6 @@ def lacks():
     return "wasi-libc" if found == "libc.a" else None
 
 
-def made_with():
-    return [run("clang", "--version").splitlines()[0], f"Node.js {run('node', '--version').strip()}"]
-
-
 def prepare(options):
     """What all boards share."""
 
