@@ -102,7 +102,7 @@ class Measurements:
         """Returns where the file `name` made by these settings is kept."""
         stem, ending = os.path.splitext(name)
         digest = hashlib.sha256(repr(settings).encode()).hexdigest()[:8]
-        return os.path.join(self.folder, f"{stem}.{digest}{ending}")
+        return os.path.join(self.folder, f"{re.sub('[^a-zA-Z0-9_.+-]+', '-', stem)}.{digest}{ending}")
 
     def made(self, name, command, alone=False):
         """Returns the file `name`, made by `command` with OUT in it, and what the command printed."""
