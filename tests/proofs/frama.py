@@ -36,13 +36,13 @@ SUBJECTS = {
     "double": (["platform/messages/fixed_double.c"], ["-eva-precision", "2", "-eva-slevel", "4000"]),
     "messages": (
         [f"platform/{name}.c" for name in ("messages/ros_messages", "messages/cdr", "host/text", "messages/message_frame",
-                                           "messages/fixed_camera", "recording/pixel_layout")],
+                                           "messages/fixed_camera", "messages/pixel_layout")],
         ["-eva-precision", "4", "-eva-slevel", "20000", "-eva-auto-loop-unroll", "64", *APART, "2",
          "-eva-use-spec", "t3r_fixed_from_double"]),
     "reader": (
         [f"platform/{name}.c" for name in ("mcap/mcap_records", "messages/ros_messages", "messages/ros_schemas", "messages/cdr",
                                            "messages/message_frame", "messages/fixed_camera", "host/text", "host/fixed_text",
-                                           "recording/pixel_layout")],
+                                           "messages/pixel_layout")],
         ["-eva-precision", "3", "-eva-slevel", "5000", "-eva-auto-loop-unroll", "64", "-eva-min-loop-unroll", "20", *APART, "2",
          "-eva-use-spec", "t3r_fixed_from_float"]),
     "pose": (
