@@ -114,7 +114,8 @@ def must_find_left_out(subject):
     if text.count(says) != 1:
         proof.broken(f"{changed} does not say '{says}' once")
     with proof.scratch() as folder:
-        copy = folder / pathlib.Path(changed).name
+        copy = folder.joinpath(*pathlib.Path(changed).parts[1:])  # as it is included
+        copy.parent.mkdir(parents=True, exist_ok=True)
         copy.write_text(text.replace(says, instead))
         found = eva(DRIVERS / f"{subject}.c", [copy if source == changed else source for source in sources], options,
                     [folder, (proof.ROOT / changed).parent])
