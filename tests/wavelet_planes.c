@@ -159,8 +159,8 @@ void wavelet_inverse(int16_t *plane, uint32_t width, uint32_t height, uint32_t l
 
 /* ---- images that wrap --------------------------------------------------------------------------------------- */
 
-/* The image is repeated around itself by 8 coefficients of the coarsest level. A border reaches at most 4
- * coefficients into any level: b of one level become (b + 3) / 2 + 1 of the next. So inside is as if it went on. */
+/* The image is repeated around itself by 8 coefficients of the coarsest level. A border reaches at most 4 coefficients
+ * into any level: b of one level become (b + 3) / 2 + 1 of the next. So the inside does not feel the border. */
 void wavelet_texture_wrapped(const uint8_t *const colour[3], uint32_t width, uint32_t height, uint32_t levels,
                              t3r_wavelet kind, uint16_t *texture_q4)
 {

@@ -94,7 +94,7 @@ uint8_t *make_weights(const made_layer *layers, uint32_t count, uint32_t weight_
                       uint64_t seed, size_t *bytes)
 {
     size_t most = 64 + 32 * (size_t)count;
-    for (uint32_t n = 0; n < count; n++) { /* weights, biases, multipliers, shifts and what aligns them, at most */
+    for (uint32_t n = 0; n < count; n++) { /* most bytes of weights, biases, multipliers, shifts and alignment */
         size_t rows = (size_t)layers[n].phases * layers[n].outputs;
         most += rows * taps_of(layers, n) * 2 + rows * 16 + 64;
     }
@@ -112,7 +112,7 @@ uint8_t *make_weights(const made_layer *layers, uint32_t count, uint32_t weight_
         uint32_t rows = (uint32_t)l->phases * l->outputs;
         size_t weights = block(&m, (size_t)rows * taps * weight_bits / 8), bias = block(&m, (size_t)rows * bias_bytes);
         size_t multiplier = block(&m, (size_t)l->outputs * 4), shift = block(&m, l->outputs);
-        int64_t folded[4 * T3R_MAX_CHANNELS] = {0}; /* sum weight x zero point, a row */
+        int64_t folded[4 * T3R_MAX_CHANNELS] = {0}; /* sum of weight x zero point per row */
         for (size_t i = 0; i < (size_t)rows * taps; i++) {
             int64_t w = ((int64_t)(next(&m.random) % 129) - 64) * (weight_bits == 8 ? 1 : 100);
             bool second = l->source[1] != NONE && i % inputs >= channels_of(layers, l->source[0]);

@@ -27,7 +27,8 @@ def texts(path, name):
 
 
 def read_png(path):
-    """Width, height and the filtered rows of a PNG without interlacing: of the first pixel every filter keeps the colour."""
+    """Returns width, height and the filtered rows of a PNG without interlacing. No filter changes the first pixel's
+    colour."""
     with open(path, "rb") as file:
         data = file.read()
     check(data[:8] == b"\x89PNG\r\n\x1a\n", "a PNG")
@@ -94,7 +95,7 @@ def reports(folder):
 
 
 def noise(path, side, seed):
-    """A PNG that does not pack."""
+    """Writes a PNG that hardly compresses."""
     def chunk(kind, body):
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
     dice = random.Random(seed)
@@ -105,7 +106,7 @@ def noise(path, side, seed):
 
 
 def small_reports(folder):
-    """A report stays below 4 MB unless it is told otherwise, and the front's pictures come first."""
+    """A report stays below 4 MB unless an option allows more; the front's pictures have priority."""
     table = made_up(f"{folder}/many.csv", scenes=1, cases=1)
     with open(table, encoding="utf-8") as file:
         heading, *rows = file.read().splitlines()
@@ -125,7 +126,7 @@ def small_reports(folder):
 
 
 def older(folder):
-    """What eval wrote before it told wavelet, levels, clusters, bytes of the scene and pictures."""
+    """Tables that eval wrote before it reported wavelet, levels, clusters, bytes of the scene and pictures."""
     old, new = f"{folder}/old.csv", f"{folder}/new.svg"
     with open(old, "w", encoding="utf-8") as file:
         file.write("scene,context,target,method,head,bits,refine,allocate,depth,ablation,keep,gaussians,psnr,build_ms\r\n"

@@ -11,7 +11,7 @@
 
 #include "scene/scene_turn.h"
 
-/* The sum of the harmonics in a direction. */
+/* Returns the sum of the harmonics in a direction. */
 static double seen(double rest[HARMONICS_REST_MOST][3], const double direction[3])
 {
     double values[HARMONICS_REST_MOST], sum = 0;
@@ -38,7 +38,7 @@ static void turn_vector(const scene_turn *turn, const double in[3], double out[3
     scene_turn_apply(turn, out, rotation, 0, none);
 }
 
-/* A turn is proper, and a direction shows the same colour before and behind it. */
+/* A turn is a proper rotation, and colours turn with their directions. */
 static void check_turn(const scene_turn *turn)
 {
     const double *m = turn->matrix;
@@ -73,7 +73,7 @@ static void turns_all_alike(void **state)
     }
 }
 
-/* Not only between axes. */
+/* Angles other than between axes. */
 static void turns_by_any_angle(void **state)
 {
     (void)state;
@@ -107,7 +107,7 @@ static void points_up(void **state)
     assert_int_equal(scene_up_named(""), SCENE_UP_UNKNOWN);
 }
 
-/* From a file to a scene and back nothing changes; without --up, x is right, y down and z forward in a scene. */
+/* Reading and writing a file changes nothing; without --up, a scene has x right, y down and z forward. */
 static void knows_the_axes_of_formats(void **state)
 {
     (void)state;

@@ -116,9 +116,9 @@ static void pointmap(void **state)
 typedef struct cloud {
     uint32_t count;
     int16_t (*feature_q11)[ORACLE_DIMENSIONS];
-    double *points;      /* the same, what the oracle sees */
-    uint32_t hole_every; /* one in so many points is invalid; 0 = none */
-    uint32_t *labels;    /* NO_LABEL until they come */
+    double *points;      /* the oracle's copy of the points */
+    uint32_t hole_every; /* every hole_every-th point is invalid; 0: none */
+    uint32_t *labels;    /* NO_LABEL until clustering sets them */
 } cloud;
 
 #define NO_LABEL UINT32_MAX
@@ -261,7 +261,7 @@ static void kmeans(void **state)
     kmeans_case("to the ends of the range", &c, 512, 1.15);
 }
 
-/* Returns the mean squared distance after clustering, started from the previous points' centres or anew. */
+/* Returns the mean squared distance after clustering, started from the previous centres or anew. */
 static double kmeans_of(const cloud *c, uint32_t k, bool follows, t3r_cluster *clusters)
 {
     const t3r_point_source source = source_of(c);
@@ -280,13 +280,13 @@ static double kmeans_of(const cloud *c, uint32_t k, bool follows, t3r_cluster *c
     return msd;
 }
 
-/* The points moved by a third of the room: centres left without points are placed anew, and quality is not lost. */
+/* The points move by a third of the room: centres without points are placed anew, and quality is not lost. */
 static void kmeans_that_follows(void **state)
 {
     (void)state;
     enum { K = 200, COUNT = 24000 };
     cloud before = cloud_of(COUNT, 60, 0.9, 0.15, 3), after = cloud_of(COUNT, 60, 0.9, 0.15, 3);
-    for (uint32_t i = 0; i < COUNT; i++) { /* points that leave at one end come in at the other */
+    for (uint32_t i = 0; i < COUNT; i++) { /* points that leave at one end enter at the other */
         after.feature_q11[i][0] = (int16_t)(after.feature_q11[i][0] + 2048);
         after.points[i * ORACLE_DIMENSIONS] += 1;
         if (i % 3 == 0) {
@@ -413,8 +413,8 @@ static void wavelet_case(texture_kind kind, uint32_t width, uint32_t height, uin
     for (size_t i = 0; i < pixels; i++) {
         got += texture[i] / 16.0;
     }
-    /* 1 % (2 % where a few hundred coefficients can't average their roundings); where there is little to see, the
-     * lifting steps' own roundings, in levels of luma a pixel and level */
+    /* 1 %, or 2 % where a few hundred coefficients can't average their roundings. Where there is little texture, the
+     * roundings of the lifting steps count, in levels of luma per pixel and level. */
     double floor_level = kind == NOISE || kind == OCTAVES ? 0 : kind == RAMP ? 0.75 : 0.25;
     double share = pixels >= 4096 ? 0.01 : 0.02;
     if (fabs(got - want) > share * want + floor_level * levels * (double)pixels) {
@@ -441,7 +441,7 @@ static void wavelet_energy(void **state)
     }
 }
 
-/* The oracle itself: energy is preserved by the orthonormal pairs, constants vanish, so do ramps away from the wrap. */
+/* Checks the oracle: orthonormal pairs preserve energy; constants vanish, and so do ramps away from the wrap. */
 static void wavelet_oracle(void **state)
 {
     (void)state;

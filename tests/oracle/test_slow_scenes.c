@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Scenes that are made to be slow: faint Gaussians as wide as the picture, so that every tile lists them all and
- * nothing ends early. The plan bounds what is blended, tile_splats bounds it further, and a caller can stop within a
- * tile. */
+/* Scenes that are made to be slow: faint Gaussians as wide as the picture, so that every tile lists all of them and no
+ * list ends early. The plan bounds the number of blended splats, tile_splats lowers the bound, and a caller can cancel
+ * within a tile. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,11 +15,11 @@
 #include "raster/raster_tile.h"
 #include "state/state.h"
 
-enum { LONG = 70000, SHORT = 500, SIDE = 48 }; /* LONG: more than are blended between two looks at the hook */
+enum { LONG = 70000, SHORT = 500, SIDE = 48 }; /* LONG: more than are blended between two calls of the hook */
 
 static const t3r_scene_frame plain_frame;
 
-/* Layers of haze, the nearest first and each of its own colour. */
+/* Makes layers of haze, the nearest first, each with its own colour. */
 static t3r_gaussian *haze(uint32_t count)
 {
     t3r_gaussian *all = calloc(count, sizeof *all);
@@ -148,7 +148,7 @@ static void draw_at_once(const t3r_gaussian *gaussians, uint32_t count, const t3
     free(splats);
 }
 
-/* One tile whose list is longer than what is blended between two looks. */
+/* One tile whose list is longer than what is blended between two calls of the hook. */
 static void a_long_list_can_be_stopped(void **state)
 {
     (void)state;
@@ -165,14 +165,14 @@ static void a_long_list_can_be_stopped(void **state)
         assert_int_equal(w.looks, stop_at == 0 ? 3 : stop_at); /* before all, before the tile, within it */
         arena_free(&b.memory);
     }
-    /* part after part is the picture that the whole list gives at once */
+    /* blending the list in parts gives the same picture as blending it at once */
     uint8_t at_once[sizeof rgb] = {0};
     draw_at_once(gaussians, LONG, &camera, at_once);
-    assert_memory_equal(rgb, at_once, sizeof rgb); /* renders that were stopped left it alone */
+    assert_memory_equal(rgb, at_once, sizeof rgb); /* cancelled renders did not change it */
     free(gaussians);
 }
 
-/* Behind what is opaque nothing of the list is drawn, and nobody is asked. */
+/* After opaque splats the rest of the list is not drawn, and the hook is not called. */
 static void a_long_list_ends_where_nothing_shows(void **state)
 {
     (void)state;
@@ -195,7 +195,7 @@ static void a_long_list_ends_where_nothing_shows(void **state)
     free(gaussians);
 }
 
-/* Between two looks at most 65,536 splats are blended, or a tile. */
+/* Between two calls of the hook at most 65,536 splats, or one tile, are blended. */
 static void many_lists_are_looked_after(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The work of builds and the settings that fit: counts follow the configuration, lists hold what they promise. */
+/* The work of builds and the settings that fit: counts follow the configuration, lists keep their promises. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -79,13 +79,14 @@ static void alignment_compares_pixels(void **state)
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_COMPARISON], 0);
 }
 
-/* Fitted widths look at the other views; structure, at the tiles once more and at all views' levels in two passes. */
+/* Fitted widths examine the other views; structure examines the tiles once more and the levels of all views in two
+   passes. */
 static void counts_what_is_asked_for_beyond(void **state)
 {
     (void)state;
     t3r_config c = config_of(1000);
     c.fit_widths = 1;
-    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DISC_GAUSSIANS], 1000); /* refinement finds widths by itself */
+    assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DISC_GAUSSIANS], 1000); /* refinement finds widths itself */
     c.refine = 0;
     assert_int_equal(counted(&c, NULL, 0).units[T3R_WORK_DISC_GAUSSIANS], 1000 + 1000 / 5);
     c.fit_widths = 0;
@@ -105,7 +106,7 @@ static void counts_what_is_asked_for_beyond(void **state)
     }
 }
 
-/* What does not fit at once is refined in slices, each of which draws the views. */
+/* If memory is too small for all at once, refinement works in slices, each of which draws the views. */
 static void small_arenas_draw_more_often(void **state)
 {
     (void)state;
@@ -123,7 +124,7 @@ static void networks_count_by_their_layers(void **state)
     (void)state;
     size_t bytes;
     uint8_t *weights = make_weights(small_shape, small_layers, 8, 8, 1, &bytes);
-    t3r_config c = config_of(96 * 64 * 2); /* every point, so that a pixel takes what the header says */
+    t3r_config c = config_of(96 * 64 * 2); /* every point, so that the cost per pixel is the header's */
     c.head = T3R_HEAD_LEARNED;
     t3r_work_counts work = counted(&c, weights, bytes);
     const uint64_t macs = work.units[T3R_WORK_MACS] + work.units[T3R_WORK_UNPACKED_MACS];
@@ -155,7 +156,7 @@ static void some_networks_cannot_be_packed(void **state)
             make_weights(cases[i].layers, layers, cases[i].weight_bits, cases[i].activation_bits, 1, &bytes);
         t3r_config c = config_of(1000);
         c.head = T3R_HEAD_LEARNED;
-        c.head_column_bytes = T3R_MAX_HEAD_COLUMN_BYTES; /* room for either */
+        c.head_column_bytes = T3R_MAX_HEAD_COLUMN_BYTES; /* room for both */
         const t3r_work_counts work = counted(&c, weights, bytes);
         assert_int_equal(work.units[T3R_WORK_MACS] > 0, cases[i].packed);
         assert_int_equal(work.units[T3R_WORK_UNPACKED_MACS] > 0, !cases[i].packed);
@@ -197,7 +198,7 @@ static void prices_add_up_and_end_at_the_most(void **state)
     prices.milli[T3R_WORK_IMAGE] = UINT32_MAX;
     assert_true(t3r_price_of(&work, &prices, T3R_STAGE_IMAGE) == UINT64_MAX);
     assert_true(t3r_price_of_build(&work, &prices) == UINT64_MAX);
-    /* a product that overflows, and a thousandth of it that fits: off by less than a price */
+    /* a product that overflows, and a thousandth of it that fits: the difference is below one price */
     work.units[T3R_WORK_IMAGE] = UINT64_MAX;
     work.units[T3R_WORK_BUDGET] = 0;
     prices.milli[T3R_WORK_IMAGE] = 999;
@@ -240,14 +241,14 @@ static void lists_what_fits_best_first(void **state)
     t3r_limits limits = {.prices = &t3r_operations, .refine = T3R_ANY_REFINE};
     const uint32_t count = listed(&c, &limits, all);
     assert_true(count > 8 && all[0].loss_q4 < 16 && all[0].head == T3R_HEAD_ANALYTIC);
-    /* each row is a configuration: a build in such an arena, and its work */
+    /* each row is a configuration: build it in an arena of that size, and count its work */
     t3r_config chosen = c;
     chosen.gaussians = chosen.max_gaussians = all[0].gaussians;
     chosen.refine = all[0].refine;
     const t3r_work_counts work = counted(&chosen, NULL, 0);
     assert_int_equal(bytes_of(&chosen, true), all[0].full_bytes);
     assert_int_equal(t3r_price_of_build(&work, &t3r_operations), all[0].price);
-    /* each limit cuts, and all rows of the shorter list are no better than before */
+    /* each limit removes rows, and no row of the shorter list is better than before */
     limits.most = all[0].price / 2;
     assert_in_range(listed(&c, &limits, some), 1, count - 1);
     assert_true(some[0].loss_q4 >= all[0].loss_q4);
@@ -301,7 +302,7 @@ static void heads_are_compared(void **state)
     free(weights);
 }
 
-/* A network is rated like the shipped one of about its size: one that computes more loses less at small budgets. */
+/* A network is rated like the shipped one of similar size: one that computes more loses less at small budgets. */
 static void networks_are_rated_by_their_size(void **state)
 {
     (void)state;
@@ -355,7 +356,7 @@ static void refuses_limits_out_of_range(void **state)
     c.levels = 0;
     assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, list, &count), T3R_ERR_CONFIG);
     c = config_of(1);
-    c.stream = 1; /* keyframes come as they come */
+    c.stream = 1; /* with streams, keyframes come one at a time */
     assert_int_equal(t3r_plan_choices(&c, NULL, 0, &good, list, &count), T3R_ERR_CONFIG);
     assert_int_equal(count, 0);
 }

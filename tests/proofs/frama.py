@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""frama.py: Eva, of Frama-C, finds no alarm in a driver of tests/proofs/frama, a subject each.
+"""frama.py: Eva of Frama-C finds no alarm in the drivers of tests/proofs/frama, one for each subject.
 
-    frama.py                 the subjects that docs/study/proofs.md lists, and that each finds a check that is left out
-    frama.py fixed plan      these subjects alone
-    frama.py --write         all, and writes that page
+frama.py                 the subjects listed in docs/study/proofs.md; and removing a check makes Eva raise an alarm
+frama.py fixed plan      these subjects only
+frama.py --write         all, and writes that page
 """
 import argparse
 import pathlib
@@ -19,10 +19,10 @@ DRIVERS = proof.HERE / "frama"
 PAGE = proof.ROOT / "docs" / "study" / "proofs.md"
 UNSIGNED = "-warn-unsigned-overflow"
 
-# Keeps a function's returns apart, so that what it checked holds in its caller.
+# Keeps a function's returns apart, so that conditions it checked hold in its caller.
 APART = ["-eva-interprocedural-history", "-eva-partition-history"]
 
-# A subject: sources beside the driver, options of Eva, what the page says of functions, ranges, and what is left out.
+# Subjects: sources beside the driver, Eva's options, and the page's texts on functions, ranges and omissions.
 SUBJECTS = {
     "fixed": (
         ["runtime/core/fixed.c"], ["-eva-precision", "4", "-eva-slevel", "400"],
@@ -95,7 +95,7 @@ SUBJECTS = {
         "or as a stream",
         "other configurations; what later calls make of an arena that was taken: `fuzz_arena` tries them"),
 }
-# A check left out of a subject's source: what it says, what stands there instead, and by which words Eva finds it.
+# A check removed from a subject's source: its text, the replacement, and the words of Eva's alarm.
 LEFT_OUT = {
     "weights": ("runtime/head/weights.c", "bytes < T3R_WEIGHTS_HEADER_BYTES || ", "", "out of bounds read"),
     "blocks": ("runtime/head/weights.c", "block <= header->bytes - offset", "true", "out of bounds read"),
@@ -109,7 +109,7 @@ LEFT_OUT = {
              "t3r_bound_broken"),
     "attach": ("runtime/api/restored.c", " && rt->gaussians <= rt->config.max_gaussians", "", "out of bounds read"),
 }
-# What must be found, and Eva's words for it.
+# Planted errors, and the words of Eva's alarm.
 PLANTED = {
     "overflow": "signed overflow",
     "shift": "invalid RHS operand for shift",
@@ -170,8 +170,8 @@ with `T3R_CHECK_FIXED` look for faults there.
 
 
 def eva(driver, sources, options, beside=()):
-    """The findings in a driver: alarms, and functions that never return, as nothing behind them is looked at. Headers
-    are also looked for in the folders `beside`."""
+    """Returns a driver's findings: alarms, and functions that never return, because Eva does not look at the code
+    after them. Headers are also searched for in the folders `beside`."""
     folders = " ".join(f"-I {folder}" for folder in (*beside, proof.RUNTIME / "include", proof.RUNTIME,
                                                      proof.ROOT / "platform"))
     includes = f"-std=c11 {folders} -include {DRIVERS / 'frama.h'}"
@@ -185,7 +185,7 @@ def eva(driver, sources, options, beside=()):
 
 
 def seconds_of(subject):
-    """Returns how long Eva took for the subject, which has no alarm."""
+    """Returns Eva's seconds for the subject, which must have no alarm."""
     sources, options = SUBJECTS[subject][:2]
     before = time.monotonic()
     found = eva(DRIVERS / f"{subject}.c", sources, options)
@@ -194,7 +194,7 @@ def seconds_of(subject):
 
 
 def must_find_left_out(subject):
-    """Checks that Eva finds the check removed from a copy of one of the subject's sources."""
+    """Checks that Eva raises an alarm when the check is removed from a copy of the subject's source."""
     changed, says, instead, words = LEFT_OUT[subject]
     sources, options = SUBJECTS[subject][:2]
     text = (proof.ROOT / changed).read_text()
@@ -214,7 +214,7 @@ def row(subject, seconds):
 
 
 def unlisted(subjects, page):
-    """Returns the subjects whose row is missing in the page; seconds may differ."""
+    """Returns the subjects whose row is missing on the page; seconds may differ."""
     return [subject for subject in subjects if not re.search(re.escape(row(subject, "@")).replace("@", r"[\d.]+"), page)]
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Instructions of each stage of builds of the built-in room, in plain C at -O2 on one thread, as callgrind counts them: what
-no other program on the machine disturbs."""
+"""Counts the instructions of each stage of builds of the built-in room by callgrind, in plain C at -O2 on one
+thread; other programs on the machine do not disturb the counts."""
 import os
 import re
 import shutil
@@ -27,7 +27,7 @@ def skip(reason):
 
 
 def build(folder):
-    """The driver with the runtime that the proofs of the stack look at, the heads and the room."""
+    """Compiles the driver with the heads, the room and the runtime as the stack proofs use it."""
     name = proof.compiler_of(TARGET)
     own = [DRIVER, *HEAD_SOURCES, *sorted((proof.ROOT / "tools" / "room").glob("*.c"))]
     folders = ("runtime", "runtime/include", "platform", "tools", "quant/heads", "tests")
@@ -39,7 +39,7 @@ def build(folder):
 
 
 def count(program, folder, builds):
-    """{"build stage": instructions}, all parts of a stage together, and what the driver prints."""
+    """Returns {"build stage": instructions}, all parts of a stage together, and the driver's output."""
     out = folder / "callgrind.out"
     done = proof.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", program, *builds])
     if done.returncode != 0:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""misra.py: no rule of MISRA C:2012 has more departures in the runtime than docs/study/misra.md lists, and each that has
-some has a reason there."""
+"""misra.py: no rule of MISRA C:2012 has more deviations in the runtime than docs/study/misra.md lists, and each
+listed deviation has a reason there."""
 import importlib.machinery
 import importlib.util
 import os
@@ -15,7 +15,7 @@ SCRIPT = proof.ROOT / "tools" / "misra"
 
 
 def script():
-    """tools/misra as a module."""
+    """Loads tools/misra as a module."""
     loader = importlib.machinery.SourceFileLoader("misra_script", str(SCRIPT))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader("misra_script", loader))
     loader.exec_module(module)
@@ -23,7 +23,7 @@ def script():
 
 
 def dies_unheard(misra, ending):
-    """Whether nothing is said when the addon's Python ends so."""
+    """Whether a failure of the addon's Python with this ending goes unreported."""
     path = os.environ["PATH"]
     with tempfile.TemporaryDirectory() as folder:
         python = pathlib.Path(folder, "python3")

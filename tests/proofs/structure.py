@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""structure.py [LIBRARY...]: the picture of the house holds. Every area includes only what stands below it, and no two
-source files of a library call each other, be it through others.
+"""structure.py [LIBRARY...]: the layers of the tree hold. Every area includes only areas below it, and no two source files
+of a library call each other, not even through others.
 
-MAY is the whole picture: what each area may include. An area that is not in it is a finding, so a new one is entered
-here with its arrows.
+MAY is the whole picture: what each area may include. An area that is not in it is a finding, so a new one is entered here
+with its arrows.
 """
 import pathlib
 import re
@@ -12,13 +12,13 @@ import sys
 
 import proof
 
-# Rooms of the runtime from the foundation up: each may include those before it.
+# Folders of the runtime from the foundation up: each may include the earlier ones.
 ROOMS = ("include", "core", "kernels", "state", "depth", "image", "pointmap", "stereo", "wavelet", "superclusters", "budget",
          "raster", "head", "refine", "stage_hash", "stages", "pipeline", "loss", "stream", "layout", "api")
 MAY = {"runtime/" + room: {"runtime/" + below for below in ROOMS[:at]} for at, room in enumerate(ROOMS)}
 RUNTIME = set(MAY)
 MAY["quant"] = RUNTIME
-# Rooms of the platform, in the same way.
+# Folders of the platform, likewise.
 PLATFORM = ("host", "mcap", "messages", "recording", "capture")
 for at, room in enumerate(PLATFORM):
     MAY["platform/" + room] = RUNTIME | {"platform/" + below for below in PLATFORM[:at]}
@@ -27,7 +27,7 @@ MAY["platform/baremetal"] = RUNTIME | PLATFORM | {"quant"}
 
 
 def tool(name, *uses, base=PLATFORM):
-    """An area of tools/: what it uses directly, and what those may use."""
+    """Enters an area of tools/: the areas it uses directly, and theirs."""
     MAY["tools/" + name] = RUNTIME | set(base)
     for used in uses:
         MAY["tools/" + name] |= {"tools/" + used} | MAY["tools/" + used]
@@ -65,7 +65,7 @@ SYMBOL = re.compile(r"^.*\[([^\]]+)\]: (\S+) (\w)")
 
 
 def area_of(path):
-    """The area of a source file, by its path from the root of the tree."""
+    """Returns the area of a source file, by its path from the root of the tree."""
     folder, stem = path.parent.as_posix(), path.with_suffix("").as_posix()
     if folder.startswith("runtime"):
         return "/".join(stem.split("/")[:2])
@@ -79,7 +79,7 @@ def area_of(path):
 
 
 def resolve(root, path, name):
-    """The file of the tree that an #include names, by the include paths that its area is built with."""
+    """Returns the file of the tree that an #include names, by the include paths that its area is built with."""
     for base in (path.parent, pathlib.Path("runtime/include"), pathlib.Path("runtime"), pathlib.Path("quant"),
                  pathlib.Path("quant/heads"), pathlib.Path("platform"), pathlib.Path("tools")):
         if (root / base / name).is_file():
@@ -95,7 +95,7 @@ def sources(root):
 
 
 def check_includes(root):
-    """Arrows that the picture does not have."""
+    """Returns includes that MAY does not allow."""
     findings = []
     for path in sources(root):
         area = area_of(path)
@@ -110,7 +110,7 @@ def check_includes(root):
 
 
 def circles(arrows):
-    """The sets of nodes that reach each other (Tarjan)."""
+    """Returns the sets of nodes that reach each other (Tarjan)."""
     index, low, stack, found = {}, {}, [], []
 
     def visit(node):
@@ -140,14 +140,14 @@ def is_study(area):
 
 
 def check_picture(may):
-    """The picture itself has no circle, and no arrow from the product to its study."""
+    """Checks that MAY has no cycle, and no arrow from the product to the study."""
     findings = [f"the picture has a circle: {', '.join(circle)}" for circle in circles(may)]
     return findings + [f"{area} of the product may use {used}" for area, uses in may.items() for used in sorted(uses)
                        if is_study(used) and not is_study(area)]
 
 
 def check_calls(libraries):
-    """Source files that call each other, or use each other's data: the linker sees it, whatever headers are named."""
+    """Returns source files that call each other or use each other's data, as the linker sees it."""
     findings = []
     for library in libraries:
         defines, needs = {}, {}
@@ -169,7 +169,7 @@ def check_calls(libraries):
 
 
 def planted_findings():
-    """The offenders: a small house in planted/house, and two files that call each other."""
+    """Checks planted offenders: a small tree in planted/house, and two files that call each other."""
     house = proof.PLANTED / "house"
     findings = check_includes(house)
     for offence in ("runtime/core/outward.c includes platform/capture/planted_replay.h",

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""work.py --fit: fits the operations of a unit of each kind of work to instructions of builds in plain C at -O2, and writes
-runtime/layout/operations.h. The proof `instructions` checks them on builds that the fit did not see: those and their large
-stages take within 25 % of the operations that t3r_count_work() leads to.
+"""work.py --fit: fits the operations per unit of each kind of work to instruction counts of builds in plain C at -O2, and
+writes runtime/layout/operations.h.
+
+The proof `instructions` checks the fit on other builds: these builds and their large stages take within 25 % of the
+operations that follow from t3r_count_work().
 """
 import re
 import sys
@@ -12,7 +14,7 @@ from instruction_counts import build, compiler_name, count, need_valgrind
 
 HEADER = proof.RUNTIME / "layout" / "operations.h"
 MOST_OFF = 0.25
-LARGE = 0.1  # of a build: a stage that is to be within MOST_OFF, too
+LARGE = 0.1  # share of a build; a stage above it is to be within MOST_OFF, too
 STAGES = ("image", "depth", "pointmap", "wavelet", "superclusters", "budget", "head", "refine", "raster")
 CHECKED_NAME = "checked"
 CHECKED = ("checked-1,80,64,2,1024,small,sensor,100,24,1", "checked-2,128,96,1,614,analytic,sensor,200,24,2",
@@ -36,13 +38,13 @@ HEADING = """/* Instructions of plain C on x86-64 in 1/1000 a unit of each kind 
 
 
 def kinds_of_stages():
-    """{stage: its kinds of work}, as T3R_WORKS has them."""
+    """Returns {stage: its kinds of work}, from T3R_WORKS."""
     rows = re.findall(r'X\(\w+, "(\w+)", (\w+)\)', (proof.RUNTIME / "include" / "trim3r.h").read_text())
     return {stage: [name for name, its_stage in rows if its_stage.lower() == stage] for stage in STAGES}
 
 
 def builds_of(counted, printed):
-    """{build: ({stage: instructions}, {kind: units})}"""
+    """Returns {build: ({stage: instructions}, {kind: units})}."""
     builds = {}
     for line in printed.splitlines():
         name, *words = line.split()
@@ -52,7 +54,7 @@ def builds_of(counted, printed):
 
 
 def prices_of_header():
-    """{kind: 1/1000 operations a unit}"""
+    """Returns {kind: 1/1000 operations a unit}."""
     return {kind.lower(): int(price)
             for kind, price in re.findall(r"define T3R_OPERATIONS_(\w+) (\d+)u", HEADER.read_text())}
 
@@ -62,7 +64,7 @@ def operations(units, prices, kinds):
 
 
 def check(builds, prices):
-    """What is more than MOST_OFF away."""
+    """Returns findings that are more than MOST_OFF away."""
     findings, kinds = [], kinds_of_stages()
     for name, (stages, units) in builds.items():
         expected = {stage: operations(units, prices, kinds[stage]) for stage in STAGES}
@@ -79,7 +81,7 @@ def check(builds, prices):
 
 
 def findings(counted, printed):
-    """Of the builds CHECKED among those that were counted."""
+    """Returns the builds CHECKED among the counted ones."""
     builds = {name: both for name, both in builds_of(counted, printed).items() if name.startswith(CHECKED_NAME)}
     prices = prices_of_header()
     proof.must_find(check(builds, {**prices, "batches": 9 * prices["batches"]}), "superclusters", "the prices")
@@ -87,7 +89,7 @@ def findings(counted, printed):
 
 
 def solve(rows):
-    """Prices of at least 0 with which the sum of squared relative errors is least, of [(units, total)]."""
+    """Returns prices of at least 0 that minimise the sum of squared relative errors of [(units, total)]."""
     scaled = [[unit / total for unit in units] for units, total in rows]
     prices, left = [0.0] * len(scaled[0]), [1.0] * len(rows)
     for _ in range(20000):  # coordinate descent

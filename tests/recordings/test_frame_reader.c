@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The reader for firmware gives the frames that the reader with a heap gives, and ends where a file is cut. */
+/* The reader for firmware gives the same frames as the reader with a heap, and ends where a file is cut. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -82,7 +82,7 @@ static void check_same(const t3r_capture_frame *a, const t3r_capture_frame *b)
     }
 }
 
-/* The frame's rows in strips of so many, against those of the whole one: planes begin with the strip. */
+/* Compares the frame read in strips with the whole frame; planes begin with the strip. */
 static void check_strips(bag_bytes *bytes, const t3r_capture_frame *whole, uint32_t strip)
 {
     static reading r;
@@ -116,7 +116,7 @@ static void check_strips(bag_bytes *bytes, const t3r_capture_frame *whole, uint3
     assert_string_equal(r.reader.error, "these rows are not in the image");
 }
 
-/* Every frame of the bytes by both readers; how many there are. */
+/* Reads the bytes with both readers; returns the number of frames. */
 static uint32_t check_both(bag_bytes *bytes)
 {
     char error[256] = "";
@@ -187,7 +187,7 @@ static void refuse(bag_bytes *bytes, size_t colour_room, const char *expected)
     }
     assert_int_equal(status, -1);
     assert_string_equal(r.reader.error, expected);
-    assert_int_equal(t3r_frame_reader_next(&r.reader, &frame), T3R_CAPTURE_FAILED); /* and so it stays */
+    assert_int_equal(t3r_frame_reader_next(&r.reader, &frame), T3R_CAPTURE_FAILED); /* the failure is final */
 }
 
 static void what_it_cannot_read_is_named(void **state)
@@ -219,7 +219,7 @@ static void depth_is_passed_over_without_a_buffer(void **state)
     bag_bytes_free(&bytes);
 }
 
-/* Depth in metres and big-endian depth, each behind its colour image. */
+/* Depth in metres and big-endian depth, each after its colour image. */
 static void foreign_depth_becomes_steps_in_its_place(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Recordings of our own: what is written is what is read, wherever the file is cut, and never after it was changed. */
+/* Our own recordings: what is written is what is read, wherever the file is cut; changed files are refused. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -161,7 +161,7 @@ typedef struct ends {
     const uint8_t *base;
     uint32_t messages;
     size_t end[20];
-    uint32_t images[20]; /* frames whole once this message is */
+    uint32_t images[20]; /* number of frames that are complete after each message */
 } ends;
 
 static int no_schema(void *user, const t3r_mcap_schema_record *schema, t3r_mcap_place place)
@@ -241,7 +241,7 @@ static void cut_anywhere_reads_the_whole_messages(void **state)
     check_cuts(SAMPLE_NONE);
 }
 
-/* Of a chunk that was cut, whatever could be unpacked. */
+/* A cut chunk gives the part that could be unpacked. */
 static void cut_anywhere_reads_what_can_be_unpacked(void **state)
 {
     (void)state;
@@ -346,7 +346,7 @@ static void a_failing_sink_fails_the_recorder(void **state)
     }
 }
 
-/* A sink that cannot be read back gets what --unchunked writes. */
+/* A sink that cannot be read back gets the output of --unchunked. */
 static void without_reading_back_there_are_no_chunks(void **state)
 {
     (void)state;
@@ -361,7 +361,7 @@ static void without_reading_back_there_are_no_chunks(void **state)
     bag_bytes_free(&written);
 }
 
-/* One that fails to give back what it took fails the recorder. */
+/* A sink that fails to return written bytes makes the recorder fail. */
 static int read_nothing(void *user, uint64_t offset, void *data, size_t count)
 {
     (void)user, (void)offset;
@@ -392,7 +392,7 @@ static void the_same_frames_give_the_same_bytes(void **state)
     }
 }
 
-/* What packs to less than a reader takes from so small a file is stored as it is. */
+/* Contents that would compress beyond a reader's limit for so small a file are stored uncompressed. */
 static void a_flat_picture_stays_readable(void **state)
 {
     (void)state;
@@ -530,7 +530,7 @@ static void replay_hands_out_the_frames(void **state)
     assert_non_null(strstr(error, "directory"));
 }
 
-/* A pose that is set takes the place of the recorded one; another frame keeps its own. */
+/* A pose that is set replaces the recorded one; another frame keeps its own. */
 static void a_set_pose_wins(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The published scores on scenes where the answer is known, or can be had the slow way. */
+/* The published scores on scenes with a known answer or a direct computation. */
 #include <stdio.h>
 
 #include "splat_scenes.h"
@@ -23,14 +23,14 @@ static void set_pixels_wide(const splat_model *model, uint32_t gaussian, double 
     set_ball(model, gaussian, 0, 0, z, sigma * z / FOCAL, opacity);
 }
 
-/* alpha of such a ball at a pixel that far from the middle */
+/* Returns alpha of such a ball at an offset x, y from its middle. */
 static double alpha_at(double x, double y, double sigma, double opacity)
 {
     double alpha = opacity * exp(-(x * x + y * y) / (2 * (sigma * sigma + 0.3)));
     return alpha < 1.0 / 255 ? 0 : fmin(alpha, 0.99);
 }
 
-/* Two balls behind one another: pixels, sum of weights of the front and of the back one. */
+/* Computes, for two balls one behind the other, the pixels and the sums of weights of the front and the back one. */
 static void two_balls(double sigma, double front, double back, double pixels[2], double weights[2])
 {
     pixels[0] = pixels[1] = weights[0] = weights[1] = 0;
@@ -45,7 +45,7 @@ static void two_balls(double sigma, double front, double back, double pixels[2],
     }
 }
 
-/* Both balls, one more that no view sees. */
+/* Makes both balls, and one that no view sees. */
 static splat_model two_and_one(void)
 {
     splat_model model = plain_model(3);
@@ -83,8 +83,8 @@ static void lightgaussian(void **state)
     splat_model model = two_and_one();
     splat_view view = view_of(&model, &camera, SPLAT_ALPHA_LEAST);
     assert_true(score_lightgaussian(&model, &view, 1, score));
-    /* of three volumes the ninth decile is the largest, that of the back ball: twice as far, eight times the volume;
-     * the unseen one's is smaller still */
+    /* the ninth decile of three volumes is the largest, the back ball's: twice as far, eight times the volume; the
+     * unseen ball is smaller still */
     double largest = fmax(pow(2.5 * 2 / FOCAL, 3), 0.001);
     assert_near(score[0], pixels[1] * 0.4, 1e-6);
     assert_near(score[1], pixels[0] * 0.8 * pow(pow(2.5 / FOCAL, 3) / largest, 0.1), 1e-6);
@@ -102,12 +102,12 @@ static void efficientgs(void **state)
     splat_model model = two_and_one();
     splat_view view = view_of(&model, &camera, SPLAT_ALPHA_LEAST);
     assert_true(score_efficientgs(&model, &view, 1, score));
-    /* the front ball outweighs the back one wherever both are: it alone is dominant */
+    /* the front ball outweighs the back one wherever both are: only the front one is dominant */
     assert_near(score[1], pixels[0] + 0.5, 1e-9);
     assert_near(score[0], 0.5 * weights[1] / weights[0], 1e-4);
     assert_true(score[2] == 0);
 
-    /* faint in front: the back one has the middle, the front one the rim that it alone reaches */
+    /* with a faint, wider ball in front, the back one dominates the middle and the front one the rim */
     set_pixels_wide(&model, 1, 1, 5, 0.05);
     assert_true(splat_view_project(&view, &model));
     double front = 0, back = 0;
@@ -139,7 +139,7 @@ static void log_determinants(void **state)
     assert_near(score_pup_log_determinant(matrix), sum, 1e-12);
     matrix[1][2] = matrix[2][1] = 0.5 * sqrt(matrix[1][1] * matrix[2][2]);
     assert_near(score_pup_log_determinant(matrix), sum + log(0.75), 1e-12);
-    /* singular: held where the sums of floats end */
+    /* singular: clamped at the limit of float sums */
     matrix[1][2] = matrix[2][1] = sqrt(matrix[1][1] * matrix[2][2]);
     assert_near(score_pup_log_determinant(matrix), sum - 24 * log(2), 1e-9);
     matrix[5][5] = 0;
@@ -148,7 +148,8 @@ static void log_determinants(void **state)
 
 enum { PUP_COUNT = 6 };
 
-/* The derivatives of every value of the picture with respect to mean and log scales of one Gaussian, by differences. */
+/* Adds J^T J, J the derivatives of all pixel values with respect to mean and log scales of one Gaussian, by
+   differences. */
 static void add_slowly(splat_model *model, uint32_t gaussian, const splat_camera *camera, double to[6][6])
 {
     static float above[SIDE * SIDE * 3], below[SIDE * SIDE * 3];
@@ -180,7 +181,7 @@ static void pup(void **state)
     (void)state;
     dice d = {3};
     splat_model model = random_model(&d, PUP_COUNT + 1, FOCAL, SIDE, SIDE);
-    set_ball(&model, PUP_COUNT, 0, 0, -1, 0.1, 0.9); /* nobody sees it */
+    set_ball(&model, PUP_COUNT, 0, 0, -1, 0.1, 0.9); /* no view sees it */
     splat_camera cameras[3];
     splat_view views[3];
     for (int v = 0; v < 3; v++) {
@@ -199,7 +200,7 @@ static void pup(void **state)
         assert_near(score[i], score_pup_log_determinant(matrix), 0.1);
     }
     assert_true(isinf(score[PUP_COUNT]) && score[PUP_COUNT] < 0);
-    /* one view cannot tell near and small from far and large: 17 nats for what it does not see */
+    /* one view cannot distinguish near and small from far and large: 17 nats for the unseen direction */
     double alone[PUP_COUNT + 1];
     assert_true(score_pup(&model, views, 1, alone));
     for (uint32_t i = 0; i < PUP_COUNT; i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The rivals' rasterizer draws what the runtime's integer raster draws: at least 50 dB, both rounded to 8 bits. */
+/* The rivals' rasterizer agrees with the runtime's integer raster: at least 50 dB, both rounded to 8 bits. */
 #include <stdio.h>
 
 #include "splat_scenes.h"
@@ -85,7 +85,7 @@ static void random_scenes(void **state)
     }
 }
 
-/* Turned, with unequal focal lengths, and at map coordinates in units a 64th as large. */
+/* Turned cameras with unequal focal lengths, in map coordinates in units 1/64 as large. */
 static void moved_cameras(void **state)
 {
     (void)state;
@@ -129,7 +129,7 @@ static void gather(void *user, const splat_row *row)
     }
 }
 
-/* What a walk tells adds up to the picture. */
+/* The contributions that a walk reports add up to the picture. */
 static void walk_is_the_picture(void **state)
 {
     (void)state;
@@ -149,7 +149,7 @@ static void walk_is_the_picture(void **state)
     splat_model_free(&model);
 }
 
-/* To parameters and back: within the rounding of the record. */
+/* A scene converted to parameters and back differs only by the record's rounding. */
 static void model_round_trip(void **state)
 {
     (void)state;
@@ -181,7 +181,7 @@ static void model_round_trip(void **state)
     free(gaussians);
 }
 
-/* Nothing that an optimiser may come to draws outside memory or ends in a trap. */
+/* No parameters that an optimiser may reach cause accesses out of bounds or traps. */
 static void wild_parameters(void **state)
 {
     (void)state;
