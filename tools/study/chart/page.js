@@ -33,7 +33,7 @@
     }
     return value.toFixed(decimals) + (unit ? ` ${unit}` : "");
   }
-  const many = (s) => s[4] >= 4; // fewer cases have no quartiles worth telling
+  const many = (s) => s[4] >= 4; // fewer cases have no meaningful quartiles
 
   /* ---- what is shown ---- */
   function shown() {
@@ -211,7 +211,7 @@
     pen.drawImage(img, 0, 0);
     return { canvas, pen, all: pen.getImageData(0, 0, canvas.width, canvas.height) };
   }
-  /* The mean difference of the colours, 64 of 255 as the brightest; dark where the score does not count. */
+  /* Draws the mean difference of the colours, brightest at 64 of 255; dark where the score does not count. */
   async function errors(render, target, mask) {
     const a = await pixels(render), b = await pixels(target), m = mask === null ? null : await pixels(mask), out = a.all.data;
     for (let i = 0; i < out.length; i += 4) {
@@ -331,7 +331,7 @@
     $("theme").textContent = `Theme: ${next}`;
   }
 
-  /* The point nearest to a tap, within half a finger's width; null where there is none. */
+  /* Returns the point nearest to a tap, within half a finger's width, or null. */
   function nearest(event) {
     const svg = $("canvas").firstChild, box = svg.getBoundingClientRect(), ratio = box.width / svg.viewBox.baseVal.width;
     const away = ([, mark]) => Math.hypot(event.clientX - box.x - mark.x * ratio, event.clientY - box.y - mark.y * ratio);

@@ -35,7 +35,7 @@ const chart_measure_about chart_measures[CHART_MEASURES] = {
     [CHART_GAUSSIANS] = {"gaussians", "Gaussians", CHART_PLAIN, 0, 1},
 };
 
-/* Which cell holds what. */
+/* The columns of a table. */
 typedef struct layout {
     uint32_t scene, context, target, requested, picture;
     uint32_t setting[CHART_SETTINGS], measure[CHART_MEASURES];
@@ -93,7 +93,7 @@ static const char *cell(const csv_reader *reader, uint32_t index)
     return index == NO_COLUMN ? "" : reader->cell[index];
 }
 
-/* Sets the number of the row's case, which is added if it is new. */
+/* Sets the number of the row's case; adds the case if it is new. */
 static int number_case(chart_table *table, const csv_reader *reader, const layout *l, uint32_t *number)
 {
     static const char *const parts[] = {"scene", "context", "target"};
@@ -122,7 +122,8 @@ static int number_case(chart_table *table, const csv_reader *reader, const layou
     return 0;
 }
 
-/* 5 and "5.0" are one budget; what is no number (auto) stays a text. A count stands where there is no percentage. */
+/* Returns the budget as text: 5 and "5.0" are equal; a text such as auto stays. Without a percentage the count is
+   used. */
 static const char *budget_text(const char *percent, const char *count, char own[BUDGET_BYTES])
 {
     const bool counted = percent[0] == '\0';

@@ -4,7 +4,7 @@
 #define TRIM3R_TOOLS_RIVALS_KINDS_H
 
 typedef enum method_kind {
-    METHOD_TRIM3R, /* allocation and head as the settings say */
+    METHOD_TRIM3R, /* allocation and head from the settings */
     /* rivals: the Gaussians of the head's unpruned scene with the highest scores (score.h) */
     METHOD_RANDOM,
     METHOD_EAGLES,
@@ -17,8 +17,8 @@ typedef enum method_kind {
 /* How the chosen points become Gaussians. */
 typedef enum method_way {
     METHOD_PLAIN,
-    METHOD_FINETUNE, /* their Gaussians are fine-tuned on the context views */
-    METHOD_HEAD,     /* the head makes new Gaussians at the points (allocation `given`), refined like trim3r's */
+    METHOD_FINETUNE, /* the rival's Gaussians are fine-tuned on the context views */
+    METHOD_HEAD,     /* the head makes new Gaussians at the chosen points (allocation `given`), refined like trim3r's */
     METHOD_WAY_COUNT
 } method_way;
 

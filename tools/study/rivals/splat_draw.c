@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Drawing a view, and telling what draws it. */
+/* Draws a view, or reports the splats that draw it. */
 #include <stddef.h>
 
 #include "study/rivals/splat_blend.h"

@@ -7,9 +7,9 @@
 #include "study/rivals/splat_view.h"
 
 #define NEAR (1.0 / 32)     /* camera z in scene units at which splats are culled */
-#define WIDEST 16.0         /* |x / z|, |y / z| beyond which they are */
-#define MOST_PIXELS 4096.0  /* entries of the projected factor are held within */
-#define FIELD_OF_SLOPES 1.3 /* slopes of the linearisation are clamped to this many half fields of view */
+#define WIDEST 16.0         /* x / z|, |y / z| beyond which splats are culled */
+#define MOST_PIXELS 4096.0  /* clamp of the projected factor's entries */
+#define FIELD_OF_SLOPES 1.3 /* clamp of the linearisation's slopes, in half fields of view */
 #define KEY_MOST 2147483647.0
 
 static double clamped(double x, double limit)
@@ -17,14 +17,14 @@ static double clamped(double x, double limit)
     return x < -limit ? -limit : x > limit ? limit : x;
 }
 
-/* What the forward and the backward pass share. */
+/* Shared by the forward and the backward pass. */
 typedef struct projection {
     double t[3];         /* camera coordinates */
     double axes[9];      /* R(q), row-major */
     double scale[3];     /* exp of the logarithms */
     double f[9];         /* camera x factor, row-major */
-    double slope[2];     /* x / z, y / z, held within the field of view */
-    bool held[2];        /* and whether they were */
+    double slope[2];     /* x / z, y / z, clamped to the field of view */
+    bool held[2];        /* whether clamped */
     double g[2][3];      /* projected factor, pixels */
     bool clipped[2][3];  /* entries at MOST_PIXELS */
     double A, B, C, det; /* covariance with the low-pass, and its determinant */
@@ -68,7 +68,7 @@ static void project_covariance(projection *j)
     j->det = minors + SPLAT_LOW_PASS * (xx + yy) + SPLAT_LOW_PASS * SPLAT_LOW_PASS;
 }
 
-/* False where the Gaussian is culled. */
+/* Projects a Gaussian; false if it is culled. */
 static bool project(const splat_camera *camera, const double *p, projection *j)
 {
     for (int i = 0; i < 3; i++) {
@@ -98,7 +98,7 @@ static bool project(const splat_camera *camera, const double *p, projection *j)
     return isfinite(j->det); /* an optimiser may produce any value */
 }
 
-/* The pixels within `reach` of `centre`, cut to the picture. */
+/* Computes the pixels within `reach` of `centre`, clipped to the picture. */
 static void cut(double centre, double reach, uint32_t side, int32_t *low, int32_t *high)
 {
     double least = ceil(centre - reach), most = floor(centre + reach);

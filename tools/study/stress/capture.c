@@ -57,7 +57,7 @@ uint32_t stress_capture_valid(const stress_capture *capture)
 
 /* ---- from a recording ------------------------------------------------------------------------------------------- */
 
-/* Fixed point as doubles, exactly. */
+/* Converts a fixed-point camera to doubles, exactly. */
 static t3r_recorded_camera camera_of(const t3r_camera *camera, uint32_t width, uint32_t height)
 {
     t3r_recorded_camera c = {.width = width, .height = height};

@@ -41,7 +41,8 @@ static void *copy_of(const void *bytes, size_t count)
     return copy == NULL ? NULL : memcpy(copy, bytes, count);
 }
 
-/* 255 at the nearest measurement, less in inverse proportion; 0 where there is none. */
+/* Makes a grey picture of depth: 255 at the nearest measurement, falling in inverse proportion; 0 without measurement.
+ */
 static uint8_t *depth_picture(const stress_capture *capture, uint32_t view)
 {
     size_t pixels = (size_t)capture->width * capture->height;
@@ -185,7 +186,7 @@ static void add_why(html_page *page, const stress_row *rows, uint32_t count)
     }
 }
 
-/* Writes what no picture shows: refused cells and broken invariants. */
+/* Writes the cells without a picture: refused ones and broken invariants. */
 static void add_unscored(html_page *page, const stress_row *rows, uint32_t count, uint32_t cell)
 {
     bool any = false;
@@ -202,7 +203,7 @@ static void add_unscored(html_page *page, const stress_row *rows, uint32_t count
     }
 }
 
-/* The columns of the table above the pictures. */
+/* Writes the table above the pictures. */
 static void add_table(html_page *page, const stress_row *rows, uint32_t count)
 {
     static const struct {

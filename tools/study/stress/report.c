@@ -12,7 +12,7 @@
 #include "study/stress/verdict.h"
 
 #define ERROR_BYTES 512
-#define WORTH_TELLING 2.0 /* seconds of work before an estimate is drawn */
+#define WORTH_TELLING 2.0 /* seconds of work before the first estimate */
 
 int stress_report_open(stress_report *report, const stress_outputs *to, const stress_contest *contest, uint32_t cells)
 {
@@ -36,7 +36,7 @@ int stress_report_open(stress_report *report, const stress_outputs *to, const st
     return CLI_OK;
 }
 
-/* Shows the progress; cells take similar times. */
+/* Shows progress with an estimate that assumes equal times per cell. */
 static void show_progress(const stress_report *report)
 {
     double spent = cli_now() - report->started;

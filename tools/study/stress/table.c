@@ -125,7 +125,7 @@ double stress_mean(const stress_row *rows, uint32_t count, const stress_row *lik
 
 /* ---- terminal --------------------------------------------------------------------------------------------------- */
 
-/* What a line shows; the unperturbed line of a loss shows the reference value. */
+/* Columns of a line; the unperturbed line of a loss shows the reference value. */
 static const struct {
     const char *heading;
     stress_value value, unperturbed;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""C behind the training: compiled when first asked for, into $TRIM3R_BUILD, else into ~/.cache/trim3r."""
+"""C code of the training: compiled on first use into $TRIM3R_BUILD, otherwise into ~/.cache/trim3r."""
 import ctypes
 import glob
 import hashlib
@@ -13,7 +13,7 @@ HEADS = os.path.join(HERE, "..", "..", "..", "quant", "heads")
 
 
 def build(name, sources, flags, headers=(), folder=None):
-    """The path of the shared library made of `sources`; compiled only where sources, flags or machine changed."""
+    """Returns the path of the shared library made of `sources`; compiles only if sources, flags or machine changed."""
     folder = folder or os.environ.get("TRIM3R_BUILD") or os.path.expanduser("~/.cache/trim3r")
     command = [os.environ.get("CC", "cc"), *flags, "-shared", "-fPIC"]
     digest = hashlib.sha256(" ".join(command + [os.uname().nodename]).encode())
@@ -35,7 +35,7 @@ def build(name, sources, flags, headers=(), folder=None):
 
 
 def splatter(*more):
-    """splat.c: the differentiable splatter and the refinement. more: compiler flags."""
+    """Loads splat.c: the differentiable splatter and the refinement. more: compiler flags."""
     flags = ("-std=gnu11", "-O3", "-march=native", "-ffast-math", "-fno-finite-math-only", "-fopenmp", *more)
     library = ctypes.CDLL(build("splat", [os.path.join(HERE, "splat.c")], flags))
     pointer, number = ctypes.c_void_p, ctypes.c_int32
@@ -46,7 +46,7 @@ def splatter(*more):
 
 
 def preparer():
-    """prepare.c, the runtime that it calls, and what rivals rank with."""
+    """Loads prepare.c, the runtime that it calls, and the rivals' ranking."""
 
     def here(*pattern):
         return sorted(glob.glob(os.path.join(HERE, "..", "..", "..", *pattern), recursive=True))

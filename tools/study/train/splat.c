@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The differentiable splatter of the training: splats of an image plane, blended front to back, with derivatives.
  *
- * What it draws is what runtime/raster draws (alpha = min(0.99, opacity exp(-q)), skipped below 1/255, pixels closed
- * below a transmittance of 1e-4), in float32. A splat is nine floats: centre x, y; conic a, b, c with
- * q = (a dx^2 + 2 b dx dy + c dy^2) / 2; opacity; red, green, blue. Pictures of a batch are drawn by OpenMP threads,
- * each picture by one, so that sums have one order and training is deterministic. */
+ * It draws the same pictures as runtime/raster (alpha = min(0.99, opacity exp(-q)), skipped below 1/255, pixels closed
+ * below a transmittance of 1e-4), in float32. A splat is nine floats: centre x, y; conic a, b, c with q = (a dx^2 + 2 b
+ * dx dy + c dy^2) / 2; opacity; red, green, blue. OpenMP threads draw the pictures of a batch, one thread per picture,
+ * so that sums have one order and training is deterministic. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 #define SIDE 16
 #define PARAMETERS 9
 #define ALPHA_MOST 0.99f
-#ifndef ALPHA_LEAST /* a test sets it lower: the cut has no derivative */
+#ifndef ALPHA_LEAST /* a test lowers it: the cut has no derivative */
 #define ALPHA_LEAST (1.0f / 255.0f)
 #endif
 #define STOP 1e-4f
@@ -51,7 +51,7 @@ static box reach(const picture *p, const float *s)
                  clamp_tile(s[0] + rx, p->tiles_across), clamp_tile(s[1] + ry, down)};
 }
 
-/* Bins the splats; 0 when memory lacks. */
+/* Bins the splats; 0 if out of memory. */
 static int bin(picture *p, const int32_t *order, int32_t count)
 {
     p->first = calloc((size_t)p->tiles + 2, sizeof *p->first);
@@ -91,7 +91,7 @@ typedef struct tile {
     float transmittance[SIDE][SIDE];
 } tile;
 
-/* exp(-q) * opacity, cut as the rasterizer cuts, over a row of 16 pixels */
+/* Computes exp(-q) * opacity with the rasterizer's cuts, over a row of 16 pixels */
 static inline void alphas(const float *s, float dy, float left, float transmittance[SIDE], float alpha[SIDE],
                           float decay[SIDE])
 {
@@ -107,7 +107,7 @@ static inline void alphas(const float *s, float dy, float left, float transmitta
     }
 }
 
-/* Rows of the tile at `top` that the splat may reach. */
+/* Computes the rows of the tile at `top` that the splat may reach. */
 static void rows_of(const float *s, float top, int *first, int *last)
 {
     float ry = sqrtf(2 * logf(s[5] / ALPHA_LEAST) * s[2] / (s[2] * s[4] - s[3] * s[3]));
@@ -202,8 +202,8 @@ static void load_tile(const picture *p, int32_t t, const float *rgb, float out[3
     }
 }
 
-/* The tile drawn again, each splat's derivatives summed on the way. What lies behind a splat is the finished colour
- * less what was drawn so far, so no second walk back to front is needed: dC / d alpha = T c - (C - C_drawn) / (1 -
+/* Draws the tile again and sums each splat's derivatives on the way. The colour behind a splat is the finished colour
+ * minus the colour drawn so far, so no second walk back to front is needed: dC / d alpha = T c - (C - C_drawn) / (1 -
  * alpha). */
 static void tile_backward(const picture *p, int32_t t, float final[3][SIDE][SIDE], float g[3][SIDE][SIDE], float *out)
 {
@@ -227,7 +227,7 @@ static void tile_backward(const picture *p, int32_t t, float final[3][SIDE][SIDE
             float dr = 0, dg = 0, db = 0, dop = 0, dmx = 0, dmy = 0, da = 0, dbb = 0, dc = 0;
             for (int i = 0; i < SIDE; i++) {
                 float w = T[j][i] * alpha[i];
-                final[0][j][i] -= w * s[6]; /* from here on: what is still behind */
+                final[0][j][i] -= w * s[6]; /* from here on: the colour still behind */
                 final[1][j][i] -= w * s[7];
                 final[2][j][i] -= w * s[8];
                 float front = g[0][j][i] * s[6] + g[1][j][i] * s[7] + g[2][j][i] * s[8];
@@ -264,8 +264,8 @@ static void tile_backward(const picture *p, int32_t t, float final[3][SIDE][SIDE
     }
 }
 
-/* Derivatives of a loss with respect to every parameter, from those with respect to the picture; `rgb` is what
- * splat_forward() drew. gradient: like splats. */
+/* Computes derivatives of a loss with respect to every parameter, from its derivatives with respect to the picture;
+ * `rgb` is the output of splat_forward(). gradient: like splats. */
 int splat_backward(int32_t pictures, int32_t width, int32_t height, const int32_t *start, const float *splats,
                    const int32_t *order, const float *rgb, const float *rgb_gradient, float *gradient)
 {
@@ -294,9 +294,8 @@ int splat_backward(int32_t pictures, int32_t width, int32_t height, const int32_
 
 /* --- refinement -------------------------------------------------------------------------------------------------- */
 
-/* What runtime/refine/refine.c does in integers (runtime/SPEC.md, "Refinement"), but for roundings, for the six
- * equations, which are solved exactly here, and for a splat's own axes: in one view any factor of its covariance will
- * do. */
+/* Refines like runtime/refine/refine.c (runtime/SPEC.md, "Refinement"), but in floats: nothing is rounded, the six
+ * equations are solved exactly, and a splat's own axes are any factor of its covariance, which suffices in one view. */
 #define UNKNOWNS 6
 #define MOMENTS 15
 #define DILATION 0.3f
@@ -308,7 +307,7 @@ int splat_backward(int32_t pictures, int32_t width, int32_t height, const int32_
 #define ASKED_MOST 2.0f
 #define RELATIVE_DAMPING 0.1875f
 #define DAMPING (64.0f / 65025.0f)
-#define MOMENTUM 0.1875f /* of the pass before */
+#define MOMENTUM 0.1875f /* of the previous pass */
 #define OPACITY_STEP_MOST 0.5f
 #define SHIFT_MOST 0.5f
 #define SHAPE_MOST 0.1f
@@ -466,8 +465,8 @@ static float held(float x, float most)
     return x > most ? most : x < -most ? -most : x == x ? x : 0;
 }
 
-/* A pass's changes of one splat: of red, green, blue; of log opacity, place along its two axes, log scale and shear;
- * and the share of the Gauss-Newton step that it took. */
+/* A pass's changes of one splat: red, green, blue; log opacity, shift along its two axes, log scale and shear; and the
+ * share of the Gauss-Newton step that was taken. */
 #define CHANGES (3 + UNKNOWNS + 1)
 #define SHARE (3 + UNKNOWNS)
 
@@ -489,7 +488,7 @@ static float share_of(const float wanted[UNKNOWNS], const float squares[UNKNOWNS
     return fminf(fmaxf(share, fmaxf(last / 4, SHARE_LEAST)), fminf(2 * last, SHARE_MOST));
 }
 
-/* `change` comes with what the pass before changed, 0 in the first, and leaves with what this one does. */
+/* Corrects a splat. `change`: the changes of the previous pass, 0 in the first; on return those of this pass. */
 static void correct(const sums *z, float *change, float *s)
 {
     float before[CHANGES];
@@ -526,9 +525,9 @@ static void correct(const sums *z, float *change, float *s)
     s[4] = xx / det;
 }
 
-/* One pass of refinement: `rgb` is what splat_forward() drew of `splats`, which are corrected in place
- * towards `wanted`; `counts`, [pictures][height][width], is 0 where a pixel has no say; `changes`, [splats][CHANGES],
- * goes from pass to pass, 0 before the first; NULL: every pass is a first one. */
+/* Runs one pass of refinement: `rgb` is the output of splat_forward() for `splats`, which are corrected in place
+ * towards `wanted`; `counts`, [pictures][height][width], is 0 for ignored pixels; `changes`, [splats][CHANGES], is
+ * passed from pass to pass, 0 before the first; NULL: every pass is a first one. */
 int splat_refine(int32_t pictures, int32_t width, int32_t height, const int32_t *start, float *splats,
                  const int32_t *order, const float *rgb, const float *wanted, const uint8_t *counts, float *changes)
 {

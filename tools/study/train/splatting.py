@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Splats of an image plane as torch sees them: footprints out of a head's outputs, drawn with derivatives, refined."""
+"""Splats of an image plane in torch: footprints from a head's outputs, drawn with derivatives, refined."""
 import numpy as np
 import torch
 
 import native
 
 DILATION = 0.3
-# Of a splat before dilation. The shipped heads were trained with the first of both; see runtime/head/head.h.
+# Least variance of a splat before dilation. The shipped heads were trained with the first; see runtime/head/head.h.
 VARIANCE_LEAST, VARIANCE_LEAST_REFINED = 0.02, 0.2
-L_LEAST, L_MOST = 580 / 4096, 64  # of a Cholesky factor, pixels, as runtime/head/head_learned.c has them
-CHANGES = 10  # of a splat in a pass of refinement, its share of the step with them
+L_LEAST, L_MOST = 580 / 4096, 64  # entries of a Cholesky factor, pixels, as in runtime/head/head_learned.c
+CHANGES = 10  # of a splat in a pass of refinement, including its share of the step
 _library = None
 
 
@@ -46,14 +46,14 @@ class _Draw(torch.autograd.Function):
 
 
 def draw(splats, start, order, width, height):
-    """Pictures [b, 3, height, width] of splats [n, 9] (splat.c tells the columns): those of picture b are
-    start[b]..start[b + 1] - 1, drawn in `order` (int32, from each start, front to back). Differentiable in splats."""
+    """Draws pictures [b, 3, height, width] of splats [n, 9] (columns: splat.c): picture b has start[b]..start[b + 1]
+    - 1, drawn in `order` (int32, from each start, front to back). Differentiable in splats."""
     return _Draw.apply(splats, start, order, width, height)
 
 
 def refine(splats, start, order, pictures, counts, passes, momentum=True):
-    """Splats corrected towards `pictures` by `passes` of the runtime's refinement, or by that less its momentum, every
-    step the share of a first pass; no derivatives."""
+    """Corrects splats towards `pictures` by `passes` of the runtime's refinement; without momentum every pass takes
+    the step of a first one. No derivatives."""
     made, pictures = splats.detach().clone().contiguous(), pictures.contiguous()
     height, width = pictures.shape[2:]
     changes = torch.zeros(len(made), CHANGES) if momentum else None
@@ -68,7 +68,7 @@ def refine(splats, start, order, pictures, counts, passes, momentum=True):
 
 
 def order_by(key, start):
-    """Front to back by `key` within each picture."""
+    """Orders by `key` within each picture, front to back."""
     order = np.empty(len(key), np.int32)
     for a, b in zip(start[:-1], start[1:]):
         order[a:b] = np.argsort(key[a:b], kind="stable")
@@ -95,8 +95,9 @@ held = _Held.apply
 
 
 def footprints(outputs, spacing, own_colour):
-    """What head_learned.c makes of a head's outputs [n, 9]: offset [n, 2] and the lower Cholesky factor l11, l21, l22
-    [n, 3] of the total footprint, pixels; opacity [n]; colour [n, 3] in 0..1. spacing [n] pixels, own_colour [n, 3]."""
+    """Returns head_learned.c's footprints of a head's outputs [n, 9]: offset [n, 2] and the lower Cholesky factor
+    l11, l21, l22 [n, 3] of the total footprint, pixels; opacity [n]; colour [n, 3] in 0..1. spacing [n] pixels,
+    own_colour [n, 3]."""
     s = spacing[:, None]
     offset = held(outputs[:, 0:2], -2, 2) * s
     diagonal = held(s * torch.exp2(held(outputs[:, 2:4], -4, 4)), L_LEAST, L_MOST)
@@ -108,7 +109,7 @@ def footprints(outputs, spacing, own_colour):
 
 
 def narrowed(factor, least=VARIANCE_LEAST):
-    """The lower factor of the footprint less the rasterizer's dilation, as runtime/head/head_lift.c stores it."""
+    """Returns the lower factor of the footprint minus the rasterizer's dilation, like runtime/head/head_lift.c."""
     l11, l21, l22 = factor.unbind(1)
     xx = torch.clamp(l11 * l11 - DILATION, min=least)
     yy = torch.clamp(l21 * l21 + l22 * l22 - DILATION, min=least)
@@ -119,22 +120,22 @@ def narrowed(factor, least=VARIANCE_LEAST):
 
 
 def pack(mean, xx, xy, yy, opacity, colour):
-    """Splats [n, 9] from centres [n, 2] and covariances, dilation included."""
+    """Packs splats [n, 9] from centres [n, 2] and covariances, dilation included."""
     determinant = xx * yy - xy * xy
     conic = torch.stack((yy / determinant, -xy / determinant, xx / determinant), 1)
     return torch.cat((mean, conic, opacity[:, None], colour), 1)
 
 
 def planar_splats(offset, factor, opacity, colour, pixel, least=VARIANCE_LEAST):
-    """Footprints about `pixel` [n, 2] as their own view draws them."""
+    """Returns the footprints about `pixel` [n, 2] as splats of their own view."""
     a, b, c = narrowed(factor, least).unbind(1)
     return pack(pixel + offset, a * a + DILATION, a * b, b * b + c * c + DILATION, opacity, colour)
 
 
 def lifted_splats(offset, factor, opacity, colour, points, rotation, translation, intrinsics):
-    """The same footprints on their surface, seen by another camera: splats, depth [n] and which are in front. `points`:
-    position, tangent_u, tangent_v [n, 3] in the source camera; rotation [3, 3] and translation [3] take these to the
-    other camera, whose fx, fy, cx, cy are `intrinsics`. The thin normal term is left out."""
+    """Returns the same footprints on their surface, seen by another camera: splats, depth [n] and which are in
+    front. `points`: position, tangent_u, tangent_v [n, 3] in the source camera; rotation [3, 3] and translation
+    [3] take these to the other camera, whose fx, fy, cx, cy are `intrinsics`. The thin normal term is omitted."""
     tangents = torch.stack((points["tangent_u"], points["tangent_v"]), 2)  # [n, 3, 2]
     centre = points["position"] + (tangents @ offset[:, :, None])[:, :, 0]
     a, b, c = narrowed(factor).unbind(1)

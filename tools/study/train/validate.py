@@ -34,7 +34,8 @@ def picture_of(path):
 
 
 def planar_psnr(head, picture, kept, passes):
-    """[len(passes)] dB of one picture [SIDE, SIDE, 3] with a share `kept` of its pixels after so many passes."""
+    """Returns [len(passes)] dB of one picture [SIDE, SIDE, 3] with a share `kept` of its pixels, after each number
+    of passes."""
     depth = np.full((SIDE, SIDE), samples.PLANE, np.uint16)
     camera = (SIDE, SIDE, (SIDE - 1) / 2, (SIDE - 1) / 2)
     batch = objective.Batch([samples.prepare(picture, depth, camera, kept)], "cpu")
