@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The runtime's wavelet in the form that tests use: all coefficients in Mallat's layout, the inverse, and images that
-   wrap. */
+ * wrap. */
 #ifndef T3R_TESTS_WAVELET_PLANES_H
 #define T3R_TESTS_WAVELET_PLANES_H
 

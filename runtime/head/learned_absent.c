@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What stands for learned heads where they are left out: no build is allowed to ask for one (api/checks.c). */
+/* Stubs for builds without learned heads: api/checks.c refuses builds that ask for one. */
 #include "head.h"
 #include "weights.h"
 

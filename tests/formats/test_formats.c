@@ -236,7 +236,7 @@ static void nodes_of_glb(void **state)
     uint8_t *bytes = t3r_file_bytes(path, SIZE_MAX, &count, error, sizeof error);
     assert_non_null(bytes);
     /* half a turn about y maps x, z to -x, -z in the file's axes and in the scene's, which differ by half a turn about
-       z */
+     * z */
     uint8_t *with = with_node(bytes, count,
                               "{\"mesh\":0,\"rotation\":[0,1,0,0],\"scale\":[2,2,2],\"translation\":[1,2,3 ]}", &size);
     assert_int_equal(scene_file_parse("scene.glb", with, size, &moved, error, sizeof error), 0);

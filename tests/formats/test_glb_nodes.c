@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Nodes of a .glb: translations, rotations and uniform scales move the Gaussians; everything else is refused with a
-   reason. */
+ * reason. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

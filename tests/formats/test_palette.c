@@ -74,7 +74,7 @@ static double mean_square(const int16_t *numbers, const palette *made)
 }
 
 /* Without room for all rows: the palette is full, each entry is its members' mean, and errors are far smaller than
-   with one mean for all. */
+ * with one mean for all. */
 static void shares_what_is_alike(void **state)
 {
     (void)state;

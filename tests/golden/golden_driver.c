@@ -203,7 +203,7 @@ static void on_stage_hash(void *user, t3r_stage stage, uint64_t hash)
 }
 
 /* Runs the last task first, by the workers in turn: results must not depend on the order, or on one worker running
-   all. */
+ * all. */
 static void run_in_reverse(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
                            void *context)
 {

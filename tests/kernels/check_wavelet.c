@@ -54,7 +54,7 @@ const char *check_split_row(const t3r_kernels *kernels, uint64_t *seed)
 }
 
 /* Checks that `to` changes by one row, or by two that may overlap; MADE is the expected sample, a function of to, a
-   and b. */
+ * and b. */
 #define LIFT(NAME, CALL, MADE)                                                                                         \
     const char *check_##NAME(const t3r_kernels *kernels, uint64_t *seed)                                               \
     {                                                                                                                  \

@@ -19,7 +19,7 @@ void oracle_unproject(const oracle_camera *camera, double x, double y, double z,
 enum { ORACLE_DIMENSIONS = 6 };
 
 /* Returns the mean over the points of the squared distance to the nearest centre; stores its index in labels (may be
-   NULL). */
+ * NULL). */
 double oracle_kmeans_assign(const double *points, size_t count, const double *centres, size_t k, uint32_t *labels);
 /* Returns the mean squared distance of the points to the centres that their labels name. */
 double oracle_kmeans_msd(const double *points, size_t count, const double *centres, const uint32_t *labels);

@@ -551,7 +551,7 @@ static void footprints(void **state)
 }
 
 /* Outputs are in units of the spacing: with a tenth of the points a constant head that copies `analytic` gives its
-   discs. */
+ * discs. */
 static void scaled_by_the_spacing(void **state)
 {
     (void)state;

@@ -236,7 +236,7 @@ static void same_bits(void **state)
 }
 
 /* Drawing ends an analysis that is not kept, and keeps the views. Without refinement, which would end the analysis
-   earlier. */
+ * earlier. */
 static void a_drawn_arena_moves(void **state)
 {
     (void)state;

@@ -80,7 +80,7 @@ static void alignment_compares_pixels(void **state)
 }
 
 /* Fitted widths examine the other views; structure examines the tiles once more and the levels of all views in two
-   passes. */
+ * passes. */
 static void counts_what_is_asked_for_beyond(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The sample recording of these tests: small, with every value given by a formula, so that other programs can check
-   it. */
+ * it. */
 #ifndef T3R_TESTS_SAMPLE_H
 #define T3R_TESTS_SAMPLE_H
 

@@ -149,7 +149,7 @@ static void log_determinants(void **state)
 enum { PUP_COUNT = 6 };
 
 /* Adds J^T J, J the derivatives of all pixel values with respect to mean and log scales of one Gaussian, by
-   differences. */
+ * differences. */
 static void add_slowly(splat_model *model, uint32_t gaussian, const splat_camera *camera, double to[6][6])
 {
     static float above[SIDE * SIDE * 3], below[SIDE * SIDE * 3];

@@ -7,7 +7,7 @@
 /* The cut at 1/255 has no derivative: here it is too low to be seen. */
 #define UNSEEN 1e-6
 /* Pictures are floats and steps are small against a pixel: tolerance of a few thousandths of the parameter's largest
-   derivative. */
+ * derivative. */
 #define STEP 2e-3
 #define TOLERANCE 4e-3
 

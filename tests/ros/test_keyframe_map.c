@@ -64,7 +64,7 @@ static void settings_are_checked(void **state)
 }
 
 /* Feeds six frames of a wall a metre away, seen by a camera that moves `step` millimetres to the right each; returns
-   the number of keyframes. */
+ * the number of keyframes. */
 static uint32_t keyframes_of(const keyframe_map_settings *s, int step_mm)
 {
     char error[512] = "";

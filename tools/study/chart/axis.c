@@ -94,7 +94,7 @@ static void add(chart_axis *axis, chart_unit unit, double value, double step)
 }
 
 /* Returns the smallest step of 1, 2, 5 times a power of ten (for bytes, a power of two) that gives at most
-   TICKS_WANTED ticks. */
+ * TICKS_WANTED ticks. */
 static double round_step(chart_unit unit, double range)
 {
     double least = range / TICKS_WANTED;

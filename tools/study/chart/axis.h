@@ -26,7 +26,7 @@ typedef struct chart_axis {
 } chart_axis;
 
 /* Returns the axis for finite values from `least` to `most`, with a margin at either end. Qualities are never
-   logarithmic. */
+ * logarithmic. */
 chart_axis chart_axis_make(chart_measure measure, double least, double most);
 /* Returns 0 at `low`, 1 at `high`, and values beyond these outside the axis. */
 double chart_axis_place(const chart_axis *axis, double value);

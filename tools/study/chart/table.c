@@ -123,7 +123,7 @@ static int number_case(chart_table *table, const csv_reader *reader, const layou
 }
 
 /* Returns the budget as text: 5 and "5.0" are equal; a text such as auto stays. Without a percentage the count is
-   used. */
+ * used. */
 static const char *budget_text(const char *percent, const char *count, char own[BUDGET_BYTES])
 {
     const bool counted = percent[0] == '\0';

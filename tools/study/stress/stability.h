@@ -29,7 +29,7 @@
 #define STRESS_MOTION_MOST 0.75      /* as a share of the spacing of retained pixels */
 
 /* Return the allowed share of the retained pixels that change with so many Gaussians, and the allowed motion as a
-   share of the spacing, to which the depth's noise contributes `noise`. */
+ * share of the spacing, to which the depth's noise contributes `noise`. */
 double stress_mask_changed_most(double gaussians, uint32_t clusters);
 double stress_motion_most(double noise);
 
