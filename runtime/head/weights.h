@@ -29,15 +29,15 @@
  *              [outputs] in every kind. Level 0, kernel and stride 1. No other layer reads a point layer, and a point
  *              layer none but the one directly before it. Phases are 1 in the other kinds.
  *
- * Point layers stand behind all others, and every layer but the last is read by a later one. The blocks may lie in any
- * order behind the table, and may share bytes.
+ * Point layers follow all others, and every layer but the last is read by a later one. The blocks follow the table in
+ * any order and may share bytes.
  *
  * Arithmetic: acc = bias + sum weight x (activation - zero point of its source). Zero points are folded into the bias
- * (bias' = bias - sum weight x zero), so that padding reads the zero point itself; bias' is what the file holds, and
- * acc = bias' + sum weight x activation. In no order of the sum can it overflow: for every output (and phase)
+ * (bias' = bias - sum weight x zero), so that padding reads the zero point itself; the file holds bias', and
+ * acc = bias' + sum weight x activation. No order of the sum can overflow: for every output (and phase)
  * |bias'| + 2^7 sum |weight| < 2^31 with int8 activations, |bias'| + 2^15 sum |weight| < 2^47 with int16 ones, so that
- * the product with the multiplier stays within 2^62. With int16 activations features are the int8 numbers times 2^8: of
- * the size of the activations beside them, so that weights of 8 bits resolve both.
+ * the product with the multiplier stays within 2^62. With int16 activations features are the int8 numbers times 2^8,
+ * about as large as the activations beside them, so that weights of 8 bits resolve both.
  *
  * int8 activations: int32 accumulators, output = clamp(output zero + round_half_up(acc x multiplier / 2^(31 - shift))),
  * multiplier an int32 in [2^30, 2^31), shift an int8 in [-30, 15], the quotient 64 bits wide until it is clamped:
