@@ -75,8 +75,8 @@ static bool joined(const plane *p, size_t a, size_t b)
     return p->confidence[b] != 0 && near(p->disparity[a], p->disparity[b]);
 }
 
-/* Follows the region that begins at `start` until it ends, has `least` pixels, or meets a pixel of a region known to be
- * large. Returns how many pixels are in the queue; *large says whether the region is large. */
+/* Follows the region that begins at `start` until it ends, has `least` pixels, or meets a pixel of a region known to
+ * be large. Returns the number of queued pixels; *large: whether the region is large. */
 static uint32_t explore(const plane *p, uint32_t start, uint32_t least, uint8_t *mark, uint32_t *queue, bool *large)
 {
     uint32_t queued = 1;
@@ -174,7 +174,7 @@ static inline uint8_t lesser(uint8_t a, uint8_t b)
     return a < b ? a : b;
 }
 
-/* Computes the least of nine confidences likewise. */
+/* Computes the least of nine confidences in the same way. */
 static void least_of_nine(const uint8_t *above, const uint8_t *middle, const uint8_t *below, uint32_t width,
                           uint8_t *restrict out)
 {
@@ -235,7 +235,7 @@ static void gather(gathering *g, uint16_t disparity)
 static void look_around(const plane *p, int32_t x, int32_t y, const uint8_t known[3], gathering *all, gathering *open)
 {
     all->count = open->count = 0;
-    /* ends once fewer than SURROUNDED can be met */
+    /* ends when fewer than SURROUNDED can still be found */
     for (uint32_t d = 0; d < 8 && d - all->count <= 8 - SURROUNDED; d++) {
         const int32_t dx = directions[d][0], dy = directions[d][1];
         const int32_t columns = dx == 0 ? T3R_MATCH_REACH : dx < 0 ? x : (int32_t)p->width - 1 - x;

@@ -26,7 +26,7 @@ double chart_quantile(const double *ascending, uint32_t count, double q)
 
 /* ---- rows to points -------------------------------------------------------------------------------------------- */
 
-/* A row's point and series as texts. */
+/* Numbers of a row, its point and its series. */
 typedef struct key {
     uint32_t point, series, row;
 } key;
