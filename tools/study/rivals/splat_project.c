@@ -7,7 +7,7 @@
 #include "study/rivals/splat_view.h"
 
 #define NEAR (1.0 / 32)     /* camera z in scene units at which splats are culled */
-#define WIDEST 16.0         /* x / z|, |y / z| beyond which splats are culled */
+#define WIDEST 16.0         /* splats with larger |x / z| or |y / z| are culled */
 #define MOST_PIXELS 4096.0  /* clamp of the projected factor's entries */
 #define FIELD_OF_SLOPES 1.3 /* clamp of the linearisation's slopes, in half fields of view */
 #define KEY_MOST 2147483647.0

@@ -15,7 +15,7 @@
 #include "kernels/lanes/census_lanes.h"
 #include "kernels/lanes/winner_lanes.h"
 
-/* Any count is a multiple of 16. */
+/* Every count is a multiple of 16. */
 static inline TARGET bytes load(const uint8_t *from, uint32_t count)
 {
     (void)count;
