@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What all sources share: counting, events, defaults. */
+/* Shared by all sources: counting, events, defaults. */
 #include "capture.h"
 
 #include <inttypes.h>

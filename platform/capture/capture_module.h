@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Adapters written in C++ are modules next to the program, loaded on demand: the libraries that they need may be absent
- * where they are not used. */
+/* Adapters written in C++ are modules next to the program, loaded on demand, so that the libraries that they need may
+ * be absent if unused. */
 #ifndef T3R_PLATFORM_CAPTURE_MODULE_H
 #define T3R_PLATFORM_CAPTURE_MODULE_H
 

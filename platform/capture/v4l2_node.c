@@ -8,7 +8,7 @@
 #include "host/reason.h"
 #include "messages/pixel_layout.h"
 
-#define MOST_REFUSED 8u       /* so many EIO in a row are a failure */
+#define MOST_REFUSED 8u       /* consecutive EIO that count as a failure */
 #define FAR_AHEAD 0x80000000u /* a sequence "ahead" by more has gone backwards */
 
 static int control(const t3r_v4l2_node *node, unsigned long request, void *argument)

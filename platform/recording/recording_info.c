@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a recording reports about itself. */
+/* Properties of a recording. */
 #include <string.h>
 
 #include "recording_index.h"
