@@ -19,7 +19,7 @@
 #define TURN_SECONDS 600.0
 #define THIS "/proc/self/exe"
 
-/* What both programs time, or only one of them. */
+/* State of a contest between the two programs. */
 typedef struct contest_state {
     const bench_contest *contest;
     bool has_stages;                /* the other program takes --stages */
@@ -203,7 +203,7 @@ static int take_turns(contest_state *s)
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */
 
-/* Returns how many times as fast this program is, over the pairs of all turns. */
+/* Returns the ratio of this program's speed to the other's, over the pairs of all turns. */
 static spread ratio_of(const contest_state *s, uint32_t stage)
 {
     double ratios[BENCH_TURNS_MOST];

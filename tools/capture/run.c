@@ -14,7 +14,7 @@
 #include "messages/pixel_layout.h"
 #include "scene/scene_file.h"
 
-#define MOST_FAILED 100u /* so many unreadable frames in a row: the source is unusable */
+#define MOST_FAILED 100u /* consecutive unreadable frames after which the source counts as unusable */
 #define RETRY_NS 100000000
 
 typedef struct run_state {

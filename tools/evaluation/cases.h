@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What an evaluation goes through: the triplets of recordings, or images, each on a plane. */
+/* The cases of an evaluation: triplets of recordings, or images, each on a plane. */
 #ifndef TRIM3R_TOOLS_EVALUATION_CASES_H
 #define TRIM3R_TOOLS_EVALUATION_CASES_H
 
@@ -9,7 +9,7 @@
 #define EVALUATION_NAME_PARTS_MOST 8u
 
 typedef struct evaluation_cases {
-    char **inputs; /* the caller's */
+    char **inputs; /* owned by the caller */
     uint32_t input_count;
     bool planar;
     uint32_t width, height; /* for planar images */
@@ -24,11 +24,11 @@ typedef struct evaluation_cases {
  * `pair` then names. */
 uint32_t evaluation_name_parts(char *const *inputs, uint32_t count, uint32_t pair[2]);
 
-/* All triplets of every recording, or the one of the settings' `context` (context_count above 0) and `target`. With
- * `context_views` above 2 the frames nearest to a triplet's target, by the median depth of the triplet's first frame
- * or, where it has none, what stereo makes of the triplet's context, fill its context up to that many
- * (nearest_views.h); a recording that has too few is refused. Opens all of them: a bad one is told before the work. An
- * exit status of cli.h; evaluation_cases_close() in any case. */
+/* Makes cases of all triplets of every recording, or of the settings' `context` (context_count above 0) and `target`.
+ * With `context_views` above 2 the frames nearest to a triplet's target fill its context up to that number
+ * (nearest_views.h), by the median depth of the triplet's first frame or, without depth, by stereo of its context; a
+ * recording with too few frames is refused. Opens all recordings, so that a bad one is reported before the work.
+ * Returns an exit status of cli.h; call evaluation_cases_close() in any case. */
 int evaluation_cases_of_recordings(evaluation_cases *cases, char **inputs, uint32_t count,
                                    const reconstruction_options *settings, uint32_t target);
 int evaluation_cases_of_images(evaluation_cases *cases, char **inputs, uint32_t count, uint32_t width, uint32_t height);

@@ -208,7 +208,7 @@ static int score(evaluation_row *row, uint8_t *render, uint8_t *rgb, uint16_t *a
     return CLI_OK;
 }
 
-/* The scene of `built` by way of a file: *loaded holds what was read back. */
+/* Passes the scene of `built` through a file: *loaded is the scene read back. */
 static int through_file(reconstruction *loaded, const reconstruction *built, const evaluation_views *views,
                         const reconstruction_options *options)
 {
@@ -281,7 +281,7 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, evalua
     }
     row->method = settings->method->name;
     const bool allocated = settings->method->allocates;
-    const bool built = allocated || settings->points_of == NULL; /* others take Gaussians out of the file */
+    const bool built = allocated || settings->points_of == NULL; /* others take Gaussians from the file */
     if (built) {
         snprintf(row->refine, sizeof row->refine, "%" PRIu32, settings->config.refine);
         row->wavelet = t3r_wavelet_name(settings->config.wavelet);
@@ -350,7 +350,7 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, evaluation_views *v
     reconstruction_options options = *settings;
     options.gaussians = budget.gaussians;
     options.keep_percent = budget.keep;
-    options.hash = false; /* timed without */
+    options.hash = false; /* timed without hashing */
     options.context_count = what->context_count;
     memcpy(options.context, what->context, sizeof options.context);
 

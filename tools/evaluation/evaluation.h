@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How well a reconstruction shows a view it was not given.
+/* Scores of views that a reconstruction was not given.
  *
  * A case is one (scene, context, target). evaluation_views_make() prepares what all of its rows share: the recorded
- * pictures through the image stage, their cameras and their masks. evaluation_measure() builds one scene and scores
- * it: one row. Functions that can fail report on stderr and return an exit status of cli.h. */
+ * pictures through the image stage, their cameras and their masks. evaluation_measure() builds one scene and scores it:
+ * one row. Functions that can fail report on stderr and return an exit status of cli.h. */
 #ifndef TRIM3R_TOOLS_EVALUATION_H
 #define TRIM3R_TOOLS_EVALUATION_H
 
@@ -21,7 +21,7 @@
 
 /* The number of Gaussians of a row. */
 typedef struct evaluation_budget {
-    double keep;        /* percent of the valid points, where no count is given */
+    double keep;        /* percent of the valid points, if no count is given */
     uint32_t gaussians; /* a count, or all valid points if they are fewer; 0 = not given */
 } evaluation_budget;
 
@@ -70,7 +70,7 @@ typedef enum evaluation_value {
     EVALUATION_BUILD_MS,  /* frames to scene: the image stage and all later steps, including scoring and fine-tuning */
     EVALUATION_RENDER_MS, /* the target view */
     EVALUATION_ARENA_BYTES,
-    EVALUATION_SCENE_BYTES, /* the Gaussians as the arena holds them */
+    EVALUATION_SCENE_BYTES, /* size of the Gaussians in the arena */
     EVALUATION_PLANAR_PSNR, /* all pixels of a planar case, dB */
     EVALUATION_VALUE_COUNT
 } evaluation_value;
@@ -85,11 +85,11 @@ typedef struct evaluation_row {
     double value[EVALUATION_VALUE_COUNT];
 } evaluation_row;
 
-/* The row's scene, context and target. */
+/* Sets the row's scene, context and target. */
 void evaluation_name_case(evaluation_row *row, const evaluation_case *what);
 
-/* Fills in what is known of the row in advance: every text except the ablation and the picture, and the budget;
- * other values are NaN. Returns an exit status of cli.h, because it reads the head. */
+/* Fills in the values known in advance: every text except the ablation and the picture, and the budget; other values
+ * are NaN. Returns an exit status of cli.h, because it reads the head. */
 int evaluation_name_row(evaluation_row *row, const evaluation_case *what, evaluation_budget budget,
                         const reconstruction_options *settings);
 

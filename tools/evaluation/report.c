@@ -206,7 +206,7 @@ static void print_json(const evaluation_report *report, const evaluation_row *me
     json_print(object);
 }
 
-/* Columns that say the same in every row stand once above the table: a phone shows few columns at a time. */
+/* Lists columns with the same value in every row above the table, because a phone shows few columns. */
 static void note_columns(const evaluation_row *rows, uint32_t count, bool planar, bool same[EVALUATION_COLUMNS],
                          char *note, size_t note_bytes)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The rows that an evaluation cut off, or an earlier one, left in its table. */
+/* The rows in an existing table, of an interrupted or an earlier evaluation. */
 #ifndef TRIM3R_TOOLS_EVALUATION_RESUME_H
 #define TRIM3R_TOOLS_EVALUATION_RESUME_H
 
@@ -14,13 +14,13 @@ typedef struct evaluation_resume {
     char **texts;  /* the texts that rows point into, one per row */
 } evaluation_resume;
 
-/* Reads the table; no file is an empty one. `with_pictures`: every row must name its render. The file is held to the
- * program's columns, and must be younger than the program, the `inputs` and the `scene` file (NULL: none), or its
- * rows may be of others. What follows its last newline is a row that was cut off, and is cut from the file. An exit
- * status of cli.h; evaluation_resume_close() in any case. */
+/* Reads the table; a missing file counts as empty. `with_pictures`: every row must name its render. The file must have
+ * the program's columns, and be younger than the program, the `inputs` and the `scene` file (NULL: none), since its
+ * rows could otherwise be outdated. A row after the last newline was cut off, and is removed from the file. Returns an
+ * exit status of cli.h; call evaluation_resume_close() in any case. */
 int evaluation_resume_open(evaluation_resume *resume, const char *path, char *const *inputs, uint32_t input_count,
                            const char *scene, bool with_pictures);
-/* The row of the same case, contestant, budget and settings, or NULL. */
+/* Returns the row of the same case, contestant, budget and settings, or NULL. */
 const evaluation_row *evaluation_resume_find(evaluation_resume *resume, const evaluation_row *named);
 void evaluation_resume_close(evaluation_resume *resume);
 

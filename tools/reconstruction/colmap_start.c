@@ -21,7 +21,7 @@ int colmap_start_write(const colmap_start *start, whole_folder *folder, const ch
         code = views[v].rgb == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
                                     : developed_frame(start->recording, start->path, told->context[v], told->width,
                                                       told->height, views[v].rgb, NULL, &views[v].camera);
-        if (told->has_cameras) { /* the points are where the aligned poses put them */
+        if (told->has_cameras) { /* the points were computed with the aligned poses */
             views[v].camera = told->camera[v];
         }
     }

@@ -37,10 +37,10 @@ static const trim3r_command product[] = {
 };
 enum { PRODUCT_COUNT = sizeof product / sizeof product[0] };
 
-/* Named in the refusal of a program without them. */
+/* Commands named in the refusal by a program without them. */
 static const char *const of_study[] = {"chart", "stress", "quantize"};
 
-/* The product's, then those added under `heading`. */
+/* The product's commands, then those added under `heading`. */
 #define COMMANDS_MOST 32u
 static struct {
     trim3r_command list[COMMANDS_MOST];
@@ -48,7 +48,7 @@ static struct {
     const char *heading;
 } commands;
 
-/* NULL where there is none. */
+/* Returns the command, or NULL. */
 static trim3r_command *command_named(const char *name)
 {
     trim3r_command *found = NULL;
@@ -99,7 +99,7 @@ static void print_help(FILE *out)
             heading, end, data_flow);
 }
 
-/* For man(1); commands have pages of their own. */
+/* Prints the page for man(1); commands have their own pages. */
 static void print_man_page(void)
 {
     man_page_begin("trim3r", SUMMARY);
@@ -118,7 +118,7 @@ static void print_man_page(void)
     man_page_end();
 }
 
-/* For completion: a command and what it does, a tab between. */
+/* Prints for completion: each command and its summary, separated by a tab. */
 static void print_commands(void)
 {
     for (uint32_t i = 0; i < commands.count; i++) {
@@ -126,7 +126,7 @@ static void print_commands(void)
     }
 }
 
-/* No command has that name; the one that may be meant is named. */
+/* Refuses an unknown command and suggests a similar one. */
 static int refuse(const char *name)
 {
     for (size_t i = 0; i < sizeof of_study / sizeof of_study[0]; i++) {
@@ -147,7 +147,8 @@ static int refuse(const char *name)
     return cli_error(CLI_BAD_USAGE, "there is no command '%s'; trim3r --help lists them", name);
 }
 
-/* Names of files stand in messages, tables and pages: one that a terminal would obey is refused before any of them. */
+/* Refuses names of files with characters that a terminal would interpret, before any message, table or page contains
+ * them. */
 static int check_arguments(int argc, char **argv)
 {
     for (int i = 1; i < argc; i++) {
@@ -192,7 +193,8 @@ static int run(int argc, char **argv)
     return command->run(argc - 1, argv + 1);
 }
 
-/* At every end of the process, argp's of --help as well: a result that could not be printed is not a success. */
+/* Checks output at every end of the process, including argp's after --help: a result that could not be printed is a
+ * failure. */
 static void check_output(void)
 {
     errno = 0;

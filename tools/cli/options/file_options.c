@@ -165,7 +165,7 @@ static void refuse_option(const option_list *list, const char *word)
     exit(cli_error(CLI_BAD_USAGE, "unrecognized option '--%s'; trim3r %s --help lists them", name, cli_command()));
 }
 
-/* Reads the line as argp will; false: argp will refuse it, or print help. */
+/* Reads the line like argp; false: argp will refuse it, or print help. */
 static bool read_line(const option_list *list, int argc, char **argv, file_list *files)
 {
     char **line = must(calloc((size_t)argc + 1, sizeof *line)), *letters = short_options(list);
@@ -237,8 +237,8 @@ static bool lists_values(const char *argument)
     return strchr(argument, '|') != NULL && argument[strspn(argument, "abcdefghijklmnopqrstuvwxyz0123456789|")] == '\0';
 }
 
-/* For completion: each option, what its value is ("file", "value", "one|other" or nothing), and its help, tabs
- * between. */
+/* Prints for completion: each option, the kind of its value ("file", "value", "one|other" or nothing), and its help,
+ * separated by tabs. */
 static void print_completion(const option_list *list)
 {
     for (uint32_t i = 0; i < list->count; i++) {

@@ -238,7 +238,7 @@ static void print_notes(const char *text)
     print_part("EXAMPLES", examples, bytes);
 }
 
-/* Writes what help prints after the options, in the order of argp: each parser's own before its children's. */
+/* Writes the text that help prints after the options, in argp's order: each parser's own before its children's. */
 static void add_notes(FILE *out, const struct argp *argp)
 {
     const char *notes = argp->doc != NULL ? strchr(argp->doc, '\v') : NULL;
@@ -254,7 +254,7 @@ static void add_notes(FILE *out, const struct argp *argp)
     }
 }
 
-/* The parser whose description and arguments help prints: the first that has them. */
+/* Returns the parser whose description and arguments help prints: the first that has them. */
 static const struct argp *described(const struct argp *argp)
 {
     const struct argp *found = argp->doc != NULL ? argp : NULL;

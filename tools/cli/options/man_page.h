@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pages for man(1), made of the texts that help prints. */
+/* Pages for man(1), made of the help texts. */
 #ifndef TRIM3R_TOOLS_MAN_PAGE_H
 #define TRIM3R_TOOLS_MAN_PAGE_H
 

@@ -23,7 +23,7 @@ struct array_file {
 
 struct array_stream {
     array_file *file;
-    zip_uint64_t index; /* in the archive */
+    zip_uint64_t index; /* index in the archive */
     zip_file_t *member; /* NULL: not open, or a single .npy */
     npy_array array;
     uint64_t at; /* bytes read */

@@ -54,8 +54,6 @@ typedef struct stream_run {
     uint32_t held_count;
 } stream_run;
 
-/* ---- held-back frames ------------------------------------------------------------------------------------------ */
-
 static int open_developing(stream_run *s)
 {
     const t3r_config *c = &s->r.config;
@@ -143,8 +141,6 @@ static int draw_live(stream_run *s, uint32_t now)
     return CLI_OK;
 }
 
-/* ---- the run ----------------------------------------------------------------------------------------------------- */
-
 static int take_keyframe(stream_run *s, uint32_t frame)
 {
     t3r_capture_frame captured;
@@ -166,7 +162,7 @@ static int take_keyframe(stream_run *s, uint32_t frame)
     return CLI_OK;
 }
 
-/* Whether a frame is a keyframe: every so many frames, and when the overlap with the last keyframe is small. */
+/* Whether a frame is a keyframe: at the interval, and when the overlap with the last keyframe is small. */
 static int is_keyframe(const stream_run *s, uint32_t frame, bool *wanted)
 {
     uint32_t since = s->keyframe_count == 0 ? s->every : frame - s->keyframes[s->keyframe_count - 1].frame;
@@ -233,9 +229,6 @@ static int write_map(const stream_run *s)
                ? CLI_OK
                : cli_error(CLI_BAD_INPUT, "%s", error);
 }
-
-/* ---- the report
- * ---------------------------------------------------------------------------------------------------- */
 
 typedef struct means {
     uint32_t live_count, final_count;

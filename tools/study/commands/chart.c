@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r chart: tables of eval as pictures and as a report. */
+/* trim3r chart: charts and a report from tables of eval. */
 #include "study/commands/commands.h"
 
 #include <argp.h>
@@ -32,7 +32,7 @@ typedef struct options {
     char **folders; /* --pictures */
     uint32_t folder_count;
     const char *page, *svg, *png, *scene;
-    chart_measure quality; /* CHART_MEASURES = the first that there is */
+    chart_measure quality; /* CHART_MEASURES = the first available one */
     chart_measure costs[MOST_COSTS];
     uint32_t cost_count; /* 0 = the costs in the tables */
     size_t picture_bytes;

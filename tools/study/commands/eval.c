@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r eval with rivals, and with parts of the method taken away. */
+/* trim3r eval with rivals, and with parts of the method removed. */
 #include "study/commands/commands.h"
 
 #include <argp.h>
@@ -21,7 +21,7 @@ typedef struct study_options {
     const method *methods[METHOD_COUNT]; /* none = trim3r */
     uint32_t method_count;
     bool ablate;
-    uint32_t ablations[ABLATIONS_MOST]; /* the ablations named; none = all that apply */
+    uint32_t ablations[ABLATIONS_MOST]; /* the given ablations; none = all that apply */
     uint32_t ablation_count;
 } study_options;
 
@@ -56,7 +56,7 @@ static void parse_ablations(struct argp_state *state, study_options *o, const ch
     }
 }
 
-/* Runs before the end of evaluation_argp: argp ends with the first child. */
+/* Runs before the end of evaluation_argp, because argp ends with the first child. */
 static void check(struct argp_state *state, study_options *o)
 {
     evaluation_options *eval = &o->eval;
@@ -166,7 +166,7 @@ static void add_ablated(const study_options *o, evaluation_contestants *chosen, 
     evaluation_contestants_add(chosen, &settings, ablation_name(ablation));
 }
 
-/* The ablations named, which must apply, or of none all that do. */
+/* Adds the given ablations, which must apply, or without any given all that apply. */
 static int add_ablations(const study_options *o, evaluation_contestants *chosen)
 {
     const bool planar = o->eval.planar;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r quantize: a float head to a weight file. */
+/* trim3r quantize: converts a float head to a weight file. */
 #include "study/commands/commands.h"
 
 #include <argp.h>
@@ -33,7 +33,7 @@ typedef struct options {
     char **inputs; /* for calibration: at most one per argument */
     uint32_t input_count;
     uint32_t weight_bits, activation_bits, width, height;
-    double percentile; /* 0: by the activations' width */
+    double percentile; /* 0: the default for the activations' width */
     bool json;
 } options;
 
@@ -167,7 +167,7 @@ static int read_head(const options *o, float_head *head)
     return CLI_OK;
 }
 
-/* The first layer without a range, counted from 1; 0 when all have theirs. */
+/* Returns the first layer without a range, counted from 1; 0 if all have one. */
 static uint32_t without_range(const float_head *head)
 {
     for (uint32_t n = 1; n < head->graph.count; n++) {

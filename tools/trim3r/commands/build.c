@@ -139,7 +139,7 @@ const struct argp build_argp = {
     .children = children,
 };
 
-/* What is told besides of the views that a scene was built from. */
+/* Further facts to report about the context views. */
 typedef struct found {
     pose_account estimated[T3R_MAX_VIEWS]; /* of --poses, where it is not `given` */
     pose_correction aligned[T3R_MAX_VIEWS];
@@ -152,7 +152,7 @@ static bool refines(const build_options *o)
     return o->settings.config.refine > 0 && o->settings.method->refines;
 }
 
-/* Frames that stereo could match with no other. */
+/* Adds the frames that stereo could match with no other. */
 static void add_unmatched(cJSON *root, const build_options *o, const reconstruction_account *told,
                           const reconstruction *r)
 {
@@ -225,13 +225,13 @@ static void print_json(const build_options *o, const reconstruction_account *tol
         cJSON_AddItemToArray(origin, cJSON_CreateNumber((double)r->scene.frame.origin_q32[i] / 4294967296.0));
     }
     cJSON_AddNumberToObject(root, "exponent", r->scene.frame.exponent);
-    if (o->settings.method == &method_trim3r) { /* floats promise no bits */
+    if (o->settings.method == &method_trim3r) { /* floats have no promise of identical bits */
         json_add_hash(root, "hash", reconstruction_hash(r));
     }
     json_print(root);
 }
 
-/* "head small crc 1a2b3c4d"; "pruned" of a scene made elsewhere */
+/* Writes "head small crc 1a2b3c4d"; "pruned" for a scene made elsewhere. */
 static void note_head(const reconstruction_account *told, char *text, size_t bytes)
 {
     int length = snprintf(text, bytes, told->head[0] != '\0' ? "head %s" : "pruned%s", told->head);
@@ -259,7 +259,7 @@ static int write_all(const build_options *o, const t3r_recording *recording, con
     return o->colmap != NULL ? colmap_start_write(&start, folder, o->colmap) : CLI_OK;
 }
 
-/* What the context views cost to draw: of the one whose tiles list most. */
+/* Computes the drawing cost of the context view whose tiles list most. */
 static int account_for_lists(const build_options *o, const t3r_recording *recording, const t3r_scene *scene,
                              const reconstruction_account *told, tile_lists *most)
 {
@@ -319,7 +319,7 @@ static void print_text(const build_options *o, const reconstruction_account *tol
     }
 }
 
-/* Spells out the default, the first two frames. */
+/* Makes the default explicit: the first two frames. */
 static void name_context(reconstruction_options *settings, const t3r_recording *recording)
 {
     if (settings->context_count == 0) {

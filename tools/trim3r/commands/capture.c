@@ -18,14 +18,14 @@
 #include "cli/options/file_options.h"
 
 #define ERROR_BYTES 512
-#define MOST_MOTIONS 3000u           /* frames that an offset is estimated from */
-#define RANGE_NS INT64_C(1000000000) /* of offsets about the one to be expected */
+#define MOST_MOTIONS 3000u           /* frames for estimating an offset */
+#define RANGE_NS INT64_C(1000000000) /* search range about the expected offset */
 
 /* ---- stopping ---- */
 
 static volatile sig_atomic_t stop;
 
-/* A second signal ends the process. */
+/* Handles signals; a second one ends the process. */
 static void on_signal(int signal_number)
 {
     if (stop != 0) {
@@ -71,7 +71,7 @@ static int list(void)
 
 /* ---- poses ---- */
 
-/* How the picture moves from frame to frame; *count motions in a heap array. */
+/* Measures the picture's motion from frame to frame; *count motions in a heap array. */
 static clock_motion *motions_of(const capture_options *o, uint32_t *count, char *error)
 {
     t3r_capture *capture = t3r_capture_open(o->source, &o->settings, error, ERROR_BYTES);
@@ -122,7 +122,7 @@ static int estimate_offset(const capture_options *o, const trajectory *poses, cl
     if (motions == NULL) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    if (stop != 0) { /* of a part of the frames an offset would pass for that of all */
+    if (stop != 0) { /* an offset from a part of the frames would pass for the whole */
         free(motions);
         return CLI_OK;
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r diff: what differs between two scenes, or two views. Exit status 0 = equal, 1 = different. */
+/* trim3r diff: compares two scenes or two views. Exit status 0 = equal, 1 = different. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>

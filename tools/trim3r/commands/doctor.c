@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r doctor: what this machine and this build have, and whether they give the right bits. */
+/* trim3r doctor: checks this machine and this build, and whether they give the right bits. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
@@ -95,7 +95,7 @@ static int compare_names(const void *a, const void *b)
     return x != y ? (x > y) - (x < y) : strcmp(a, b);
 }
 
-/* The devices of V4L2, by what the kernel lists; nothing is opened but that list. */
+/* Lists V4L2 devices from the kernel's list; opens nothing else. */
 static void find_cameras(camera_list *list)
 {
     list->count = 0;
@@ -123,7 +123,7 @@ static void find_cameras(camera_list *list)
     qsort(list->name, list->count, sizeof list->name[0], compare_names);
 }
 
-/* Bytes of memory; 0 where the system does not name them. */
+/* Returns bytes of memory; 0 if the system does not report them. */
 static int64_t memory_bytes(int name)
 {
     const long pages = sysconf(name), page = sysconf(_SC_PAGESIZE);
@@ -210,7 +210,7 @@ static void print_text(const machine *m, const options *o)
     printf("%-12s %s, %s\n", "self-check", text, m->hash == o->expected ? "as on every machine" : "wrong");
 }
 
-/* Exit status 1 with the cause, as far as it can be told. */
+/* Returns exit status 1 with the cause, if known. */
 static int verdict(const machine *m, const options *o)
 {
     char found[HASH_TEXT_BYTES], expected[HASH_TEXT_BYTES];

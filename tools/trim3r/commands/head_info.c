@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r head-info: what a head consists of. */
+/* trim3r head-info: describes a head. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
@@ -32,7 +32,7 @@ typedef struct head_summary {
     bool is_float;
     bool has_range[T3R_MAX_LAYERS];        /* of a float head */
     size_t work_bytes[T3R_MAX_LAYERS + 1]; /* rows held of the features and of each layer */
-    size_t work_total;                     /* the columns under a kernel included */
+    size_t work_total;                     /* including the columns under a kernel */
 } head_summary;
 
 enum { KEY_SIZE = 0x100, KEY_JSON };
@@ -84,7 +84,7 @@ static const struct argp parser = {
         "  trim3r head-info small.t3w --json",
 };
 
-/* The work that the runtime itself lays out for a file, checked or an outline. */
+/* Measures the work that the runtime lays out for a file, checked or an outline. */
 static void measure_work(head_summary *head, const uint8_t *file, uint32_t width, uint32_t height)
 {
     t3r_network network;

@@ -10,7 +10,7 @@
 #include "reconstruction/reconstruction_error.h"
 #include "trim3r.h"
 
-/* What takes RAM, in the order of the tables. */
+/* Uses of RAM, in the order of the tables. */
 enum { PARTS = 6 };
 typedef struct part {
     const char *key, *name;
@@ -75,7 +75,7 @@ static void print_table(const t3r_config *c, const t3r_ram_info *info, const cha
     printf("  %-34s %10" PRIu64 "\n", "all", all);
 }
 
-/* The smallest size, found from below by halves. */
+/* Finds the smallest size by bisection. */
 static uint64_t least_bytes(void)
 {
     uint64_t low = 0, high = UINT64_C(1) << 40;

@@ -138,7 +138,7 @@ static int add_frames(viewpoints *v, const view_options *o, const t3r_recording 
     return code;
 }
 
-/* Builds here what the page builds first, so that it can compare. */
+/* Builds what the page builds first, so that the page can compare. */
 static int prepare_recording(const view_options *o, reconstruction *r, viewpoints *v, viewer_page *page)
 {
     char error[ERROR_BYTES] = "";
@@ -213,7 +213,7 @@ static int write_file(const view_options *o, const viewer_page *page)
     return CLI_OK;
 }
 
-/* The page in memory, on the heap; NULL when memory is out. */
+/* Returns the page in heap memory; NULL if out of memory. */
 static char *page_text(const viewer_page *page, size_t *bytes)
 {
     char *text = NULL;
