@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""capture.py TRIM3R: the command as a user has it: sources, signals, files that roll over, poses, events, --build."""
+"""capture.py TRIM3R: the command for users: sources, signals, files that roll over, poses, events, --build."""
 import json
 import os
 import pty
@@ -28,7 +28,7 @@ def of_topic(path, topic):
 
 
 def copies():
-    """A recording of a recording is the same to the last bit of its frames."""
+    """A recording of a recording has exactly the same frames."""
     room = capture("replay:room.mcap", "--hash", "-o", "copy.mcap")
     again = capture("replay:copy.mcap", "--hash")
     check(room["frames"] == again["frames"] == 12 and room["paired"] == 12, "all frames")
@@ -64,7 +64,7 @@ def builds():
 
 
 def bare():
-    """A recording without poses and intrinsics, as a camera alone makes it."""
+    """A recording without poses and intrinsics, like one of a camera alone."""
     with open("far.txt", "w", encoding="ascii") as file:
         file.write("9000 0 0 0 0 0 0 1\n9000.1 0 0 0 0 0 0 1\n")
     told = capture("replay:room.mcap", "--poses", "far.txt", "-o", "bare.mcap")
@@ -112,7 +112,7 @@ def rolls_over():
 
 
 def spares_what_it_reads():
-    """Neither the first file nor one that it rolls over to replaces the recording or the poses, by whatever name."""
+    """Neither the first file nor a later one replaces the recording or the poses, by whatever name."""
     with open("spare-1.mcap", "wb") as file:
         file.write(read("room.mcap"))
     os.symlink("spare-1.mcap", "link-2.mcap")
@@ -126,7 +126,7 @@ def spares_what_it_reads():
 
 
 def stops(number):
-    """A signal: exit status 0, a recording that is whole."""
+    """A signal: exit status 0, and a complete recording."""
     command = [TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "--json", "-o",
                "signal.mcap"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
@@ -156,7 +156,7 @@ def memory():
 
 
 def progress():
-    """On a terminal a line of rate, drops and size of the work; elsewhere none."""
+    """On a terminal a line with rate, drops and size of the work; elsewhere none."""
     leader, follower = pty.openpty()
     process = subprocess.Popen([TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "--hash"],
                                stdout=subprocess.DEVNULL, stderr=follower)
@@ -173,7 +173,7 @@ def progress():
 
 
 def stops_before_it_begins():
-    """Ctrl-C while the clocks' offset is looked for: what there is under the output's name stays."""
+    """Ctrl-C while the clocks' offset is estimated: an existing file with the output's name stays."""
     with open("kept.mcap", "wb") as file:
         file.write(b"\x89MCAP0\r\nof before")
     run("room", "--size", "640x480", "--frames", 2, "-o", "large.mcap")  # so that it takes long
@@ -255,7 +255,7 @@ def refusals():
 
 
 def events():
-    """What is counted stands in the recording, too, level and all."""
+    """The counts are also in the recording, each with its level."""
     run("capture", "--source", "replay:room.mcap", "-o", "quiet.mcap", "--quiet")
     schemas = [content for opcode, content in mcap_read.records(read("quiet.mcap")) if opcode == 0x03]
     check(any(b"rcl_interfaces/msg/Log" in content for content in schemas), "the topic of events")

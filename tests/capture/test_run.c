@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A frame's whole path, from a driver to a recording and to Gaussians, allocates no memory once it runs: this
- * program's allocator counts. And the live results equal those of the recording's replay, bit for bit. */
+/* A frame's path, from a driver to a recording and to Gaussians, allocates no memory after the start: this program's
+ * allocator counts. The live results equal those of the recording's replay, bit for bit. */
 #include <errno.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -81,7 +81,7 @@ static void draw_room(void)
     }
 }
 
-/* Each format's own samples of the picture; what they mean does not matter here. */
+/* Fills samples for each format; their meaning does not matter here. */
 static uint32_t fill_colour(void *user, const fake_node *node, uint32_t number, uint8_t *memory)
 {
     (void)user;
@@ -134,7 +134,7 @@ static t3r_capture *open_camera(fake_v4l2 *fake)
     return capture;
 }
 
-/* Poses of the room's path over the time of the capture, by the camera's own clock. */
+/* Returns poses on the room's path over the time of the capture, by the camera's own clock. */
 static trajectory path_of_room(void)
 {
     trajectory t = {.kind = "test", .count = 400};
@@ -151,7 +151,7 @@ static trajectory path_of_room(void)
 
 /* ---- tests ---- */
 
-/* Counts the allocations while frames from `from` on arrive: the source shows when capture_run() has begun. */
+/* Counts the allocations while frames from `from` on arrive; the source knows when capture_run() has begun. */
 typedef struct counted_source {
     t3r_capture capture;
     t3r_capture *inner;
@@ -199,7 +199,7 @@ static void nothing_is_allocated_once_it_runs(void **state)
     build.config.refine = 1;
     const capture_plan plan = {.source = "test",
                                .output = recording,
-                               .max_bytes = 400000, /* rolls over on its way */
+                               .max_bytes = 400000, /* rolls over during the run */
                                .poses = &poses,
                                .intrinsics = &lens,
                                .frames = 60,
@@ -251,7 +251,7 @@ static void a_recording_replays_what_was_live(void **state)
         snprintf(recording, sizeof recording, "%s", scratch_path(s, "b.mcap"));
         fake_v4l2 fake;
         start_camera(&fake, fourccs[i]);
-        fake.node[1].drop_from = 7; /* this colour image stays without depth, and in the replay too */
+        fake.node[1].drop_from = 7; /* this colour image has no depth, also in the replay */
         fake.node[1].drop_count = 1;
         t3r_capture *camera = open_camera(&fake);
         trajectory poses = path_of_room();
@@ -289,7 +289,7 @@ static void a_recording_replays_what_was_live(void **state)
         assert_int_equal(replayed.frames_hash, live.frames_hash);
         assert_int_equal(replayed.scene_hash, live.scene_hash);
 
-        /* and `trim3r build` makes the same of it as was made live */
+        /* and `trim3r build` makes the scene that was made live */
         t3r_recording *bag = t3r_recording_open(recording, error, sizeof error);
         assert_non_null(bag);
         /* every pair, the image without depth, and the reason */
@@ -309,7 +309,7 @@ static void a_recording_replays_what_was_live(void **state)
     }
 }
 
-/* The first image has no depth: the first frame that is kept sets the room for kept frames. */
+/* The first image has no depth: the first used frame determines the memory for kept frames. */
 static void a_build_begins_with_the_first_frame_that_it_uses(void **state)
 {
     (void)state;
@@ -385,7 +385,7 @@ static void kept_frames_are_read_by_their_rows(void **state)
     munmap(memory, whole + page);
 }
 
-/* No latency is added between a frame's stamp and its replay, however recently it was recorded. */
+/* A replay reports no latency between a frame's stamp and its arrival, however recent the recording is. */
 static void a_replay_has_no_latency(void **state)
 {
     scratch *s = *state;
@@ -412,7 +412,7 @@ static void a_replay_has_no_latency(void **state)
     assert_int_equal(replayed.latency.count, 0);
 }
 
-/* Repeated until its clock is full a recording ends with a reason; no stamp goes back. */
+/* A recording repeated until its clock is full ends with a reason; no stamp goes back. */
 static void a_repeated_recording_ends_with_its_clock(void **state)
 {
     scratch *s = *state;
@@ -435,7 +435,7 @@ static void a_repeated_recording_ends_with_its_clock(void **state)
     assert_int_equal(capture_record_end(&record), 0);
     t3r_capture *replay = t3r_replay_open_repeated(recording, UINT32_MAX, error, sizeof error);
     assert_non_null(replay);
-    for (int i = 0; i < 6; i++) { /* a third turn's length further is 3e18 ns, more than 2^61 */
+    for (int i = 0; i < 6; i++) { /* a fourth turn would start at 3e18 ns, beyond 2^61 */
         assert_int_equal(t3r_capture_next(replay, &frame), T3R_CAPTURE_FRAME);
         assert_int_equal(frame.stamp_ns, 1000 + i * span_ns);
     }
@@ -445,8 +445,8 @@ static void a_repeated_recording_ends_with_its_clock(void **state)
     t3r_capture_close(replay);
 }
 
-/* A camera that never gives a frame, although it is reopened again and again, is given up in the end, and the
- * recording is complete. */
+/* A camera that never gives a frame, although it is reopened again and again, is finally given up, and the recording
+ * is complete. */
 static void a_camera_that_stands_still_for_good_is_given_up(void **state)
 {
     scratch *s = *state;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""arena.py TRIM3R: the arena and threads change nothing but the time."""
+"""arena.py TRIM3R: the arena's size and the threads change only the time."""
 import sys
 
 from program import check, expect, expect_json, in_scratch, room

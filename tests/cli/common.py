@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts of this folder share; the program is their first argument."""
+"""Shared by the scripts of this folder; the program is their first argument."""
 import os
 import subprocess
 import sys
@@ -11,7 +11,7 @@ TRIM3R = os.path.abspath(sys.argv[1])
 
 
 def run(*command, expect=0, words=""):
-    """What the program prints; `words` must stand in its messages."""
+    """Returns the program's output; its messages must contain `words`."""
     ended = subprocess.run([TRIM3R, *map(str, command)], capture_output=True, text=True, timeout=300)
     check(ended.returncode == expect and words in ended.stderr, f"{command}: {ended.returncode} {ended.stderr}")
     return ended.stdout

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""doctor.py TRIM3R: what a machine has is listed, and a self-check that gives other bits is an error."""
+"""doctor.py TRIM3R: lists a machine's features; a self-check that gives other bits is an error."""
 import sys
 
 from program import check, expect, expect_json, in_scratch

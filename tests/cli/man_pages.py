@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""man_pages.py TRIM3R: the page of each command for man(1) has every option of its help, and mandoc or man takes it
+"""man_pages.py TRIM3R: each command's page for man(1) has every option of its help, and mandoc or man accepts it
 without a warning."""
 import re
 import shutil

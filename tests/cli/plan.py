@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""plan.py TRIM3R: what `trim3r plan` refuses and tells."""
+"""plan.py TRIM3R: refusals and results of `trim3r plan`."""
 import sys
 import xml.dom.minidom
 
@@ -20,7 +20,7 @@ def shares_and_operations(base, found):
 
 
 def lists():
-    """What fits an arena."""
+    """Lists the choices that fit an arena."""
     listed = expect_json("plan", "--arena", "2M")["choices"]
     losses = [row["expected_loss_db"] for row in listed]
     check(losses == sorted(losses) and len(losses) > 1, f"losses: {losses}")
@@ -48,7 +48,7 @@ PARTS = ("arena_bytes", "strip_bytes", "target_bytes", "stack_bytes", "program_b
 
 
 def sizes_of_ram():
-    """A size of RAM leads to settings, and all that they take is within it."""
+    """A size of RAM determines settings, and all that they use fits in it."""
     before = 0
     for text, ram in SIZES.items():
         found = expect_json("plan", "--ram", text)
@@ -98,7 +98,7 @@ def plan():
     check(all((f"| {b['name']} | {b['bytes']} |" in table) == (b['bytes'] > 0) for b in found["buffers"]),
           "the Markdown table is to have all buffers that have bytes")
     check(str(found["min_bytes"]) in expect(0, *base), "the table lacks the least bytes")
-    # the inverse: the most Gaussians that so many bytes hold
+    # the inverse: the most Gaussians that fit in a number of bytes
     within = ["plan", "--size", "96x96", "--within"]
     least = expect_json(*within[:-1], "--gaussians", 900)["min_bytes"]
     most = expect_json(*within, least)["gaussians"]
@@ -116,7 +116,7 @@ def plan():
     check(found["most_blends"] == 16 * 16 * 13107, "the plan does not bound what a view blends")
     check(expect_json(*base, "--tile-splats", 100)["most_blends"] == 16 * 16 * 100, "--tile-splats bounds nothing")
     expect(0, *base, out=str(16 * 16 * 13107))
-    # threads take no less, and full speed for several takes more
+    # more threads need no less, and full speed for several needs more
     one, four = expect_json(*base, "--threads", 1), expect_json(*base, "--threads", 4)
     check(one == found and four["threads"] == 4 and one["arena_bytes"] < four["arena_bytes"],
           f"--threads 4: {four['arena_bytes']} bytes, {one['arena_bytes']} with one")
@@ -124,7 +124,7 @@ def plan():
     # the settings are those of build
     check(expect_json(*base, "--refine", 0)["arena_bytes"] <= found["arena_bytes"], "refinement saves bytes")
     expect_json(*base, "--levels", 3, "--bridge-radius", 0, "--allocate", "paper")
-    # a head needs what plan says: one with wider activations more, and a closed form nothing
+    # a head needs the planned memory: a head with wider activations more, a closed form none
     small, wide, analytic = (expect_json(*base, "--head", head) for head in ("small", "wide.t3w", "analytic"))
     check(small["arena_bytes"] == found["arena_bytes"], "the default arena holds small")
     check(analytic["head_column_bytes"] == 0 and small["head_column_bytes"] > 0, "a closed form plans a network")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The program from outside: exit codes, messages, JSON. The program is the first argument of each script that uses this."""
+"""The program from outside: exit codes, messages, JSON. The program is the first argument of each script that uses
+this."""
 import json
 import os
 import resource
@@ -30,7 +31,8 @@ def check(condition, what):
 
 
 def expect(code, *arguments, err=None, out=None):
-    """Runs and checks the exit code and a piece of either stream; an error must say something, and only there."""
+    """Runs the program and checks the exit code and a piece of either stream; an error must print a message, and
+    only on stderr."""
     got, stdout, stderr = run(*arguments)
     line = " ".join(map(str, arguments))
     check(got == code, f"{line}: exit {got}, not {code}: {stderr.strip()}")
@@ -49,7 +51,7 @@ def fill_disk():
 
 
 def expect_full(target, *arguments):
-    """Exit 1 that names `target` when the disk is full, and neither a whole nor a partial file left there."""
+    """Expects exit 1 and a message with `target` on a full disk, and neither a complete nor a partial file."""
     # Python ignores the signal that would come first; the child must, too
     done = subprocess.run([TRIM3R, *map(str, arguments)], capture_output=True, text=True, timeout=300,
                           preexec_fn=fill_disk, restore_signals=False)
@@ -74,20 +76,20 @@ def write(path, content):
 
 
 def room(size="64x64", name="room.mcap", frames=6):
-    """The built-in recording: small, as every command takes longer on larger pictures."""
+    """Makes the built-in recording: small, because every command takes longer on larger pictures."""
     expect(0, "room", "--size", size, "--frames", frames, "-o", name)
     return name
 
 
 def weight_file(path, bits="8"):
-    """The float head small, quantized by the recording tiny.mcap under the file's name; the file's bytes."""
+    """Quantizes the float head small by the recording tiny.mcap to a file of that name; returns the file's bytes."""
     expect(0, "quantize", os.path.join(HEADS, "small.safetensors"), "--calibrate", "tiny.mcap", "--weights", bits,
            "--activations", bits, "--name", path.split(".")[0], "-o", path)
     return open(path, "rb").read()
 
 
 def in_scratch(*tests):
-    """Runs each test, all in one empty folder; the exit status."""
+    """Runs each test, all in one empty folder; exits with the result."""
     folder = tempfile.mkdtemp(prefix="trim3r-cli-")
     os.chdir(folder)
     try:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""recordings.py TRIM3R: files that are no recordings, cut ones, ones without depth."""
+"""recordings.py TRIM3R: files that are no recordings, truncated recordings, recordings without depth."""
 import json
 import os
 import struct
@@ -11,7 +11,7 @@ from program import expect, in_scratch, room, write
 
 
 def png(width, height):
-    """A grey-brown RGB picture."""
+    """Returns a grey-brown RGB picture as PNG."""
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     rows = b"".join(b"\0" + bytes((120, 110, 100)) * width for _ in range(height))
@@ -45,10 +45,9 @@ def recordings():
         write("locked.mcap", whole)
         os.chmod("locked.mcap", 0)
         expect(1, "replay", "locked.mcap", err="locked.mcap")
-    # a cut recording holds fewer frames, and says so when asked for more
+    # a truncated recording holds fewer frames, and says so when asked for more
     write("cut.mcap", whole[:len(whole) // 2])
     expect(1, "build", "cut.mcap", "--keep", 10, "--context", "0,5", "-o", "s.ply", err="cut.mcap")
-    # pictures without depth
     os.mkdir("flat")
     write("flat/a.png", png(64, 48))
     write("flat/transforms.json", json.dumps({"frames": [dict(POSE, file_path="a.png")]}))

@@ -47,7 +47,7 @@ def check_scene(told, edges, path):
     expected, _ = numpy.histogram(numpy.clip(scales, edges[0], numpy.nextafter(edges[-1], 0)), edges)
     counts = numpy.array(told["scale_counts"])
     check(counts.sum() == len(scales), "every Gaussian is in a bin")
-    # a value on an edge may fall to either side of it once it is rounded to the scene's integers
+    # a value on an edge may fall to either side when it is rounded to the scene's integers
     check(numpy.abs(counts - expected).sum() <= 2 + 0.01 * len(scales), f"bins: {counts} and {expected}")
     return scales
 
@@ -66,7 +66,7 @@ def several(folder, room):
     medians = [s["scale"]["median"] for s in answer["scenes"]]
     check(medians[1] > 2 * medians[0] and medians[2] > 2 * medians[0], f"pruned scenes have wider Gaussians: {medians}")
 
-    # pixels: the room's camera has fx = fy, and the depth is that of a measured plane of the same frame
+    # pixels: the room's camera has fx = fy, and the depth is of a measured plane in the same frame
     factor = answer["pixels_per_unit"]
     for scene in answer["scenes"]:
         near([scene["scale_pixels"][n] for n in SHARES], [scene["scale"][n] * factor for n in SHARES], "in pixels", 1e-9)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tables of anyone's making: what is read, and what is refused with its line. */
+/* Tables of any origin: what is read, and what is refused with its line. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Machines of plans: files of prices, and how prices are fitted to times. */
+/* Machines of plans: files of prices, and the fit of prices to times. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -41,7 +41,7 @@ static void files_come_back(void **state)
     assert_int_equal(machine_write(&written, "absent/m.json", error, sizeof error), -1);
 }
 
-/* The text of a sound file with a part in the place of another. */
+/* Writes the text of a valid file with one part replaced. */
 static void text_with(const char *instead, const char *by, char *text, size_t bytes)
 {
     size_t length = (size_t)snprintf(text, bytes,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Scene files: what is written reads back, and what is not a scene is refused with a reason. */
+/* Scene files: written files read back, and other files are refused with a reason. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -36,7 +36,8 @@ static int noise(uint32_t *seed, int most)
     return (int)(*seed % (2 * (uint32_t)most + 1)) - most;
 }
 
-/* Of every kind: full, flat, needle-like, no extent at all; all opacities and colours from end to end. */
+/* Makes Gaussians of every kind: full, flat, needle-like, without extent; opacities and colours over their whole
+ * ranges. */
 static void make_gaussian(uint32_t index, t3r_gaussian *g)
 {
     uint32_t seed = index * 7919;
@@ -45,7 +46,7 @@ static void make_gaussian(uint32_t index, t3r_gaussian *g)
         g->position_q20[i] = noise(&seed, 8 << 20);
         g->colour_q7[i] = (uint16_t)((noise(&seed, 16320) + 16320) % 32641);
     }
-    int columns = (int)(index % 4); /* so many independent directions */
+    int columns = (int)(index % 4); /* number of independent directions */
     for (int i = 0; i < 9 && columns > 0; i++) {
         g->factor[i] = (int16_t)(i % 3 < columns ? noise(&seed, 32767) : 0);
     }
@@ -167,7 +168,7 @@ static const char header[] =
     "end_header\n";
 static const float sound_row[ROW_FLOATS] = {1, 2, 3, 0, 0, 0, 0.1f, 0.2f, 0.3f, 0.5f, -3, -4, -5, 1, 0, 0, 0};
 
-/* The floats as the file has them. */
+/* Writes the floats in the file's order of bytes. */
 static size_t put_row(uint8_t *out, const float *row, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -189,7 +190,7 @@ static size_t make_ply(uint8_t *out, const char *text, const float *row)
 
 static int parse(const uint8_t *bytes, size_t count, char *error, size_t error_bytes)
 {
-    /* exactly as long as it is, so that a sanitizer sees the byte behind */
+    /* of exactly its length, so that a sanitizer sees a read beyond it */
     uint8_t *copy = malloc(count + (count == 0));
     assert_non_null(copy);
     memcpy(copy, bytes, count);
@@ -329,7 +330,7 @@ static void refuses_bad_numbers(void **state)
     assert_int_equal(parse(bytes, make_ply(bytes, header, row), error, sizeof error), -1);
 }
 
-/* Other orders, types and company than ours. */
+/* Other orders, types and extra properties than ours. */
 static void reads_foreign_layouts(void **state)
 {
     (void)state;
@@ -371,7 +372,7 @@ static void reads_foreign_layouts(void **state)
     scene_file_free(&scene);
 }
 
-/* Half of the points at a size of 1, one far outside: it must fit, and the others keep their places. */
+/* All points but one within a unit, one far outside: it must fit, and the others keep their places. */
 static void fits_outliers(void **state)
 {
     (void)state;
@@ -395,7 +396,7 @@ static void fits_outliers(void **state)
         char error[256] = "";
         int result = scene_file_parse("scene.ply", bytes, at, &scene, error, sizeof error);
         if (result != 0) {
-            /* the mean moves along with the outlier, so the others seem a hundredth of its distance away */
+            /* the mean moves with the outlier, so the others seem a hundredth of its distance away */
             fail_msg("an outlier at 2^%d: %s", power, error);
         }
         double most = ldexp(1, power) / 100 + 1;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The pool: every index exactly once, whatever the number of threads, job after job. */
+/* The pool: every index exactly once, for any number of threads, job after job. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
