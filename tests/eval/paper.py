@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""paper.py TRIM3R TOOLS/PAPER DATA: `tools/study/scripts/paper --quick` on the recorded scenes: every part has its table, cells are the
-means of eval's rows, what was measured is not measured again, and a run cut off goes on."""
+"""paper.py TRIM3R TOOLS/PAPER DATA: `tools/study/scripts/paper --quick` on the recorded scenes: every part has its
+table, cells are the means of eval's rows, existing measurements are reused, and an interrupted run continues."""
 import csv
 import glob
 import json
@@ -26,7 +26,7 @@ METHODS = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs")
 
 
 def tables(text):
-    """{heading: its tables, each a list of rows of cells}"""
+    """Returns {heading: its tables, each a list of rows of cells}."""
     found = {}
     for section in text.split("## ")[1:]:
         blocks = re.findall(r"(?:^\|.*\n)+", section + "\n", re.M)
@@ -108,7 +108,8 @@ def check_masks(found, retrained):
 
 
 def check_trained_heads(folder, call, cache, heads):
-    """A folder as tools/study/train/retrain leaves it: a head for the points of eagles, one of one kind of scenes."""
+    """Makes a folder like one of tools/study/train/retrain: a head for the points of eagles, one of one kind of
+    scenes."""
     os.mkdir(f"{folder}/heads")
     for name, kind, mask in (("eagles", "all", "eagles"), ("rooms", "rooms", "trim3r")):
         run(trim3r, "quantize", f"{heads}/tiny.safetensors", "--name", name, "-o", f"{folder}/heads/{name}.t3w")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""stereo_scenes.py TRIM3R SHARED_DATA: what colours alone reach on real scenes at 256x256, held to what was measured:
+"""stereo_scenes.py TRIM3R SHARED_DATA: scenes from colours alone on real scenes at 256x256, against measured values:
 rooms, a fountain, a drive forward. tools/study/scripts/stereo_results compares with other methods."""
 import csv
 import json
@@ -11,9 +11,9 @@ import tempfile
 from common import check, done, run, skip
 
 TRIM3R, DATA = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-SLACK = 0.5  # dB below what was measured
-# Of the test split: context views, target, PSNR in dB of `small` at 10 % kept on the pixels that its own depth covers, or
-# the sensor's where there is one.
+SLACK = 0.5  # dB below the measured value
+# Of the test split: context views, target, PSNR in dB of `small` at 10 % kept on the pixels that its own depth covers,
+# or the sensor's if there is one.
 CASES = {
     "clip_nyu_2": ((2, 3), 5, 27.47),
     "clip_scannet_0": ((0, 2), 3, 26.17),

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which of the lines that CMakeLists.txt plants is wrong in this run: the number in T3R_PLANTED; 0 = none. */
+/* The number of the line planted by CMakeLists.txt that is wrong in this run, from T3R_PLANTED; 0 = none. */
 #include <stdlib.h>
 
 extern unsigned t3r_planted;

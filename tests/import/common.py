@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the scripts of this folder share; the program is their first argument. A failed expectation is told, and the script
-goes on."""
+"""Shared by the scripts of this folder; the program is their first argument. A failed expectation is reported, and
+the script goes on."""
 import os
 import subprocess
 import sys

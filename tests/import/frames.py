@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames of a recording as arrays, and pictures as files: what the scripts of this folder share. Needs numpy."""
+"""Frames of a recording as arrays, and pictures as files, for the scripts of this folder. Needs numpy."""
 
 import os
 import struct
@@ -71,7 +71,7 @@ def matrix(q, t):
 
 
 def read(path):
-    """{topic: [message, ...]} of a recording without compression."""
+    """Returns {topic: [message, ...]} of a recording without compression."""
     with open(path, "rb") as file:
         data = file.read()
     out, readers = {}, {"image": image, "depth": image, "pose": pose, "camera_info": intrinsics}
@@ -83,7 +83,7 @@ def read(path):
 
 
 def png(pixels):
-    """8-bit RGB or 16-bit grey."""
+    """Writes 8-bit RGB or 16-bit grey as PNG."""
     grey = pixels.ndim == 2
 
     def chunk(kind, content):
@@ -95,7 +95,7 @@ def png(pixels):
 
 
 def exr(numbers):
-    """OpenEXR of one channel, of half or float as the array has them: lines without compression."""
+    """Writes OpenEXR of one channel, half or float like the array, as lines without compression."""
     height, width = numbers.shape
     half = numbers.dtype == np.float16
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Depth as OpenEXR: what the library writes is read back in steps; what is no depth, cut off or damaged is refused. */
+/* Depth as OpenEXR: files of the library are read in steps; files without depth, truncated or damaged ones are
+ * refused. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,21 +23,20 @@
 enum { WIDTH = 45, HEIGHT = 37, TILE = 16, LEFT = -3, TOP = 7 };
 #define UNIT 0.001
 
-/* A file to write; of `lengths` in float, or of `halves` if given. */
+/* A file to write, of `lengths` in float, or of `halves` if given. */
 typedef struct made {
     exr_compression_t packing;
     exr_pixel_type_t type;
     exr_storage_t storage;
     uint32_t channels;
-    int32_t narrower; /* how much narrower the data window is than the display window */
-    int32_t tile;     /* the side of its tiles */
+    int32_t narrower; /* difference of the display window's width and the data window's */
+    int32_t tile;     /* side of a tile */
 } made;
 
 static float lengths[HEIGHT][WIDTH];
 static uint16_t halves[HEIGHT][WIDTH];
 
-/* Fills in metres with gaps of every kind that means no depth, and one value between two steps. Halves: powers of
- * two. */
+/* Fills in metres with gaps of every kind of missing depth, and one value between two steps. Halves: powers of two. */
 static void fill(void)
 {
     static const float none[] = {0, -1.5f, 66, (float)0x1p-12};
@@ -60,7 +60,7 @@ static double length_at(const made *m, int x, int y)
                                       : ldexp(1, (y * WIDTH + x) % 19 - 10);
 }
 
-/* Each chunk's numbers, from (x, y) on. */
+/* Writes each chunk's numbers, from (x, y) on. */
 static void write_chunk(exr_context_t context, const made *m, const exr_chunk_info_t *chunk, int x, int y)
 {
     exr_encode_pipeline_t work = EXR_ENCODE_PIPELINE_INITIALIZER;
@@ -139,7 +139,7 @@ static void check_read(scratch *s, const made *m)
     char error[512] = "";
     picture depth = {0};
     uint32_t sides[2];
-    /* this packing keeps 24 bits of a float */
+    /* this compression keeps 24 bits of a float */
     const int off = m->packing == EXR_COMPRESSION_PXR24 && m->type == EXR_PIXEL_FLOAT ? 1 : 0;
     write_exr(s, m);
     if (exr_depth_read(s->path, UNIT, &depth, error, sizeof error) != 0) {
@@ -174,7 +174,7 @@ static void test_every_storage_is_read(void **state)
     check_read(*state, &(made){EXR_COMPRESSION_ZIP, EXR_PIXEL_FLOAT, EXR_STORAGE_TILED, 1, 0, 64}); /* one tile */
 }
 
-/* The unit is of the lengths; halves of a step go to the even one. */
+/* The unit refers to the lengths; halves of a step are rounded to even. */
 static void test_steps(void **state)
 {
     (void)state;
@@ -272,8 +272,8 @@ static void check_damage(scratch *s, const made *m)
     uint8_t *bytes = t3r_file_bytes(s->path, SIZE_MAX, &count, error, sizeof error);
     assert_non_null(bytes);
     assert_true(is_read(bytes, count));
-    for (size_t cut = 0; cut < count; cut += cut < 500 ? 1 : 37) { /* the header byte by byte */
-        uint8_t *part = malloc(cut + 1);                           /* so that a byte too many is found */
+    for (size_t cut = 0; cut < count; cut += cut < 500 ? 1 : 37) { /* byte by byte in the header */
+        uint8_t *part = malloc(cut + 1);                           /* so that a read beyond it is noticed */
         memcpy(part, bytes, cut);
         assert_false(is_read(part, cut));
         free(part);

@@ -111,7 +111,7 @@ static void test_every_rotation_survives(void **state)
             double column[3], axis[3] = {c == 0, c == 1, c == 2};
             turn(q, axis, column);
             for (int r = 0; r < 3; r++) {
-                /* 3e-4 too long: within what is accepted, and taken out again */
+                /* 3e-4 too long: accepted, and normalised */
                 m[r * 3 + c] = column[r] * 1.0003;
             }
         }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""packages.py BUILD: cpack makes Debian packages of the build folder. Unpacked together into one folder, a program is
-built with what lies there, and the packed program runs. Files, names and dependencies are as wanted."""
+"""packages.py BUILD: cpack makes Debian packages of the build folder. Unpacked together into one folder, they
+suffice to build a program, and the packed program runs. Files, names and dependencies are as expected."""
 import pathlib
 import re
 import sys
@@ -26,12 +26,12 @@ FILES = {
 }
 NEEDS = {SHARED: ["libc6"], "libtrim3r-dev": [f"{SHARED} (= {VERSION})"],
          "trim3r": ["libc6", "libcjson1", "libjpeg", "liblapacke", "liblz4-1", "libpng16-16", "libzip4", "libzstd1"]}
-if any(pathlib.Path(sys.argv[1]).glob("python/trim3r/*.so")): # where the Python package was built
+if any(pathlib.Path(sys.argv[1]).glob("python/trim3r/*.so")): # if the Python package was built
     FILES["python3-trim3r"] = sorted(f"lib/python3/dist-packages/trim3r/{path.name}"
                                      for path in pathlib.Path(sys.argv[1]).glob("python/trim3r/*") if path.is_file())
     FILES["python3-trim3r"].append("share/sbom/python3-trim3r.spdx.json")
     NEEDS["python3-trim3r"] = ["libc6", "python3-cffi-backend", "python3-numpy", "libzstd1"]
-CAMERAS = "trim3r-cameras" # only where the libraries for them are
+CAMERAS = "trim3r-cameras" # only if their libraries are installed
 
 
 def fields_of(package):
@@ -39,7 +39,7 @@ def fields_of(package):
 
 
 def files_in(package):
-    """Paths below /usr; of a multiarch folder, as if it were lib."""
+    """Returns paths below /usr; a multiarch folder counts as lib."""
     lines = run("dpkg-deb", "--contents", package).stdout.splitlines()
     paths = [line.split()[5] for line in lines if not line.startswith("d")]
     check(all(path.startswith("./usr/") for path in paths), f"{package.name}: outside /usr: {paths}")
@@ -57,7 +57,7 @@ def check_package(package, fields):
 
 
 def check_use(root, folder):
-    """A consumer by the unpacked library, and the unpacked program."""
+    """Runs a consumer of the unpacked library, and the unpacked program."""
     usr = root / "usr"
     library = next(usr.rglob("libtrim3r.so")).parent
     run("cmake", "-S", CONSUMERS, "-B", folder / "use", f"-DCMAKE_PREFIX_PATH={usr}", f"-DWANTED_VERSION={VERSION}")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""pose_free.py SCRIPTS: where tools/study/scripts/pose_free.py puts the target's camera among estimated ones."""
+"""pose_free.py SCRIPTS: tools/study/scripts/pose_free.py places the target's camera correctly among estimated ones."""
 import os
 import sys
 
@@ -45,7 +45,7 @@ for _ in range(100):
     alike("an exact estimate, scaled", placed(given, estimated), similarity)
     exact = [frame @ pose for pose in given]
     alike("an exact estimate with lengths", placed(given, exact, metric=True), frame)
-    # one camera's error of rotation is halved, that of the distance is shared by both ends
+    # one camera's rotation error is halved, and the distance error is shared by both ends
     turn = cv2.Rodrigues(np.array([0.0, 0.1, 0.0]))[0]
     half = cv2.Rodrigues(np.array([0.0, 0.05, 0.0]))[0]
     off = [given[0], given[1].copy()]

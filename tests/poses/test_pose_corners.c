@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Corners, what they look like, and the pyramid: integers, so exact; turned with the picture. */
+/* Corners, their descriptors, and the pyramid: integers, so exact; rotated with the picture. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -82,14 +82,14 @@ static void test_fraction_of_a_pixel(void **state)
     assert_int_equal(corners_find(grey, SIDE, SIDE, corners, &count), 0);
     int near = 0;
     for (uint32_t i = 0; i < count; i++) {
-        /* the edges lie at 89.5 and 99.5; Harris' measure peaks up to a pixel inside */
+        /* the edges are at 89.5 and 99.5; Harris' measure has its maximum up to a pixel inside */
         near += corners[i].level == 0 && labs((long)corners[i].x_q8 - 23040) < 384 &&
                 labs((long)corners[i].y_q8 - 25600) < 384;
     }
     assert_int_equal(near, 1);
 }
 
-/* The picture turned by a quarter has the same corners, turned, that look alike. */
+/* The picture rotated by a quarter has the same corners, rotated, with the same descriptors. */
 static void test_turned_picture(void **state)
 {
     (void)state;

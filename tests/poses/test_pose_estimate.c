@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Poses estimated on the built-in room against those that it was drawn from, and pairs of which nothing can be known.
- */
+/* Poses estimated on the built-in room against the true ones, and pairs that determine nothing. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +21,7 @@
 
 typedef struct shot {
     uint32_t side;
-    uint8_t *rgb, *depth; /* depth in millimetres, as t3r_frame has it; NULL = none */
+    uint8_t *rgb, *depth; /* depth in millimetres, as in t3r_frame; NULL = none */
     t3r_camera camera;
 } shot;
 
@@ -85,7 +84,7 @@ static motion given(const t3r_camera *camera)
     return m;
 }
 
-/* b's camera in a's */
+/* Returns b's camera in a's frame. */
 static motion between(const t3r_camera *a, const t3r_camera *b)
 {
     motion first = given(a), second = given(b), back = motion_inverse(&first);
@@ -148,7 +147,7 @@ static void test_pairs_from_colour(void **state)
     check_pair(1, 4, false, 0.7, 4);
 }
 
-/* Small pictures are enlarged: too few corners would be told apart otherwise. */
+/* Small pictures are enlarged, because otherwise too few corners could be distinguished. */
 static void test_small_pictures(void **state)
 {
     (void)state;
@@ -164,13 +163,13 @@ static void test_small_pictures(void **state)
     }
     double turn = rotation_angle(poses[1].r, known.r) / DEGREE;
     double direction = direction_angle(poses[1].t, known.t) / DEGREE;
-    assert_true(turn < 0.6 && direction < 2.2); /* at their own size 0.9 and 2.6 */
+    assert_true(turn < 0.6 && direction < 2.2); /* at their own size the errors are 0.9 and 2.6 */
     assert_true(accounts[1].turn_degrees > turn / 5 && accounts[1].direction_degree > direction / 8);
     discard(&shots[0]);
     discard(&shots[1]);
 }
 
-/* Lengths of colour alone agree among views, by corners that a third one shares. */
+/* From colour alone, lengths agree among views by corners that a third one shares. */
 static void test_chain(void **state)
 {
     (void)state;
@@ -206,7 +205,7 @@ static void test_chain(void **state)
     }
 }
 
-/* From colour, depth only sets the scale. */
+/* When poses come from colour, depth only sets the scale. */
 static void test_depth_for_scale(void **state)
 {
     (void)state;
@@ -271,7 +270,7 @@ static void refuse(shot *shots, poses_source source, const char *why)
     }
 }
 
-/* What the camera sees when it only turns by `r`: new pixels look the picture up along the turned ray. */
+/* Draws the view of a camera that only rotates by `r`: each new pixel is sampled along its rotated ray. */
 static void turn_picture(shot *s, const double r[9])
 {
     uint8_t *out = malloc(SIDE * SIDE * 3);
@@ -308,7 +307,7 @@ static void test_turning_alone_is_refused(void **state)
     discard(&shots[1]);
 }
 
-/* With depth a turn is a pose like any other. */
+/* With depth a pure rotation is a pose like any other. */
 static void test_standing_still_with_depth(void **state)
 {
     (void)state;
@@ -339,7 +338,7 @@ static void test_other_places_are_refused(void **state)
     discard(&shots[1]);
 }
 
-/* A depth camera that gives nothing in one view leaves colour and the other's scale; false depth is not believed. */
+/* If a depth camera gives nothing in one view, colour and the other view's scale remain; false depth is rejected. */
 static void test_missing_and_false_depth(void **state)
 {
     (void)state;

@@ -36,7 +36,7 @@ static motion some_motion(double turn, double far)
     return m;
 }
 
-/* A place before both cameras, and the rays on which they see it. */
+/* Draws a point in front of both cameras, and the rays on which they see it. */
 static void some_point(const motion *m, double point[3], double ray_a[2], double ray_b[2])
 {
     double p[3];
@@ -66,7 +66,7 @@ static void test_rotations(void **unused)
     }
 }
 
-/* One of the solutions is the motion that the rays come from; all satisfy their equations. */
+/* One of the solutions is the motion that made the rays; all satisfy their equations. */
 static void test_five_points(void **unused)
 {
     (void)unused;
@@ -95,7 +95,7 @@ static void test_five_points(void **unused)
         }
         missed += best > 1e-4;
     }
-    assert_true(missed <= 3); /* near degenerate fives */
+    assert_true(missed <= 3); /* nearly degenerate sets of five */
 }
 
 static void test_five_points_on_a_line_have_none(void **unused)
@@ -117,7 +117,7 @@ static void test_triangulation(void **unused)
         assert_true(relative_triangulate(&m, ray_a, ray_b, &depth_a, &depth_b));
         assert_true(fabs(depth_a - point[2]) < 1e-6 && fabs(depth_b - p[2]) < 1e-6);
         for (int i = 0; i < 3; i++) {
-            m.t[i] = -m.t[i]; /* then they meet behind the cameras */
+            m.t[i] = -m.t[i]; /* the rays then meet behind the cameras */
         }
         assert_false(relative_triangulate(&m, ray_a, ray_b, &depth_a, &depth_b));
     }
@@ -151,7 +151,7 @@ static void test_resection(void **unused)
     assert_int_equal(resect((const double(*)[3])points, (const double(*)[2])rays, COUNT, &camera, &error), -1);
 }
 
-/* What is stored is the pose to a rounding, behind the first camera's own. */
+/* The stored pose is the estimated one up to rounding, composed with the first camera's own. */
 static void test_storing(void **unused)
 {
     (void)unused;

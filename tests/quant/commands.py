@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""trim3r quantize and head-info from outside: what they say, what they refuse, what calibration finds.
+"""trim3r quantize and head-info from outside: outputs, refusals, calibrated ranges.
 
-    commands.py PATH/TO/trim3r"""
+commands.py PATH/TO/trim3r"""
 import json
 import os
 import struct
@@ -78,13 +78,13 @@ def test_calibration():
     expect(0, "quantize", "identity.safetensors", "--calibrate", "flat.png", "--size", "64x64", "-o", "i.t3w",
            "--percentile", 100, out="1 layers measured")
     found = ranges_of("i.t3w")
-    # red 120, blue 28, retained, confidence; green and both gradients are 0 throughout and get the largest
+    # red 120, blue 28, retained, confidence; green and both gradients are 0 throughout and get the maximum
     expected = {0: 8, 1: 127, 2: 100, 3: 127, 4: 127, 7: 127, 8: 127}
     for channel, value in expected.items():
         check(abs(found[channel] / value - 1) < 1e-4, f"range of feature {channel}: {found[channel]}, not {value}")
-    # log2 of the density, 64 at 100 % and -70 at the least; that of the flat texture
+    # log2 of the density, 64 at 100 % and -70 at the minimum; and of the flat texture
     check(abs(found[6] - 104) < 1.01 and 63 < found[5] < 70.1, f"ranges of density and texture: {found[5]}, {found[6]}")
-    # 16 bits take twice the largest
+    # 16 bits take twice the maximum
     expect(0, "quantize", "identity.safetensors", "--calibrate", "flat.png", "--size", "64x64", "-o", "i16.t3w",
            "--activations", 16, "--weights", 16)
     wide = ranges_of("i16.t3w")
@@ -99,7 +99,7 @@ def test_calibration():
     check(told["calibrated_layers"] == 1 and told["bytes"] == os.path.getsize("a.t3w") and told["name"] == "identity"
           and len(told["weight_snr_db"]) == 2 and told["weight_bits"] == 8, f"quantize --json says {told}")
     check(ranges_of("a.t3w")[0] > 30, "the room is not in the ranges")
-    # a head's own ranges stay
+    # a head's own ranges are kept
     tensors = {**identity()[1], "layer1.range": numpy.full(9, 3.0)}
     write("own.safetensors", head_file.safetensors(tensors, identity()[0]))
     expect(0, "quantize", "own.safetensors", "--calibrate", "flat.png", "-o", "own.t3w", out="0 layers measured, 1 from")

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Quantized layers: how far each is from its floats, that scales and shifts are in range, whatever the weights. */
+/* Quantized layers: their distance from the floats; scales and shifts are in range for any weights. */
 #include "quantize.h"
 
 #include "sample_head.h"
@@ -36,7 +36,7 @@ static void quantize(quantized_head *out, const float_head *head, const uint32_t
     assert_sound(out);
 }
 
-/* Against the definition: the nearest mantissa of 31 bits, at least half of the range. */
+/* Compares with the definition: the nearest mantissa of 31 bits, at least half of the range. */
 static void test_multiplier(void **state)
 {
     (void)state;
@@ -61,8 +61,8 @@ static void test_multiplier(void **state)
     assert_int_equal(quantize_multiplier(-1, &multiplier, &shift), -1);
 }
 
-/* Every weight and every bias is within half a step, and the multiplier is exactly the ratio of the steps, also in
- * the 16 bits that int16 activations leave it. */
+/* Every weight and every bias is within half a step, and the multiplier is exactly the ratio of the steps, also in the
+ * 16 bits that int16 activations allow. */
 static void test_layers(void **state)
 {
     (void)state;
@@ -167,7 +167,7 @@ static void test_accumulators(void **state)
     quantize(&out, &head, (const uint32_t[]){16, 8});
     int16_t most = out.layers[0].weight[0];
     assert_true(most < 32767);
-    /* |bias'| + 2^8 sum < 2^31 x 7/8, the bound that the quantizer keeps: not far below it either */
+    /* |bias'| + 2^8 sum < 2^31 x 7/8, the quantizer's bound: the result is also not far below it */
     assert_in_range(most, 20000, 22700);
     quantized_head_free(&out);
     quantize(&out, &head, (const uint32_t[]){16, 16});
