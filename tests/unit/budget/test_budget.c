@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The budget stage alone: exact quotas in every mode, nested sets, and counts as large as configurations allow. */
+/* The budget stage alone: exact quotas in every mode, nested sets, and the largest counts of any configuration. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -103,7 +103,7 @@ static void sets_are_nested(void **state)
     }
 }
 
-/* `paper`: the lowest textures give first, a cluster is cut only so far that Z is exact. */
+/* `paper`: the lowest textures are cut first, the last cluster only until Z is exact. */
 static void paper_takes_the_lowest_textures_first(void **state)
 {
     (void)state;
@@ -118,7 +118,7 @@ static void paper_takes_the_lowest_textures_first(void **state)
     }
     t3r_budget_settings settings = settings_of(T3R_ALLOCATE_PAPER, valid * 6 / 10);
     t3r_allocate(&view, 1, &settings, clusters, &alone);
-    int stage = 0; /* 0: at N %, 1: the cut one, 2: whole */
+    int stage = 0; /* 0: cut to N %, 1: cut partly, 2: whole */
     for (uint32_t k = 0; k < CLUSTERS; k++) {
         const t3r_cluster *c = &clusters[clusters[k].order];
         uint32_t least = (c->points * 10 + 50) / 100;
@@ -135,7 +135,7 @@ static void paper_takes_the_lowest_textures_first(void **state)
     assert_int_equal(stage, 2);
 }
 
-/* Points as given, no planes of that size needed: products must hold 2^28 points. */
+/* Points without planes of that size: products must hold 2^28 points. */
 static void largest_counts_do_not_overflow(void **state)
 {
     (void)state;
@@ -157,7 +157,7 @@ static void largest_counts_do_not_overflow(void **state)
     }
 }
 
-/* Covered and doubtful points: none until all others are retained, the doubtful last of all; Z stays exact. */
+/* Covered and doubtful points: none until all others are retained, the doubtful ones last; Z stays exact. */
 static void deferred_comes_last(void **state)
 {
     (void)state;
@@ -215,7 +215,7 @@ static void deferred_comes_last(void **state)
     assert_false(t3r_is_sparse(&view, 1, 2 * plain / 3 + 1));
 }
 
-/* Beside the busiest a flat SuperCluster counts a thousandth and no less, however steep the power. */
+/* Next to the busiest a flat SuperCluster counts exactly a thousandth, for any exponent. */
 static void flat_ones_get_a_thousandth(void **state)
 {
     (void)state;
@@ -240,7 +240,7 @@ static int by_texture(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The same textures in other places, by the seed; empty clusters stay out of it, ranks and quotas follow. */
+/* The textures are permuted by the seed; empty clusters keep out, ranks and quotas follow. */
 static void textures_are_shuffled(void **state)
 {
     (void)state;
@@ -283,7 +283,7 @@ static void textures_are_shuffled(void **state)
     assert_int_equal(one.texture_q4, 5);
 }
 
-/* Whatever the clusters count, no more than Z points are retained: the scene has room for no more. */
+/* For any counts of the clusters, at most Z points are retained, because the scene has room for no more. */
 static void wild_counts_stay_within_the_budget(void **state)
 {
     (void)state;

@@ -168,7 +168,7 @@ static void sizes_and_clamps(void **state)
     assert_int_equal(t3r_clamp64(INT64_MAX, INT32_MIN, INT32_MAX), INT32_MAX);
 }
 
-/* Against another implementation of the mixing. */
+/* Compares with another implementation of the mixing. */
 static void mixing(void **state)
 {
     (void)state;
@@ -185,7 +185,7 @@ static void mixing(void **state)
     }
 }
 
-/* The 16-bit form of the product is the one rounding, bit for bit, for each constant and every sample. */
+/* The 16-bit form of the product equals the rounded product, bit for bit, for each constant and every sample. */
 static void small_product(void **state)
 {
     (void)state;
@@ -197,7 +197,7 @@ static void small_product(void **state)
     }
 }
 
-/* Against division, for every sign and size, around all boundaries. */
+/* Compares with division, for every sign and size, around all boundaries. */
 static void divisor(void **state)
 {
     (void)state;
@@ -207,7 +207,7 @@ static void divisor(void **state)
         const uint32_t d = turn % 4 == 0 ? most : (uint32_t)unit_between(&seed, 1, most);
         const uint32_t limit = turn % 2 == 0 ? 4 : 16;
         const t3r_divisor by = t3r_divisor_of(d);
-        assert_true(by.reciprocal >> 31 == 1); /* as accurate as possible */
+        assert_true(by.reciprocal >> 31 == 1); /* the most accurate one */
         const int64_t largest = T3R_MIN((int64_t)limit * d + 2, UINT32_MAX);
         const int64_t k = unit_between(&seed, 0, (int64_t)limit << 25); /* half steps */
         const int64_t x = turn % 3 == 0 ? unit_between(&seed, -largest, largest)

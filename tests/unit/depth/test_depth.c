@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Depth: validity, and holes that are filled or left. */
+/* Depth: validity, and holes that are filled or kept. */
 #include "unit/unit.h"
 
 #include "depth/depth.h"
@@ -54,7 +54,7 @@ static void interpolated(void **state)
 {
     (void)state;
     canvas *c = canvas_new(0);
-    /* a ramp along x with a gap of three, in a row alone */
+    /* a ramp along x with a gap of three, in a single row */
     for (int x = 0; x < W; x++) {
         c->depth[5 * W + x] = (uint16_t)(1000 + 10 * x);
     }
@@ -69,7 +69,7 @@ static void interpolated(void **state)
     free(c);
 }
 
-/* Only pixels with measured ones within the radius on both sides are filled, however the hole looks. */
+/* Only pixels with measured ones within the radius on both sides are filled, for any shape of the hole. */
 static void reach(void **state)
 {
     (void)state;
@@ -95,7 +95,7 @@ static void reach(void **state)
     }
 }
 
-/* Holes at the border are bracketed along it only; a hole in the corner not at all. */
+/* Holes at the border are bracketed only along it; a hole in the corner not at all. */
 static void border(void **state)
 {
     (void)state;
@@ -128,7 +128,7 @@ static void edge(void **state)
     }
     free(c);
 
-    /* the same colour on both sides: the nearer side, the first of two as near */
+    /* the same colour on both sides: the nearer side; of two at equal distance the first */
     c = canvas_new(0);
     for (int x = 0; x < W; x++) {
         c->depth[5 * W + x] = x < 10 ? 1000 : 2000;
@@ -142,7 +142,7 @@ static void edge(void **state)
     free(c);
 }
 
-/* Relative difference: 1/16 of the lesser one is still one surface. */
+/* Relative difference: up to 1/16 of the lesser depth is still one surface. */
 static void agreement(void **state)
 {
     (void)state;
@@ -159,7 +159,7 @@ static void agreement(void **state)
     }
 }
 
-/* Of two brackets the narrower; across when they are as wide. */
+/* Of two brackets the narrower; of equal ones the horizontal. */
 static void nearer_pair(void **state)
 {
     (void)state;
@@ -175,7 +175,7 @@ static void nearer_pair(void **state)
     free(c);
 }
 
-/* Filled pixels seed nothing: every one lies between two measured ones, whose range holds it. */
+/* Filled pixels are no seeds: every one lies between two measured ones, whose range holds it. */
 static void never_seeds(void **state)
 {
     (void)state;

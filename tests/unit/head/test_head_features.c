@@ -117,7 +117,7 @@ static void features_are_as_defined(void **state)
     assert_true(least[6] < -90 && most[6] > 90 && most[5] - least[5] > 30);
 }
 
-/* A copied arena's planes may mark a depth of 0 as measured: it has no slope. */
+/* A copied arena's planes may mark a depth of 0 as measured; it has no slope. */
 static void no_depth_has_no_slope(void **state)
 {
     (void)state;

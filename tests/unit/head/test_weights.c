@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The weight file's checker: what is sound passes, every field beyond its range is refused with its reason, whatever
- * the CRC says. */
+/* The weight file's checker: valid files pass, and every field beyond its range is refused with its reason, for any
+ * CRC. */
 #include "unit/unit.h"
 
 #include <stdbool.h>
@@ -43,12 +43,12 @@ static void sound_ones_pass(void **state)
     }
 }
 
-/* Up to 15 letters, digits and underlines. */
+/* Up to 15 letters, digits and underscores. */
 static void names(void **state)
 {
     (void)state;
     static const struct {
-        const char *name; /* 16 characters have no end */
+        const char *name; /* 16 characters leave no room for the end */
         t3r_status status;
     } cases[] = {{"a", T3R_OK},
                  {"z_9", T3R_OK},
@@ -197,7 +197,7 @@ static void blocks_lie_in_the_file(void **state)
     free(good);
 }
 
-/* A multiplier, a shift, a bias or a weight one beyond the range of the sums. */
+/* A multiplier, a shift, a bias or a weight one beyond the bound on the sums. */
 static void numbers_are_bounded(void **state)
 {
     (void)state;
@@ -245,7 +245,7 @@ static void numbers_are_bounded(void **state)
     free(good);
 }
 
-/* Any flipped bit and any length is detected, by the length or the CRC. */
+/* Any flipped bit and any other length is detected, by the length or the CRC. */
 static void damage_is_noticed(void **state)
 {
     (void)state;
@@ -272,7 +272,7 @@ static void damage_is_noticed(void **state)
     free(file);
 }
 
-/* Errors that only the whole graph shows. */
+/* Errors that only the whole graph reveals. */
 static void graphs_are_checked(void **state)
 {
     (void)state;
@@ -318,7 +318,7 @@ static void graphs_are_checked(void **state)
     }
 }
 
-/* A file is limited in length, even if all else is sound. */
+/* A file's length is limited, even if all else is valid. */
 static void length_is_bounded(void **state)
 {
     (void)state;

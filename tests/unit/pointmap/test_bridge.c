@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Wide depth holes: depth lent by other views, bridged between what is known, and what other views say against it. */
+/* Wide depth holes: depth from other views, bridges across the rest, and contradictions by other views. */
 #include "rgbd_frame.h"
 #include "unit/rig.h"
 
@@ -49,9 +49,7 @@ static uint32_t of_kind(const rig *s, int v, uint8_t validity)
     return count;
 }
 
-/* --- one view ----------------------------------------------------------------------------------------------------- */
-
-/* A slanted plane goes on through a hole as wide as a third of the picture: 1 / depth is straight in the picture. */
+/* A slanted plane continues through a hole as wide as a third of the picture: 1 / depth is linear in the picture. */
 static void planes_go_on(void **state)
 {
     (void)state;
@@ -74,7 +72,7 @@ static void planes_go_on(void **state)
     }
 }
 
-/* The definition once more, in double and from the planes as they were. */
+/* Computes the definition in double, from the planes before. */
 static double expected_depth(const uint16_t *depth, const uint8_t *validity, int x, int y, int radius)
 {
     static const int axis[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
@@ -149,7 +147,7 @@ static void as_defined(void **state)
     free(s);
 }
 
-/* Across an edge no depth is invented, and the farther surface goes on behind the nearer. */
+/* Across an edge no depth is invented, and the farther surface continues behind the nearer. */
 static void edges(void **state)
 {
     (void)state;
@@ -161,14 +159,14 @@ static void edges(void **state)
             s->validity[0][i] = T3R_MEASURED;
         }
     }
-    assert_int_equal(bridge(s, 1, 28), 27); /* the pixels next to either end are 29 from the other */
+    assert_int_equal(bridge(s, 1, 28), 27); /* the pixels at either end are 29 from the other end */
     for (int x = 0; x < W; x++) {
         assert_int_equal(s->depth[0][20 * W + x], x == 10 ? 1000 : (x >= 12 && x <= 38) || x == 40 ? 3000 : 0);
     }
     free(s);
 }
 
-/* What was never measured up to the border stays unknown but for the corners that diagonals cut. */
+/* Unmeasured areas up to the border stay unknown, except for corners that diagonals cut. */
 static void borders_stay(void **state)
 {
     (void)state;
@@ -182,7 +180,7 @@ static void borders_stay(void **state)
     free(s);
 }
 
-/* A copied arena's planes may hold anything: what is said to be measured at depth 0 is no known pixel. */
+/* A copied arena's planes may hold anything: a measured depth of 0 is no known pixel. */
 static void nothing_is_trusted(void **state)
 {
     (void)state;
@@ -206,9 +204,7 @@ static void nothing_is_trusted(void **state)
     free(s);
 }
 
-/* --- two views ---------------------------------------------------------------------------------------------------- */
-
-/* What the other view measured is exact, in steps of this view, and wanted last where budgets are small. */
+/* Depth from the other view is exact, in steps of this view, and retained last by small budgets. */
 static void lent(void **state)
 {
     (void)state;
@@ -230,12 +226,12 @@ static void lent(void **state)
     }
 }
 
-/* Of two points of the other view on one pixel the nearer is lent. */
+/* Of two points of the other view on one pixel the nearer is used. */
 static void nearest_lent(void **state)
 {
     (void)state;
     rig *s = pair_new();
-    forget(s, 0, 20 * W + 40); /* the plane's point from 8 pixels to the left, one at 1 from 16 */
+    forget(s, 0, 20 * W + 40); /* the plane's point comes from 8 pixels to the left, one at depth 1 from 16 */
     s->depth[1][20 * W + 24] = UNIT;
     t3r_bridge_lend(s->view, PAIR, 0, 0, &alone);
     assert_int_equal(s->validity[0][20 * W + 40], T3R_BRIDGED | T3R_MARK_LENT);
@@ -243,7 +239,7 @@ static void nearest_lent(void **state)
     free(s);
 }
 
-/* Nothing is lent that is farther than the view's own steps reach. */
+/* No depth from another view exceeds the range of the view's own steps. */
 static void out_of_steps_is_not_lent(void **state)
 {
     (void)state;
@@ -255,7 +251,7 @@ static void out_of_steps_is_not_lent(void **state)
     }
     t3r_bridge_lend(s->view, PAIR, 0, 0, &alone);
     assert_int_equal(of_kind(s, 0, T3R_NO_DEPTH), PIXELS);
-    s->depth[1][20 * W + 24] = 3 * UNIT / 2; /* by 10.7 pixels to the right */
+    s->depth[1][20 * W + 24] = 3 * UNIT / 2; /* appears 10.7 pixels to the right */
     t3r_bridge_lend(s->view, PAIR, 0, 0, &alone);
     assert_int_equal(of_kind(s, 0, T3R_BRIDGED | T3R_MARK_LENT), 1);
     assert_int_equal(s->depth[0][20 * W + 35], 3 * UNIT / 2 * 32);
@@ -280,7 +276,7 @@ static void bridged_once(void **state)
     free(s);
 }
 
-/* Nothing is left before what another view measured: 16 times the distance between them above the depth. */
+/* A bridge in front of a point that another view measured is removed, if 16 times their distance exceeds its depth. */
 static void seen_through(void **state)
 {
     (void)state;
@@ -300,7 +296,7 @@ static void seen_through(void **state)
     }
 }
 
-/* Of two bridges of one surface the second to settle is covered by the first, whichever view comes first. */
+/* Of two bridges of one surface the one checked second is covered by the first, whichever view comes first. */
 static void settled_cover(void **state)
 {
     (void)state;
@@ -319,7 +315,7 @@ static void settled_cover(void **state)
     }
 }
 
-/* Later comparisons leave such pixels as they are, and forgetting them gives back the planes as they were. */
+/* Later comparisons do not change such pixels, and forgetting them restores the planes. */
 static void forgotten(void **state)
 {
     (void)state;
@@ -349,8 +345,6 @@ static void forgotten(void **state)
     free(before);
     free(s);
 }
-
-/* --- through the interface ---------------------------------------------------------------------------------------- */
 
 static uint32_t reconstruct(uint32_t radius, uint32_t gaussians, uint32_t views, t3r_scene *scene, t3r_gaussian *out)
 {
@@ -393,7 +387,7 @@ static uint32_t reconstruct(uint32_t radius, uint32_t gaussians, uint32_t views,
     return measured;
 }
 
-/* Bridged points compete but add nothing to the budget: exactly Z, and at most what was measured. */
+/* Bridged points compete but add nothing to the budget: exactly Z, and at most the number of measured points. */
 static void budgets_hold(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What views of one surface tell of each other: points sought in another view, flying pixels, redundancy, exposure. */
+/* Comparisons of views of one surface: points found in another view, flying pixels, redundancy, exposure. */
 #include "rgbd_frame.h"
 #include "unit/rig.h"
 
@@ -30,8 +30,6 @@ static void block(rig *s, int v, int x0, int y0, int x1, int y1, double depth)
     }
 }
 
-/* --- reprojection ------------------------------------------------------------------------------------------------- */
-
 static void shifted_by_the_disparity(void **state)
 {
     (void)state;
@@ -49,14 +47,14 @@ static void shifted_by_the_disparity(void **state)
             }
         }
     }
-    /* a camera that looks the other way sees nothing of it */
+    /* a camera that looks the other way sees none of it */
     s->view[0].pose.rotation_q30[0] = s->view[0].pose.rotation_q30[8] = -(1 << 30);
     t3r_projected_pixel projected;
     assert_false(t3r_reproject(&one, 20, 20, &zero, &projected));
     free(s);
 }
 
-/* Any pose, against the same in double: the nearest pixel, but for ties that the roundings decide. */
+/* For any pose, compares with the same in double: the nearest pixel, except for ties that roundings decide. */
 static void as_in_double(void **state)
 {
     (void)state;
@@ -96,8 +94,6 @@ static void as_in_double(void **state)
     free(s);
 }
 
-/* --- flying pixels ------------------------------------------------------------------------------------------------ */
-
 static void between_two_surfaces(void **state)
 {
     (void)state;
@@ -123,7 +119,7 @@ static void between_two_surfaces(void **state)
     free(s);
 }
 
-/* A surface aslant, up to 1/16 a pixel, is no depth edge. */
+/* A slanted surface, up to 1/16 a pixel, has no depth edge. */
 static void slanted_surfaces_stay(void **state)
 {
     (void)state;
@@ -140,7 +136,7 @@ static void seen_through(void **state)
 {
     (void)state;
     rig *s = pair_new();
-    /* at 1 the disparity is 16: a block of 6 x 6 in view 1 that view 0, 16 pixels to the right, does not see */
+    /* at depth 1 the disparity is 16: view 0, 16 pixels to the right, does not see a block of 6 x 6 in view 1 */
     block(s, 1, 20, 10, 26, 16, 1);
     s->validity[1][12 * W + 22] = T3R_FILLED;
     assert_int_equal(t3r_mark_flying(s->view, 2, 0, 0, false, &alone), 0);
@@ -151,7 +147,8 @@ static void seen_through(void **state)
                                             : flies          ? T3R_MEASURED | T3R_MARK_DOUBTFUL
                                                              : T3R_MEASURED);
     }
-    /* an object that both see is none, nor one seen a pixel off, nor what the other view has no depth for */
+    /* an object that both see does not fly, nor one that is off by a pixel, nor one where the other view has no depth
+     */
     for (int off = -1; off <= 1; off++) {
         t3r_reset_comparison(s->view, 2);
         block(s, 0, 0, 0, W, H, 2);
@@ -162,7 +159,7 @@ static void seen_through(void **state)
     block(s, 0, 0, 0, W, H, 2);
     memset(s->validity[0], T3R_NO_DEPTH, PIXELS);
     assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false, &alone), 0);
-    /* guesses bear witness against guesses, not against what was measured */
+    /* filled pixels contradict filled pixels, but no measured ones */
     memset(s->validity[0], T3R_FILLED, PIXELS);
     assert_int_equal(t3r_mark_flying(s->view, 2, 1, 0, false, &alone), 0);
     t3r_reset_comparison(s->view, 2);
@@ -172,9 +169,7 @@ static void seen_through(void **state)
     free(s);
 }
 
-/* --- redundancy --------------------------------------------------------------------------------------------------- */
-
-/* As good as each other: the earlier view stays whole, the later one keeps what it alone sees. */
+/* Of equally good views the earlier one stays whole, and the later one keeps the part that only it sees. */
 static void the_earlier_of_two(void **state)
 {
     (void)state;
@@ -195,7 +190,7 @@ static void the_earlier_of_two(void **state)
     free(s);
 }
 
-/* The nearer view is kept, whichever comes first; a longer lens counts as nearness. */
+/* The nearer view is kept, whichever comes first; a longer focal length counts as nearness. */
 static void the_nearer_of_two(void **state)
 {
     (void)state;
@@ -208,7 +203,7 @@ static void the_nearer_of_two(void **state)
                 s->view[nearer].fx_q16 = s->view[nearer].fy_q16 = F * 4 / 3 << 16;
             }
             uint32_t marked = mark_covered(s, 2);
-            uint32_t inside = 0; /* of the farther view: its middle three quarters */
+            uint32_t inside = 0; /* the middle three quarters of the farther view */
             for (int i = 0; i < PIXELS; i++) {
                 assert_int_equal(s->validity[nearer][i], T3R_MEASURED);
                 inside += s->validity[1 - nearer][i] == (T3R_MEASURED | T3R_MARK_COVERED);
@@ -220,11 +215,11 @@ static void the_nearer_of_two(void **state)
     }
 }
 
-/* A later view that is only a little nearer does not take over; the earlier one is kept whole. */
+/* A later view that is only a little nearer covers nothing; the earlier one is kept whole. */
 static void a_little_nearer_is_as_good(void **state)
 {
     (void)state;
-    const double nearer[] = {0.08, 0.16}; /* 1/25 and 2/25 of the depth: one part in 16 is between */
+    const double nearer[] = {0.08, 0.16}; /* 1/25 and 2/25 of the depth; the limit is 1/16 */
     for (int turn = 0; turn < 2; turn++) {
         rig *s = unit_array(1, sizeof *s);
         place_view(s, 0, 0, 0, 2);
@@ -247,7 +242,7 @@ static void other_surfaces_stay(void **state)
     free(s);
 }
 
-/* Whatever the depths: every covered pixel has one that covers it, measured and itself retained. */
+/* For any depths, every covered pixel has one that covers it, measured and itself retained. */
 static void no_surface_is_lost(void **state)
 {
     (void)state;
@@ -285,9 +280,7 @@ static void no_surface_is_lost(void **state)
     assert_true(all > 1000);
 }
 
-/* --- scale -------------------------------------------------------------------------------------------------------- */
-
-/* The median depth is brought to 1..2 scene units as far as exponents go, and what is beyond is held there. */
+/* The median depth is brought to 1..2 scene units, within the range of exponents. */
 static void scale_of_depths(void **state)
 {
     (void)state;
@@ -311,9 +304,7 @@ static void scale_of_depths(void **state)
     }
 }
 
-/* --- exposure ----------------------------------------------------------------------------------------------------- */
-
-/* A texture on the plane, seen by view v through a gain a channel; every fifth pixel shows something else. */
+/* Paints a texture on the plane, seen by view v with a gain per channel; every fifth pixel is something else. */
 static void paint(rig *s, int v, int disparity, const double gain[3])
 {
     for (int i = 0; i < PIXELS; i++) {
@@ -332,7 +323,7 @@ static double gain_of(const uint16_t gain_q14[3], int c)
     return gain_q14[c] / 16384.0;
 }
 
-/* A view 0.8 as bright is found out within 1 %, each channel apart, and both are brought to their (geometric) mean. */
+/* A view 0.8 as bright is detected within 1 %, per channel, and both are brought to their (geometric) mean. */
 static void gain_recovered(void **state)
 {
     (void)state;
@@ -353,7 +344,7 @@ static void gain_recovered(void **state)
     }
 }
 
-/* More than an octave brighter or darker counts as an octave. */
+/* More than an octave brighter or darker is treated as an octave. */
 static void gains_are_held(void **state)
 {
     (void)state;
@@ -374,7 +365,7 @@ static void gains_are_held(void **state)
     }
 }
 
-/* A view that shares too little keeps its colours and moves no other's. */
+/* A view with too little overlap keeps its colours and changes no other's. */
 static void unlinked_views_stay(void **state)
 {
     (void)state;
@@ -410,8 +401,6 @@ static void levelled_colours(void **state)
         }
     }
 }
-
-/* --- through the interface ---------------------------------------------------------------------------------------- */
 
 typedef struct trace {
     uint64_t hash[T3R_STAGE_COUNT];
@@ -505,7 +494,7 @@ static void in_the_pipeline(void **state)
         assert_int_equal(scene.count, all);
         assert_int_equal(of_view(&scene, 1, 64), 36);
 
-        /* the same again, and after a cancel anywhere among the views' comparisons, which no mode changes */
+        /* the same again, also after a cancel during any of the views' comparisons */
         assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = 300}, &scene), T3R_OK);
         for (int cancel = 0; cancel <= (mode == T3R_ALLOCATE_DENSITY ? comparisons : 0); cancel++) {
             second = (trace){.cancel_at = cancel};
@@ -520,7 +509,7 @@ static void in_the_pipeline(void **state)
     }
 }
 
-/* Levelled splats of both views agree in their mean; left alone they are a fifth apart. */
+/* Exposure-corrected splats of both views agree in their mean; uncorrected they differ by a fifth. */
 static void splats_are_levelled(void **state)
 {
     (void)state;
@@ -547,8 +536,6 @@ static void splats_are_levelled(void **state)
     }
 }
 
-/* --- disagreement ------------------------------------------------------------------------------------------------- */
-
 static void paint_sure(rig *s, int v, int disparity, const double gain[3])
 {
     for (int i = 0; i < PIXELS; i++) {
@@ -559,8 +546,8 @@ static void paint_sure(rig *s, int v, int disparity, const double gain[3])
     }
 }
 
-/* A wall whose colours differ by 9 levels in red and by nothing else: 27 a channel, whatever the exposure; what has
- * other depth, is doubtful or was not measured does not count. */
+/* A wall whose colours differ by 9 levels, only in red: 27 per channel for any exposure; pixels with other depth,
+ * doubtful and unmeasured ones do not count. */
 static void colours_that_differ(void **state)
 {
     (void)state;
@@ -585,7 +572,7 @@ static void colours_that_differ(void **state)
     block(s, 1, 0, 0, W, H / 2, 1.9);
     memset(s->validity[1] + PIXELS / 2, T3R_MEASURED | T3R_MARK_DOUBTFUL, 4 * W);
     memset(s->validity[1] + PIXELS / 2 + 4 * W, T3R_FILLED, 3 * W);
-    memset(s->validity[1] + PIXELS / 2 + 7 * W, T3R_MEASURED | T3R_MARK_COVERED, 3 * W); /* measured all the same */
+    memset(s->validity[1] + PIXELS / 2 + 7 * W, T3R_MEASURED | T3R_MARK_COVERED, 3 * W); /* still counts as measured */
     assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs), 27 * 256);
     assert_int_equal(pairs, 2 * (W - 8) * (H / 2 - 7));
     free(s);

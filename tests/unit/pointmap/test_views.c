@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The validity plane: its predicates exclude each other, and its numbers outside the runtime are those of the SPEC. */
+/* The validity plane: its predicates exclude each other, and its numbers outside the runtime are the SPEC's. */
 #include "unit/unit.h"
 
 #include "state/views.h"
@@ -26,7 +26,7 @@ static void confidences(void **state)
     }
 }
 
-/* Of any byte, as a copied arena may hold any: one source, and 0 only where there is none. */
+/* For any byte, since a copied arena may hold any: one source, and 0 only without one. */
 static void sources(void **state)
 {
     (void)state;
@@ -36,7 +36,7 @@ static void sources(void **state)
         assert_int_equal(of, t3r_has_depth(validity));
         assert_int_equal(t3r_confidence_of(validity) != 0, t3r_has_depth(validity));
         assert_int_equal(t3r_unmarked(validity), t3r_depth_source_of(validity));
-        const uint8_t found = validity & (T3R_DEPTH_SOURCE_BITS | T3R_MARKS); /* whatever lies above */
+        const uint8_t found = validity & (T3R_DEPTH_SOURCE_BITS | T3R_MARKS); /* for any bits above */
         assert_int_equal(t3r_is_marked(validity), t3r_unmarked(validity) != found);
         assert_int_equal(t3r_is_reliable(validity), found == T3R_MEASURED);
         assert_int_equal(t3r_is_known(validity), found == T3R_MEASURED || found == T3R_FILLED);
@@ -58,8 +58,8 @@ static void marks(void **state)
     }
 }
 
-/* Each label comes back, beside all marks, and leaves them and the neighbours as they were; none is left once marks are
- * taken back, of whichever kind. */
+/* Each label reads back with all marks, and changes neither them nor the neighbours; none is left when marks of either
+ * kind are removed. */
 static void labels(void **state)
 {
     (void)state;
@@ -82,7 +82,7 @@ static void labels(void **state)
     }
 }
 
-/* Of the comparison nothing is left: neither marks nor what was bridged; depth of other pixels stays. */
+/* A reset removes all traces of the comparison, marks and bridges; depth of other pixels stays. */
 static void reset(void **state)
 {
     (void)state;

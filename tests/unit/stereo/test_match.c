@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Matching: the census against its definition, semi-global matching in blocks against one that keeps everything, and
- * what is done about disparities that are wrong. */
+ * the treatment of wrong disparities. */
 #include "unit/unit.h"
 
 #include "stereo/match.h"
 #include "stereo/match_clean.h"
-
-/* --- census ----------------------------------------------------------------------------------------------------- */
 
 static const int opposite[17][2] = {{1, 0}, {2, 0},  {3, 0},  {-3, 1}, {-2, 1}, {-1, 1}, {0, 1}, {1, 1}, {2, 1},
                                     {3, 1}, {-3, 2}, {-2, 2}, {-1, 2}, {0, 2},  {1, 2},  {2, 2}, {3, 2}};
@@ -19,7 +17,7 @@ static int at(const uint8_t *picture, int width, int height, int x, int y)
     return picture[y * width + x];
 }
 
-/* The 24 comparisons of SPEC.md, each a byte. */
+/* Computes the 24 comparisons of SPEC.md, each a byte. */
 static void census_of(const uint8_t *picture, int width, int height, int x, int y, uint8_t bits[24])
 {
     for (int i = 0; i < 17; i++) {
@@ -75,8 +73,6 @@ static void census(void **state)
     }
 }
 
-/* --- aggregation ------------------------------------------------------------------------------------------------ */
-
 typedef struct pair {
     t3r_match m;
     uint8_t *luma[2];
@@ -115,7 +111,7 @@ static void pair_free(pair *p)
     free(p->m.work);
 }
 
-/* All costs of all paths, kept; sums: width x height x disparities. */
+/* Computes all costs of all paths; sums: width x height x disparities. */
 static void naive_sums(const t3r_match *m, int *sums)
 {
     static const int steps[8][2] = {{0, 1}, {1, 0}, {0, -1}, {-1, 0}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
@@ -168,7 +164,7 @@ static int refined(int k, int before, int least, int after)
 static void blocks(void **state)
 {
     (void)state;
-    /* the tall ones have blocks of 16, 32 and 64 rows */
+    /* tall pictures have blocks of 16, 32 and 64 rows */
     static const uint32_t shapes[][3] = {{16, 8, 16},  {17, 9, 16}, {20, 33, 32}, {9, 131, 16},
                                          {33, 16, 48}, {8, 8, 64},  {9, 515, 16}, {8, 2050, 16}};
     uint64_t seed = 5;
@@ -223,7 +219,7 @@ static void blocks(void **state)
     }
 }
 
-/* A texture seen twice, the second time `shift` columns on and through `gain` / 256. */
+/* Draws a texture twice, the second time `shift` columns further with a gain of `gain` / 256. */
 static void seen_twice(pair *p, uint32_t shift, uint32_t gain)
 {
     const uint32_t width = p->m.width, height = p->m.height, right = (uint32_t)T3R_MATCH_RIGHT(width, p->m.disparities);
@@ -248,7 +244,7 @@ static void shifted(void **state)
             pair p = pair_new(64, 40, 32, paths);
             seen_twice(&p, 11, gain);
             t3r_match_all(&p.m, true);
-            /* the last columns' partners lie inside too: all of the left plane is found, to the last pixel */
+            /* the last columns' partners also lie inside: all of the left plane is found, to the last pixel */
             for (size_t i = 0; i < p.pixels[0]; i++) {
                 if (p.luma[0][i] != 0) {
                     assert_in_range(p.m.disparity[0][i], 11 * 128 - 64, 11 * 128 + 64);
@@ -259,8 +255,6 @@ static void shifted(void **state)
         }
     }
 }
-
-/* --- what is wrong ---------------------------------------------------------------------------------------------- */
 
 static void set(pair *p, uint32_t side, uint16_t disparity, uint8_t confidence)
 {
@@ -278,8 +272,8 @@ static void agreement(void **state)
     const uint32_t right = 55;
     set(&p, 0, 5 * 128, 77);
     set(&p, 1, 5 * 128, 0);
-    p.m.disparity[0][3 * 40 + 20] = 5 * 128 + 128; /* a pixel off is still agreement */
-    p.m.disparity[0][3 * 40 + 21] = 7 * 128 + 1;   /* more is not */
+    p.m.disparity[0][3 * 40 + 20] = 5 * 128 + 128; /* a pixel off still counts as agreement */
+    p.m.disparity[0][3 * 40 + 21] = 7 * 128 + 1;   /* more does not */
     p.m.disparity[1][5 * right + 30] = T3R_NO_DISPARITY;
     t3r_match_agree(&p.m);
     for (uint32_t y = 0; y < 8; y++) {
@@ -405,7 +399,7 @@ static void filling(void **state)
         }
     }
     t3r_match_fill(&p.m, 0);
-    /* nothing leads there from the other picture: hidden, so the farther surface shows */
+    /* no pixel of the other picture leads there: hidden, so the farther surface is used */
     for (uint32_t y = 10; y < 20; y++) {
         for (uint32_t x = 26; x < 34; x++) {
             assert_int_equal(p.m.disparity[0][y * 60 + x], 4 * 128);
@@ -416,7 +410,7 @@ static void filling(void **state)
     for (uint32_t i = 25 * 60; i < 40 * 60; i++) {
         assert_int_equal(p.m.disparity[0][i], T3R_NO_DISPARITY);
     }
-    /* an edge of luma between the hole's nearer half and the farther surface: each half keeps its own */
+    /* an edge of luma between the hole's nearer half and the farther surface: each half takes its own side */
     for (uint32_t i = 0; i < 60 * 40; i++) {
         p.luma[0][i] = i % 60 < 30 ? 60 : 160;
     }
@@ -424,7 +418,7 @@ static void filling(void **state)
     for (uint32_t x = 26; x < 34; x++) {
         assert_int_equal(p.m.disparity[0][14 * 60 + x], x < 30 ? 4 * 128 : 10 * 128);
     }
-    /* what shows nothing stays empty */
+    /* black pixels stay empty */
     p.luma[0][15 * 60 + 28] = 0;
     t3r_match_fill(&p.m, 0);
     assert_int_equal(p.m.disparity[0][15 * 60 + 28], T3R_NO_DISPARITY);

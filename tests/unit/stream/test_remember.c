@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a stream remembers of keyframes whose planes are gone: colours in five bits that keep their mean, those that the
- * map needs, and a map that goes on showing them. */
+/* Remembered keyframes without planes: colours in five bits that keep their mean, the choice by the map's need, and a
+ * map that keeps showing them. */
 #include "unit/unit.h"
 
 #include "rgbd_frame.h"
@@ -32,7 +32,7 @@ static t3r_runtime *begin(const t3r_config *config)
     return rt;
 }
 
-/* A grey wall two metres before a camera at x, z metres. The leftmost column has no depth. */
+/* Takes a keyframe of a grey wall two metres in front of a camera at x, z metres. The leftmost column has no depth. */
 static t3r_status try_to_take(t3r_runtime *rt, double x, double z, uint8_t level)
 {
     const uint32_t mm = (uint32_t)((2 - z) * 1000);
@@ -87,7 +87,7 @@ static uint32_t numbers_of(const t3r_runtime *rt)
     return bits;
 }
 
-/* Of those that show the same place one is forgotten, and not the only one of another, whatever its number. */
+/* Of several keyframes of one place one is forgotten, and not the only one of another place, for any numbers. */
 static void forgets_what_is_shown_often(void **state)
 {
     (void)state;
@@ -106,7 +106,7 @@ static void forgets_what_is_shown_often(void **state)
     assert_int_equal(rt->remembered, 0);
 }
 
-/* A camera that stands still remembers keyframes all over its time. */
+/* A stationary camera remembers keyframes spread over its time. */
 static void spreads_over_time(void **state)
 {
     (void)state;
@@ -129,7 +129,7 @@ static uint32_t mean_level(const t3r_runtime *rt)
     return (uint32_t)(sum_q7 / scene.count / 128);
 }
 
-/* The wall is darker in the end than it was for long: the map follows, but not all the way. */
+/* The wall turns darker after a long time: the map follows, but not completely. */
 static void the_map_remembers(void **state)
 {
     (void)state;
@@ -148,7 +148,7 @@ static void the_map_remembers(void **state)
     assert_true(level[1] > level[0] + 20 && level[1] < 197);
 }
 
-/* From afar alone a Gaussian stays as it is, unless a remembered keyframe shows it closely. */
+/* From afar alone a Gaussian does not change, unless a remembered keyframe shows it closely. */
 static void holds_what_it_shows(void **state)
 {
     (void)state;
@@ -163,8 +163,8 @@ static void holds_what_it_shows(void **state)
     }
 }
 
-/* Where a remembered keyframe had no depth it shows nothing. The second one stands eight columns to the right of the
- * first: of what the first one gave the map, a column falls on its column without depth, and some miss it. */
+/* A remembered keyframe shows nothing where it had no depth. The second one is eight columns to the right of the
+ * first: one column of the first one's Gaussians falls on its column without depth, and some miss it. */
 static void hides_what_had_no_depth(void **state)
 {
     (void)state;
@@ -190,7 +190,7 @@ static void hides_what_had_no_depth(void **state)
     assert_true(held > 50 && hidden > 2);
 }
 
-/* One that saw everything from afar holds nothing that was seen closely. */
+/* A keyframe that saw everything from afar protects nothing that was seen closely. */
 static void holds_nothing_from_afar(void **state)
 {
     (void)state;
@@ -200,7 +200,7 @@ static void holds_nothing_from_afar(void **state)
     take(rt, 0, -2, 90);
     const t3r_map_record *record = &t3r_map_of(rt).records[rt->gaussians / 2];
     assert_int_equal(record->idle, 0);
-    take(rt, 0, -2, 90); /* the one from afar takes the place of the near one */
+    take(rt, 0, -2, 90); /* the distant one replaces the near one */
     assert_int_equal(record->idle, 1);
 }
 
@@ -209,8 +209,8 @@ static double units(const t3r_runtime *rt, int count)
     return ldexp(count, rt->frame.exponent);
 }
 
-/* The map's range is 1,024 units about an origin that follows the camera. What is beyond it neither holds nor refines,
- * and is forgotten first, whatever its number. */
+/* The map's range is 1,024 units around an origin that follows the camera. A keyframe beyond it neither protects nor
+ * refines, and is forgotten first, for any numbers. */
 static void forgets_first_what_is_out_of_range(void **state)
 {
     (void)state;
@@ -226,7 +226,7 @@ static void forgets_first_what_is_out_of_range(void **state)
     assert_int_equal(numbers_of(rt), 1 << 3 | 1 << 4);
 }
 
-/* The keyframe whose planes are taken can itself be out of range. It shows nothing of the map. */
+/* The keyframe that loses its planes can itself be out of range. It shows nothing of the map. */
 static void remembers_what_is_out_of_range(void **state)
 {
     (void)state;
@@ -236,11 +236,11 @@ static void remembers_what_is_out_of_range(void **state)
     take(rt, 0, 0, 90);
     take(rt, -units(rt, 500), 0, 90);
     assert_int_equal(numbers_of(rt), 1 << 1 | 1 << 2);
-    take(rt, units(rt, 900), 0, 90); /* 1,400 units from the one before */
+    take(rt, units(rt, 900), 0, 90); /* 1,400 units from the previous one */
     assert_int_equal(numbers_of(rt), 1 << 3 | 1 << 2);
 }
 
-/* A keyframe at hand that came out of range lost its depth, and is not remembered. */
+/* A live keyframe that went out of range lost its depth, and is not remembered. */
 static void remembers_only_what_shows_something(void **state)
 {
     (void)state;
@@ -256,7 +256,7 @@ static void remembers_only_what_shows_something(void **state)
     assert_int_equal(numbers_of(rt), 1 << 2);
 }
 
-/* Memory may come back otherwise than it was: a camera that is none shows nothing, and is forgotten first. */
+/* Memory may come back changed: an invalid camera shows nothing, and is forgotten first. */
 static void passes_over_cameras_that_are_none(void **state)
 {
     (void)state;
@@ -283,7 +283,7 @@ static int progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
     return ++s->calls == s->cancel_at;
 }
 
-/* A keyframe is cancelled while remembered ones refine the map, too. */
+/* A keyframe is also cancelled while remembered ones refine the map. */
 static void is_cancelled_at_every_step(void **state)
 {
     (void)state;
@@ -302,7 +302,7 @@ static void is_cancelled_at_every_step(void **state)
     assert_true(calls > 12); /* before and in each of two keyframes, in two passes, and before each stage */
 }
 
-/* As many keyframes as there is no room for are no state that the library left. */
+/* More keyframes than there is room for cannot be a state of the library. */
 static void refuses_more_than_fit(void **state)
 {
     (void)state;
