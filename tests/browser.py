@@ -30,7 +30,7 @@ def look(page, folder, name):
 
 PHONE = (390, 844)
 SMALLEST_TEXT, SMALLEST_TARGET = 12, 40  # CSS pixels
-# Sizes of all visible texts and controls. An input counts as its label; the points of a chart take taps beside them.
+# Sizes of all visible texts and controls. An input counts as its label; the points of a chart accept taps nearby.
 TEXTS = """(() => { const found = [], all = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
     while (all.nextNode()) {
         const text = all.currentNode.textContent.trim(), it = all.currentNode.parentElement;
@@ -44,7 +44,7 @@ TARGETS = """[...document.querySelectorAll("a[href], button, select, summary, la
 
 
 def on_a_phone(page):
-    """Sets the size of a phone; returns what is too wide, too small to read or too small to touch, a line each."""
+    """Sets the size of a phone; returns what is too wide, too small to read or too small to touch, one per line."""
     page.size(*PHONE, mobile=True)
     page.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
     wide, texts, targets = page.value("document.documentElement.scrollWidth"), page.value(TEXTS), page.value(TARGETS)
@@ -55,7 +55,7 @@ def on_a_phone(page):
 
 
 class Page:
-    """One page; keeps its log lines, exceptions and network requests."""
+    """A page; keeps its log lines, exceptions and network requests."""
 
     def __init__(self, program, width=1200, height=1000, timeout=60, webgl=False):
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)

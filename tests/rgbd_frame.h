@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A frame of rows without padding, and the camera of a square one, for most tests. */
+/* A frame of rows without padding, and the camera of a square frame, for most tests. */
 #ifndef T3R_TESTS_RGBD_FRAME_H
 #define T3R_TESTS_RGBD_FRAME_H
 

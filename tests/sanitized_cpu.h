@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Tests of whole builds run plain C, which sanitizers slow down tenfold. Under sanitizers they use the processor's
- * vector kernels: the bits are the same, and tests/kernels covers both kinds with sanitizers. */
+ * vector kernels instead: the bits are the same, and tests/kernels checks both with sanitizers. */
 #ifndef TRIM3R_TESTS_SANITIZED_CPU_H
 #define TRIM3R_TESTS_SANITIZED_CPU_H
 

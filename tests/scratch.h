@@ -11,7 +11,7 @@
 
 typedef struct scratch {
     char directory[256];
-    char path[600]; /* path of the name given last to scratch_path() */
+    char path[600]; /* path of the last name given to scratch_path() */
 } scratch;
 
 static inline int scratch_open(scratch *s)

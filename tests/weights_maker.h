@@ -19,7 +19,7 @@ typedef struct made_layer {
  */
 extern const made_layer small_shape[], wide_shape[];
 extern const uint32_t small_layers, wide_layers;
-#define SMALL_SHAPE_COLUMN_BYTES 704 /* of head work, at any width and with any bits */
+#define SMALL_SHAPE_COLUMN_BYTES 704 /* of head work, for any width and bits */
 
 /* Returns the file, aligned to 16 and to be freed; *bytes: its length. */
 uint8_t *make_weights(const made_layer *layers, uint32_t count, uint32_t weight_bits, uint32_t activation_bits,

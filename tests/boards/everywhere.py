@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """everywhere.py TRIM3R FOLDER [PROCESSOR...]: tools/everywhere finds the bits of this machine in each row of these
-processors (all), notices one hash that differs, and docs/study/everywhere.md has the hashes of today."""
+processors (all), notices one hash that differs, and docs/study/everywhere.md has the current hashes."""
 import copy
 import importlib.machinery
 import importlib.util

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is run to see which branches of the runtime are taken: programs of tests, and the program trim3r."""
+"""Runs that show which branches of the runtime are taken: test programs, and the program trim3r."""
 import itertools
 import os
 import subprocess
@@ -26,7 +26,7 @@ def build(folder):
     jobs = str(os.cpu_count())
     options = {"T3R_COVERAGE": "ON", "T3R_TESTS": "ON", "T3R_SHARED": "OFF", "T3R_PYTHON_PACKAGE": "OFF", "T3R_LIBCAMERA": "OFF",
                "T3R_OPENCV": "OFF", "CMAKE_BUILD_TYPE": "None",
-               "CMAKE_C_FLAGS": "-O1 -U__OPTIMIZE__"} # variants that only an optimized runtime has are not asked for
+               "CMAKE_C_FLAGS": "-O1 -U__OPTIMIZE__"} # omits variants that only an optimized runtime has
     quiet("cmake", "-G", "Unix Makefiles", "-Wno-dev", "-S", branches.ROOT, "-B", folder,
           *(f"-D{name}={value}" for name, value in options.items()))
     for area in AREAS:
@@ -35,7 +35,7 @@ def build(folder):
 
 
 def forget(folder):
-    """What earlier runs took."""
+    """Deletes the counts of earlier runs."""
     for path in folder.rglob("*.gcda"):
         path.unlink()
 
@@ -49,7 +49,7 @@ def run_tests(folder):
 
 
 def run_program(program, scratch):
-    """Scenes of the built-in room in every setting that leads through other code."""
+    """Builds scenes of the built-in room in every setting that takes other branches."""
     def trim3r(*words):
         quiet(program, *words, cwd=scratch)
 

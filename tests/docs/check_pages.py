@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""check_pages.py TRIM3R: what the pages say in words.
+"""check_pages.py TRIM3R: checks the text of the pages.
 
-Every command stands in a shell block that runs, or that says why it does not. Options, names of the interface and links
-exist. A sentence has at most 35 words, the README at most 200 lines. Copied figures are those of their source, and the bits
-epoch is that of trim3r.h.
+Every command is in a shell block that runs, or that gives the reason why it does not. Options, names of the interface
+and links exist. A sentence has at most 35 words, the README at most 200 lines. Copied figures equal their source's, and
+the bits epoch is trim3r.h's.
 """
 import pathlib
 import re
@@ -17,9 +17,9 @@ from wording import markers, sentences
 
 README_LINES = 200
 STUDY = ROOT / "docs" / "study"
-COPIED = [ROOT / "README.md", ROOT / "docs" / "rivals.md"]  # tables with figures of MEASURED, by hand
+COPIED = [ROOT / "README.md", ROOT / "docs" / "rivals.md"]  # tables with hand-copied figures of MEASURED
 MEASURED = [STUDY / "paper.md", STUDY / "presets.md", STUDY / "retrained.md"]
-# read for links and wording alone: formats and figures, not commands
+# checked only for links and wording: formats and figures, not commands
 OTHERS = [ROOT / "CHANGELOG.md", ROOT / "SECURITY.md", ROOT / "runtime" / "DESIGN.md", ROOT / "runtime" / "SPEC.md",
           ROOT / "quant" / "heads" / "MODEL_CARD.md", *sorted(STUDY.glob("*.md"))]
 
@@ -77,7 +77,7 @@ OFFENCES = {
     "The epoch (`T3R_BITS_EPOCH`, now 1).": "T3R_BITS_EPOCH is",
 }
 SOURCE = "| a | 27.88 / 0.831 / 0.1 | 27.73 / 0.830 / 0.2 | 27.68 / 0.834 / 0.3 |\n"
-ROWS = {  # how many findings
+ROWS = {  # numbers of findings
     "| x | 27.88 | 27.73 | 27.68 | 0.4* |": 0,
     "| x | 27.88 / 0.831 | 27.73 / 0.830 | 27.68 / 0.834 |": 0,
     "| x | 27.88 | 27.73 | 27.69 | 0.4* |": 1,
@@ -86,7 +86,7 @@ ROWS = {  # how many findings
 
 
 def find_what_is_planted(program):
-    """Pages with one offence each, which must be found alone, and one without."""
+    """Checks pages with one error each, which must be found alone, and one page without."""
     planted = ROOT / "planted.md"
     for page, text in OFFENCES.items():
         found = check(planted, f"# Planted\n\n{page}\n", program)

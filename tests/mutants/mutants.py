@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mutants of the fixed-point core, each compiled with the unit tests that should notice it.
 
-    mutants.py             a sample, the same each time: every mutant is caught, or listed in equivalent.txt with a reason
-    mutants.py --all       every mutant, and docs/study/mutants.md has the counts of today
-    mutants.py --write     every mutant, and writes that page
-    mutants.py --only FILE those of one file, for who writes tests: prints which survive
+    mutants.py             a sample, the same each time: every mutant is caught, or listed in equivalent.txt with a
+reason     mutants.py --all       every mutant, and docs/study/mutants.md has the counts of today     mutants.py --write
+every mutant, and writes that page     mutants.py --only FILE those of one file, for who writes tests: prints which
+survive
 
 Either way the tests are taken away first: a mutant must survive then.
 """
@@ -33,7 +33,7 @@ sys.path.insert(0, str(TESTS))
 
 from checks import check, done, skip  # noqa: E402
 
-# A suite is a program: a test, and what of the runtime it calls.
+# A suite is a program: a test, and the files of the runtime that it calls.
 SUITES = {
     "fixed": ("unit/test_fixed.c", "core/fixed.c"),
     "domains": ("unit/test_domains.c", "core/fixed.c", "kernels/plain/blend.c"),
@@ -43,7 +43,7 @@ SUITES = {
     "bytes": ("unit/test_bytes.c",),
     "tasks": ("workers/test_tasks.c", "core/workers.c"),
 }
-# Those that should notice a mistake in a file, the quickest first. Settings (config, features, names) have no
+# Suites that should notice a mistake in a file, the quickest first. Settings (config, features, names) have no
 # fixed-point arithmetic, the other headers none at all.
 NOTICED_BY = {
     "fixed.h": ("fixed", "domains"),
@@ -60,7 +60,7 @@ NOTICED_BY = {
     "workers.c": ("tasks",),
 }
 COMPILE = ["gcc", "-std=gnu11", "-O1", "-w", "-ffunction-sections", f"-I{HERE}"]
-SANITIZED = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"] # as tests of all programs run, too
+SANITIZED = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"] # as in the tests of all programs
 LINK = ["-Wl,--gc-sections", "-lm"]
 SEED, SAMPLE = 1, 12
 SHARE_LEAST = 0.9
@@ -86,7 +86,7 @@ one is caught or exists no longer, and when the share falls below {least} %.
 
 
 class Bench:
-    """Where mutants are compiled and run. What a mutant does not touch is compiled once."""
+    """Compiles and runs mutants. Objects that a mutant does not affect are compiled once."""
 
     def __init__(self, folder, options=()):
         self.folder, self.options = folder, options
@@ -102,7 +102,7 @@ class Bench:
         return RUNTIME / source if (RUNTIME / source).exists() else TESTS / source
 
     def prepare(self, suite):
-        """The suite with the core as it stands: its objects, and the time that it takes."""
+        """Compiles the suite with the unchanged core: its objects, and its running time."""
         parts = []
         for number, source in enumerate(SUITES[suite]):
             self.objects[suite, source] = self.folder / f"{suite}-{number}.o"
@@ -119,7 +119,7 @@ class Bench:
         self.limit_s[suite] = 2 + int(5 * (time.monotonic() - begun))
 
     def fails(self, suite, core, changed, program, sanitized):
-        """Whether the suite fails with that core; None where it does not compile."""
+        """Whether the suite fails with that core; None if it does not compile."""
         parts = [self.place(source, core) if sanitized or changed.endswith(".h") or source == f"core/{changed}"
                  else self.objects[suite, source] for source in SUITES[suite]]
         extra, limit_s = (SANITIZED, 10 * self.limit_s[suite]) if sanitized else ([], self.limit_s[suite])
@@ -149,7 +149,7 @@ class Bench:
 
 
 def stopped_after(seconds, program):
-    """In seconds of the processor's time, so that a busy machine changes nothing."""
+    """Returns a command limited in processor time, so that a busy machine changes nothing."""
     return ["prlimit", f"--cpu={seconds}", "--core=0", program]
 
 
@@ -158,7 +158,8 @@ def all_mutants():
 
 
 def listed_in(text):
-    """{key: reason} of the list's blocks: a place, mutants of it (- the line, + the mutant's), and why they are the same."""
+    """Returns {key: reason} of the list's blocks: a place, its mutants (- the line, + the mutant's), and why they
+    are equivalent."""
     listed = {}
     for block in text.split("\n\n"):
         place, *lines = [line for line in block.splitlines() if not line.startswith("#")] or [None]
@@ -176,7 +177,7 @@ def text_of(key):
 
 
 def faults_of(fates, listed, every):
-    """What must not be: a survivor without a reason, a reason for one that is caught, or for none."""
+    """Finds errors: a survivor without a reason, a reason for a caught mutant, or for none."""
     faults = []
     for mutant, fate in fates:
         if fate == SURVIVED and mutant.key not in listed:
@@ -193,7 +194,7 @@ def share_of(count):
 
 
 def rows_of(fates, listed):
-    """(rows of the table, the counts of all)"""
+    """Returns (rows of the table, the counts of all)."""
     counts = collections.defaultdict(collections.Counter)
     for mutant, fate in fates:
         counts[f"`{mutant.file}`"]["equivalent" if fate == SURVIVED and mutant.key in listed else fate] += 1
@@ -204,15 +205,15 @@ def rows_of(fates, listed):
 
 
 def makes_what_it_should():
-    """Of the planted source exactly the mutants that stand beside it."""
+    """Checks that the planted source gives exactly the listed mutants."""
     said = [f"{mutant.before} => {mutant.after}" for mutant in mutate.mutants_of("", (HERE / "planted.c").read_text())]
     want = (HERE / "planted.txt").read_text().splitlines()
     check(said == want, "planted.c has the mutants of planted.txt, not\n" + "\n".join(sorted(set(said) ^ set(want))))
 
 
 def can_fail(every, folder):
-    """Without its tests a mutant survives that they catch; a program that does not end is stopped; and the list can be
-    wrong in every way."""
+    """Checks that a mutant survives without the tests that catch it, that an endless program is stopped, and that
+    every error of the list is found."""
     one = next(mutant for mutant in every if mutant.file == "hash.h")
     without = folder / "without"
     without.mkdir()

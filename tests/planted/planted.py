@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""planted.py FOLDER [KIND...] | --list: the tests that run by day notice a fault of each kind.
+"""planted.py FOLDER [KIND...] | --list: the daytime tests notice a fault of each kind.
 
-A copy of the tree in FOLDER gets one fault at a time; the test that shall notice it passes without the fault, and fails with
-it. --list prints the table of docs/development.md, which must be that of FAULTS. Builds of an earlier run in FOLDER are
-used again.
+A copy of the tree in FOLDER gets one fault at a time; the test that must notice it passes without the fault, and fails
+with it. --list prints the table of docs/development.md, which must equal FAULTS'. Builds of an earlier run in FOLDER
+are reused.
 """
 import pathlib
 import shutil
@@ -23,12 +23,12 @@ PAGE = ROOT / "docs" / "development.md"
 class Fault(NamedTuple):
     kind: str     # one word
     what: str     # for the table
-    area: str     # folder in which the file is found by its name, wherever it lies
+    area: str     # folder below which the file is found by its name
     file: str
     was: str      # "" = the file's end
     becomes: str
     preset: str
-    targets: str  # what the test needs built
+    targets: str  # build targets of the test
     test: str
 
 
@@ -74,7 +74,7 @@ def table():
 
 
 def copy_of_tree(folder):
-    """The tracked files and no others, each written only where it differs, so that builds stay fresh."""
+    """Copies only the tracked files, each only if it differs, so that builds stay up to date."""
     listed = run("git", "-C", ROOT, "ls-files", "--cached", "--others", "--exclude-standard").stdout.splitlines()
     names = [name for name in listed if (ROOT / name).is_file()]
     for path in folder.rglob("*"):
@@ -100,7 +100,7 @@ def build(folder, preset, targets):
 
 
 def passes(folder, fault):
-    """Whether the test passes in a fresh build; anything but a verdict of the test itself ends this one."""
+    """Whether the test passes in an up-to-date build; anything except a verdict of the test ends this one."""
     build(folder, fault.preset, fault.targets)
     ended = subprocess.run(["ctest", "--test-dir", folder / "build" / fault.preset, "-R", f"^{fault.test}$", "--no-tests=error"],
                            capture_output=True, text=True)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""answer.py TOOLS DOCS: every script that measures, and the demo, tells how it is used, and refuses what it does not know before
-it does anything; pages begin as their scripts would write them."""
+"""answer.py TOOLS DOCS: every script that measures, and the demo, prints its usage, and refuses unknown options
+before it does anything; pages begin as their scripts would write them."""
 import os
 import re
 import sys
@@ -12,7 +12,7 @@ tools, docs = sys.argv[1:3]
 scripts = os.path.join(tools, "study", "scripts")
 SCRIPTS = ("auto", "formats", "growth", "live", "pages", "paper", "peers", "poses", "results", "speed", "stability", "stereo_results",
            "stream")
-WRONG = {  # beside an unknown option
+WRONG = {  # next to an unknown option
     "growth": [["colour"], ["size", "--write"], ["--quick", "--write"]],
     "live": [["--runs", "few"]],
     "pages": [["nothing"], ["auto", "--all"]],

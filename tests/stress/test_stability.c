@@ -42,9 +42,10 @@ static void still_scene(void **state)
         assert_int_equal(row->status, STRESS_MEASURED);
         assert_int_equal((int)row->value[STRESS_GAUSSIANS], (2 * SIDE * SIDE + 2) / 5);
         double spacing = sqrt(2.0 * SIDE * SIDE / row->value[STRESS_GAUSSIANS]); /* pixels */
-        double expected = 0.002 * 0.954 * SIDE * 0.866 / spacing;                /* their distance cancels */
+        double expected = 0.002 * 0.954 * SIDE * 0.866 / spacing;                /* distance cancels */
         assert_true(fabs(stress_still_motion(&f->c.base, row->value[STRESS_GAUSSIANS]) / expected - 1) < 0.01);
-        /* a median of 900 has a deviation of 4 %; eagles: those that stay in both captures are no fair sample */
+        /* a median of 900 has a deviation of 4 %; for eagles, Gaussians that stay in both captures are a biased sample
+         */
         if (m != 2 && fabs(row->value[STRESS_MOTION] / expected - 1) > 0.12) {
             fail_msg("motion %g, not %g", row->value[STRESS_MOTION], expected);
         }
@@ -56,8 +57,8 @@ static void still_scene(void **state)
     assert_true(f->rows[2].value[STRESS_MASK_CHANGED] > f->rows[0].value[STRESS_MASK_CHANGED]);
 }
 
-/* The invariant where it can fail: the shipped head and refinement on every drawn scene, from as many Gaussians as
- * SuperClusters up. A mask that changed by nothing would say that nothing was captured anew. */
+/* Checks the invariant where it can fail: the shipped head and refinement on every drawn scene, from as many Gaussians
+ * as SuperClusters up. An unchanged mask would mean that nothing was captured again. */
 static void learned_and_refined(void **state)
 {
     plane *f = *state;
@@ -83,7 +84,7 @@ static void learned_and_refined(void **state)
             }
             assert_true(value[STRESS_GAUSSIANS] >= f->contest.settings.config.clusters);
             assert_true(value[STRESS_MASK_CHANGED] > 0 && value[STRESS_MOTION] > 0);
-            /* the bounds are not out of reach */
+            /* the bounds are within reach */
             assert_true(stress_mask_changed_most(value[STRESS_GAUSSIANS], 80) < 8 * value[STRESS_MASK_CHANGED]);
             assert_true(stress_motion_most(noise) < 12 * value[STRESS_MOTION]);
         }
@@ -91,7 +92,7 @@ static void learned_and_refined(void **state)
     }
 }
 
-/* A moved world is the same scene; a budget above the remaining points takes all of them; without points it is
+/* A moved world gives the same scene; a budget above the remaining points takes all of them; without points it is
  * refused. */
 static void budgets_and_refusals(void **state)
 {
