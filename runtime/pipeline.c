@@ -28,8 +28,6 @@
 #include "superclusters/pixel_clusters.h"
 #include "superclusters/superclusters.h"
 
-/* --- analysis --------------------------------------------------------------------------------------------------- */
-
 static t3r_view_span all_of(const t3r_runtime *rt)
 {
     return (t3r_view_span){0, rt->views};
@@ -168,8 +166,6 @@ t3r_status t3r_analyse(t3r_runtime *rt)
     }
     return status;
 }
-
-/* --- scene ------------------------------------------------------------------------------------------------------ */
 
 static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_settings *settings)
 {

@@ -14,8 +14,6 @@
 #include "stereo/stereo_views.h"
 #include "wavelet/wavelet.h"
 
-/* --- independent views -------------------------------------------------------------------------------------------- */
-
 typedef struct views_job {
     const t3r_runtime *rt;
     t3r_view *views;
@@ -38,8 +36,6 @@ static t3r_status each_view(const t3r_runtime *rt, t3r_view *views, t3r_view_spa
     return T3R_OK;
 }
 
-/* --- depth -------------------------------------------------------------------------------------------------------- */
-
 static void fill_view(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
@@ -59,8 +55,6 @@ t3r_status t3r_find_depth(t3r_runtime *rt, t3r_view *views, t3r_view_span span)
     }
     return status;
 }
-
-/* --- pointmap ----------------------------------------------------------------------------------------------------- */
 
 /* Chooses the frame, which is all that the pointmap needs beside depth and pose. */
 t3r_status t3r_choose_frame(t3r_runtime *rt, t3r_view *views)
@@ -154,8 +148,6 @@ t3r_status t3r_find_flying_pixels(t3r_runtime *rt, t3r_view *views, t3r_view_spa
     return T3R_OK;
 }
 
-/* --- texture ------------------------------------------------------------------------------------------------------ */
-
 /* Measures in the worker's own plane and work memory. */
 static void measure_texture(const t3r_runtime *rt, const t3r_view *view, uint32_t worker)
 {
@@ -192,8 +184,6 @@ t3r_status t3r_find_texture(t3r_runtime *rt, t3r_view *views, t3r_view_span span
     }
     return status;
 }
-
-/* --- budget ------------------------------------------------------------------------------------------------------- */
 
 /* Whether covered points are deferred: in a small budget of a build, and in a stream, whose map already shows them. */
 static bool passes_over_covered(const t3r_runtime *rt, const t3r_view *views, uint32_t gaussians)

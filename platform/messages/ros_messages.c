@@ -124,8 +124,6 @@ const char *t3r_ros_read_compressed(const uint8_t *bytes, size_t count, t3r_ros_
     return in.failed ? "format or data is cut short" : NULL;
 }
 
-/* ---- poses ---- */
-
 /* The fields in order: h header, c child_frame_id, p position and rotation; the rest is not read. */
 static const char *const pose_fields[T3R_ROS_TYPE_COUNT] = {
     [T3R_ROS_POSE] = "hp",

@@ -112,8 +112,6 @@ t3r_recording_cut t3r_recording_cut_of(const t3r_recording *recording)
     return out;
 }
 
-/* ---- messages ---- */
-
 size_t t3r_recording_stream_for(const t3r_recording *recording, t3r_stream_use use)
 {
     const size_t chosen[T3R_USE_COUNT] = {[T3R_USE_NONE] = T3R_NO_STREAM,

@@ -37,8 +37,6 @@ typedef struct difference {
     uint32_t pixels;
 } difference;
 
-/* --- poses ------------------------------------------------------------------------------------------------------- */
-
 /* Turns q by a small rotation vector in the axes of the scene. Components below 1.5 change by less than a tenth. */
 static void turn(const int32_t q[4], const int32_t by_q30[3], int32_t out[4])
 {
@@ -69,8 +67,6 @@ static void place_as_given(const alignment *a, uint32_t v)
     t3r_pose_as_given(a->rt, v);
     (void)t3r_pose_in_scene(&a->rt->camera[v], &a->rt->frame, &a->views[v].pose); /* it was in range before */
 }
-
-/* --- pictures ---------------------------------------------------------------------------------------------------- */
 
 /* Averages green pixels over blocks of 2^level x 2^level. Pixels outside whole blocks are omitted. */
 static void shrink(const t3r_view *view, uint32_t level, uint8_t *out)
@@ -130,8 +126,6 @@ static uint32_t coarsest_level(const t3r_view *view)
     }
     return level;
 }
-
-/* --- rounds ------------------------------------------------------------------------------------------------------ */
 
 /* Compares all views with all others: computes the sums of each view and the levels of each pair. */
 static t3r_status compare(alignment *a, difference *all)

@@ -7,8 +7,6 @@
 #include "core/fixed.h"
 #include "reproject.h"
 
-/* --- depth from other views --------------------------------------------------------------------------------------- */
-
 /* Returns the smallest depth step whose depth is at least z, 0 when there is none. Depth rises with the step. */
 static uint16_t step_at(t3r_depth_scale scale, int32_t z_q20)
 {
@@ -114,8 +112,6 @@ void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t 
         }
     }
 }
-
-/* --- against the other views -------------------------------------------------------------------------------------- */
 
 /* Returns the validity of a bridged pixel, or of one with another view's depth, after comparison with view `to`. */
 static uint8_t judge(uint8_t validity, const t3r_pointmap *to, const t3r_projected_pixel *projected, bool settled)

@@ -24,8 +24,6 @@ static plane plane_of(const t3r_match *match, uint32_t side)
     return (plane){width, match->height, match->luma[side], match->disparity[side], match->confidence[side]};
 }
 
-/* --- agreement -------------------------------------------------------------------------------------------------- */
-
 static bool near(uint16_t a, uint16_t b)
 {
     return t3r_abs32((int32_t)a - b) <= ONE;
@@ -65,8 +63,6 @@ void t3r_match_agree(const t3r_match *match)
         }
     }
 }
-
-/* --- speckles --------------------------------------------------------------------------------------------------- */
 
 enum { UNSEEN, QUEUED, LARGE };
 
@@ -142,8 +138,6 @@ uint32_t t3r_match_speckles(const t3r_match *match, uint32_t side)
     return removed;
 }
 
-/* --- smoothing -------------------------------------------------------------------------------------------------- */
-
 static inline void sort(uint16_t *a, uint16_t *b)
 {
     const int16_t x = (int16_t)*a, y = (int16_t)*b; /* disparities are below 2^15, and vectors compare signed numbers */
@@ -210,8 +204,6 @@ void t3r_match_smooth(const t3r_match *match, uint32_t side)
         here = next;
     }
 }
-
-/* --- filling ---------------------------------------------------------------------------------------------------- */
 
 static const int8_t directions[8][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}, {1, -1}, {-1, 1}};
 

@@ -29,8 +29,6 @@ static void load_centres(t3r_centres *centres, const t3r_cluster *clusters, uint
     }
 }
 
-/* --- means ------------------------------------------------------------------------------------------------------ */
-
 /* Sums over the points of each SuperCluster. */
 typedef struct cluster_sums {
     int64_t (*sum)[T3R_DIMENSIONS];

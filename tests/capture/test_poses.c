@@ -14,8 +14,6 @@
 #include "capture/clock_offset.h"
 #include "import/poses/trajectory.h"
 
-/* ---- reading ---- */
-
 static void parsed(const char *text, trajectory *out)
 {
     char copy[1024], error[256] = "";
@@ -102,8 +100,6 @@ static void times_that_no_integer_holds_have_no_pose(void **state)
     assert_false(trajectory_at_offset(&t, INT64_MAX, 1, &pose));
     assert_false(trajectory_at_offset(&t, INT64_MIN, -1, &pose));
 }
-
-/* ---- clocks ---- */
 
 enum { WIDTH = 80, HEIGHT = 60, FRAMES = 150 };
 #define FOCAL 75.0

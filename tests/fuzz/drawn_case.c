@@ -9,8 +9,6 @@
 
 enum { LEAST_SIDE = 16, FREQUENT_SIDES = 13, MOST_CHANNELS_DRAWN = 5, MOST_BRIDGE = 64, MOST_GAUSSIANS = 400u };
 
-/* ---- settings ------------------------------------------------------------------------------------ */
-
 /* Draws mostly small sides, because a build's time grows with its pixels. */
 static uint32_t take_working_side(input *in, uint32_t least)
 {
@@ -101,8 +99,6 @@ static void take_weights(input *in, drawn_case *c)
     REQUIRE(t3r_weights_error(c->weights, c->weights_bytes) == NULL);
 }
 
-/* ---- requests ------------------------------------------------------------------------------------ */
-
 /* Draws blobs with ties, one plane for all views. */
 static void take_importance(input *in, drawn_case *c)
 {
@@ -141,8 +137,6 @@ static t3r_request take_request(input *in, const drawn_case *c)
     }
     return request;
 }
-
-/* ---- frames and cameras -------------------------------------------------------------------------- */
 
 static scenery take_scenery(input *in)
 {
@@ -274,8 +268,6 @@ held_frame frame_of(const drawn_case *c, uint32_t index, uint32_t padding)
     }
     return held;
 }
-
-/* ---- the case ------------------------------------------------------------------------------------ */
 
 void draw_case(input *in, drawn_case *c)
 {

@@ -57,8 +57,6 @@ class Network:
     def level(self, source):
         return 0 if source == 0 else self.layers[source - 1].level
 
-    # --- arithmetic --------------------------------------------------------------------------------------------
-
     def quantities(self, layer):
         """Makes random weights and bias within the accumulators' bound, sometimes exactly at it."""
         rng, wide = self.rng, self.activation_bits == 16
@@ -151,8 +149,6 @@ class Network:
         self.zeros.append(layer.zero)
         self.layers.append(layer)
         return len(self.layers)
-
-    # --- file --------------------------------------------------------------------------------------------------
 
     def file_order(self, layer):
         """Converts rows (phase, output) of taps to the file's order."""

@@ -46,8 +46,6 @@ static bench bench_of(const t3r_gaussian *gaussians, uint32_t count, uint32_t si
     return b;
 }
 
-/* --- how much is blended ------------------------------------------------------------------------- */
-
 static uint64_t blended;
 
 static void count_blends(t3r_tile *tile, const t3r_tile_splat *splat)
@@ -84,8 +82,6 @@ static void the_plan_bounds_what_is_blended(void **state)
     free(gaussians);
 }
 
-/* --- which are drawn ------------------------------------------------------------------------------ */
-
 static drawing drawing_of(const t3r_gaussian *gaussians, uint32_t count, uint32_t tile_splats)
 {
     bench b = bench_of(gaussians, count, SIDE, tile_splats);
@@ -113,8 +109,6 @@ static void the_nearest_are_drawn(void **state)
     drawing_free(&whole);
     free(gaussians);
 }
-
-/* --- stopping ------------------------------------------------------------------------------------- */
 
 typedef struct watch {
     uint32_t looks, stop_at; /* 0: never */

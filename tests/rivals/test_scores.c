@@ -126,8 +126,6 @@ static void efficientgs(void **state)
     splat_model_free(&model);
 }
 
-/* ---- PUP ------------------------------------------------------------------------------------------------------ */
-
 static void log_determinants(void **state)
 {
     (void)state;
@@ -211,8 +209,6 @@ static void pup(void **state)
     }
     splat_model_free(&model);
 }
-
-/* ---- random, and choosing ------------------------------------------------------------------------------------- */
 
 static void random_scores(void **state)
 {

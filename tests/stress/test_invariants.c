@@ -18,8 +18,6 @@
 #include "study/stress/stability.h"
 #include "study/stress/verdict.h"
 
-/* ---- a scene ----------------------------------------------------------------------------------------------------- */
-
 static void scenes_out_of_bounds(void **state)
 {
     (void)state;
@@ -73,8 +71,6 @@ static void shapes_that_no_file_holds(void **state)
     }
 }
 
-/* ---- a cell ------------------------------------------------------------------------------------------------------ */
-
 static int open_plane(void **state)
 {
     return plane_open(state, (stress_contest){.methods = {&method_trim3r}, .method_count = 1});
@@ -113,8 +109,6 @@ static void arenas_too_small_for_perturbed_frames(void **state)
     assert_int_equal(f->rows[0].status, STRESS_BROKEN);
     assert_non_null(strstr(f->rows[0].reason, "too small"));
 }
-
-/* ---- rows -------------------------------------------------------------------------------------------------------- */
 
 /* An arena that grew, or changed for the same budget, is reported; a rival's arena is that of all points. */
 static void arenas_that_change(void **state)

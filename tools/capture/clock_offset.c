@@ -15,8 +15,6 @@
 #define LEAST_EXPLAINED 0.5
 #define TERMS 2 /* rotation, translation */
 
-/* ---- pictures ---- */
-
 /* Returns a brightness of 0..255: the green of colours, the luma of YUV. */
 static float brightness(const t3r_frame *f, uint32_t x, uint32_t y)
 {
@@ -109,8 +107,6 @@ void clock_motion_of(const clock_picture *before, const clock_picture *after, cl
     out->right = (right - MOST_SHIFT + more_right) / CLOCK_COLUMNS;
     out->down = (down - MOST_SHIFT + more_down) / CLOCK_ROWS;
 }
-
-/* ---- poses ---- */
 
 /* Predicts how the picture moves between two poses: right and down, by rotation (radians) and by translation (world
  * units), in the first camera. */

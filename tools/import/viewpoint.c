@@ -58,8 +58,6 @@ int viewpoint_from_angle(double degrees, uint32_t width, uint32_t height, viewpo
     return set_pose(&out->camera, (double[3]){0}, (double[4]){1, 0, 0, 0});
 }
 
-/* ---- pose files --------------------------------------------------------------------------------------------- */
-
 static int convert_frames(const posed_folder *folder, viewpoint_list *out, char *error, size_t error_bytes)
 {
     out->items = calloc(folder->frame_count, sizeof *out->items);
@@ -139,8 +137,6 @@ int viewpoint_read_pose(const char *path, viewpoint_list *out, char *error, size
     }
     return result;
 }
-
-/* ---- trajectories --------------------------------------------------------------------------------------------- */
 
 static int read_line(char *line, const viewpoint *lens, viewpoint *view, char *reason, size_t reason_bytes)
 {

@@ -37,8 +37,6 @@ typedef struct all_told {
     scale_bins bins;
 } all_told;
 
-/* ---- numbers ---------------------------------------------------------------------------------------------------- */
-
 static scene_told tell_scene(const scene_file *scene)
 {
     scene_told told = {.count = scene->count};
@@ -136,8 +134,6 @@ static int tell_all(const scene_info_request *request, all_told *told)
     told->bins = scale_bins_of(told->scales, request->scene_count);
     return code;
 }
-
-/* ---- output ------------------------------------------------------------------------------------------------------ */
 
 static void add_numbers(cJSON *object, const char *key, const double *values, uint32_t count)
 {

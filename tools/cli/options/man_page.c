@@ -12,8 +12,6 @@
 #define GROUPS_MOST 100
 #define EXAMPLES "Examples:"
 
-/* ---- roff -------------------------------------------------------------------------------------------------------- */
-
 /* Prints text; escapes the characters special to roff. */
 static void put(const char *text, size_t bytes)
 {
@@ -107,8 +105,6 @@ void man_page_end(void)
     man_page_item("3", "the budget or the arena is too small");
 }
 
-/* ---- options ----------------------------------------------------------------------------------------------------- */
-
 /* Returns the text as help shows it, from malloc() if a filter made it. */
 static char *filtered(const struct argp *owner, int key, const char *text)
 {
@@ -183,8 +179,6 @@ static void print_options(const struct argp *argp)
     man_page_item("--usage", "print a short list of options");
     option_list_free(&list);
 }
-
-/* ---- a command --------------------------------------------------------------------------------------------------- */
 
 /* Finds the lines under "Examples:", up to the first that does not begin with a blank; *bytes is 0 if there are
  * none. */

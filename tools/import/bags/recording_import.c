@@ -17,8 +17,6 @@
 
 #define ERROR_BYTES 1024
 
-/* ---- making ---- */
-
 typedef struct made_frames {
     bag_frames *frames;
     const pose_account *accounts; /* NULL: poses were not estimated */
@@ -69,8 +67,6 @@ static int estimate_all(t3r_recording *recording, const recording_import_request
     free(frames);
     return code;
 }
-
-/* ---- the report ---- */
 
 /* Describes what was lost by a cut; "" without one. */
 static void say_lost(const t3r_recording *recording, char *text, size_t bytes)
@@ -184,8 +180,6 @@ static void print_text(const recording_import_request *r, const t3r_recording *r
         poses_print(NULL, totals->frames, accounts);
     }
 }
-
-/* ---- both ---- */
 
 static int import_opened(const recording_import_request *r, t3r_recording *recording)
 {

@@ -161,8 +161,6 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
 
 const struct argp reconstruction_budget_argp = {.options = budget, .parser = parse_budget};
 
-/* ---- both ------------------------------------------------------------------------------------------------------ */
-
 static error_t parse_both(int key, char *arg, struct argp_state *state)
 {
     (void)arg;

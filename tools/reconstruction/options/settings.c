@@ -78,8 +78,6 @@ void settings_add_json(cJSON *object, const t3r_config *config)
     }
 }
 
-/* ---- the command line ------------------------------------------------------------------------------------------ */
-
 #define FIRST_KEY 512 /* above those of the commands */
 
 /* Appends the range and the default to the help of a setting: ", 0..16 (4)", " (on)". */

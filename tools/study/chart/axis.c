@@ -20,8 +20,6 @@ double chart_axis_place(const chart_axis *axis, double value)
     return (value_on_scale(axis, value) - low) / (high - low);
 }
 
-/* ---- names of values ------------------------------------------------------------------------------------------- */
-
 /* Writes the value with at most `decimals` decimals, without trailing zeros. */
 static void short_number(double value, int decimals, char *text, size_t bytes)
 {
@@ -79,8 +77,6 @@ void chart_value_text(chart_measure measure, double value, char *text, size_t by
         snprintf(text, bytes, "%.*f%s", about->decimals, value, about->unit == CHART_DECIBELS ? " dB" : "");
     }
 }
-
-/* ---- ticks ----------------------------------------------------------------------------------------------------- */
 
 static void add(chart_axis *axis, chart_unit unit, double value, double step)
 {

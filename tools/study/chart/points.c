@@ -24,8 +24,6 @@ double chart_quantile(const double *ascending, uint32_t count, double q)
     return ascending[below] + (at - below) * (ascending[above] - ascending[below]);
 }
 
-/* ---- rows to points -------------------------------------------------------------------------------------------- */
-
 /* Numbers of a row, its point and its series. */
 typedef struct key {
     uint32_t point, series, row;
@@ -205,8 +203,6 @@ void chart_points_free(chart_points *points)
     free(points->ascending);
     *points = (chart_points){0};
 }
-
-/* ---- means and quartiles --------------------------------------------------------------------------------------- */
 
 static int by_scene(const void *left, const void *right)
 {

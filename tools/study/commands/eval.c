@@ -25,8 +25,6 @@ typedef struct study_options {
     uint32_t ablation_count;
 } study_options;
 
-/* ---- arguments --------------------------------------------------------------------------------------------------- */
-
 static void add_ablation(struct argp_state *state, study_options *o, list_word name)
 {
     uint32_t found = 0;
@@ -140,8 +138,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 static const struct argp_child children[] = {
     {.argp = &evaluation_argp}, {.argp = &own_argp}, {.argp = &rival_argp}, {0}};
 static const struct argp argp = {.parser = parse, .children = children};
-
-/* ---- contestants ------------------------------------------------------------------------------------------------- */
 
 static int add_methods(const study_options *o, evaluation_contestants *chosen)
 {

@@ -67,8 +67,6 @@ void splat_view_draw(const splat_view *view, float *rgb, float *transmittance)
     }
 }
 
-/* ---- walking ------------------------------------------------------------------------------------------------- */
-
 typedef struct walk {
     void (*visit)(void *user, const splat_row *row);
     void *user;

@@ -134,8 +134,6 @@ splat splat_project(const splat_camera *camera, const double *p, double alpha_le
     return s;
 }
 
-/* ---- derivatives ----------------------------------------------------------------------------------------------- */
-
 /* Chains the gradient from the conic to the projected factor: dg[axis][k]. */
 static void chain_conic(const projection *j, const splat_gradient *g, double dg[2][3])
 {

@@ -55,8 +55,6 @@ uint32_t stress_capture_valid(const stress_capture *capture)
     return valid;
 }
 
-/* ---- from a recording ------------------------------------------------------------------------------------------- */
-
 /* Converts a fixed-point camera to doubles, exactly. */
 static t3r_recorded_camera camera_of(const t3r_camera *camera, uint32_t width, uint32_t height)
 {
@@ -125,8 +123,6 @@ int stress_capture_read(stress_capture *capture, const evaluation_case *what, co
     }
     return code;
 }
-
-/* ---- to a recording --------------------------------------------------------------------------------------------- */
 
 static bool write_frames(const stress_capture *capture, FILE *file, t3r_recorder *recorder)
 {

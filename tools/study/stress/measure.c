@@ -64,8 +64,6 @@ static double mean_change(const uint8_t *a, const uint8_t *b, const uint8_t *mas
     return count == 0 ? NAN : (double)sum / (double)count;
 }
 
-/* ---- one scene -------------------------------------------------------------------------------------------------- */
-
 static void take_scores(stress_row *row, const evaluation_row *scores)
 {
     row->value[STRESS_PSNR] = scores->value[EVALUATION_PSNR];
@@ -142,8 +140,6 @@ static int measure_all_points(cell *it, stress_run *run, uint32_t capture)
     return code != CLI_OK && strcmp(reason, NO_MEMORY) == 0 ? code : CLI_OK;
 }
 
-/* ---- a capture -------------------------------------------------------------------------------------------------- */
-
 /* Adds the changes since the previous capture. */
 static void add_changes(cell *it, uint32_t capture)
 {
@@ -189,8 +185,6 @@ static int measure_capture(cell *it, uint32_t capture)
     stress_run_close(&run);
     return code;
 }
-
-/* ---- a cell ----------------------------------------------------------------------------------------------------- */
 
 static void name_rows(const cell *it, uint32_t grade)
 {

@@ -98,8 +98,6 @@ bool stress_album_offer(stress_album *album, const stress_row *rows, const uint8
     return done;
 }
 
-/* ---- the page ---------------------------------------------------------------------------------------------------- */
-
 static int by_badness(const void *a, const void *b)
 {
     double x = badness(((const stress_picture *)a)->rows), y = badness(((const stress_picture *)b)->rows);
@@ -151,8 +149,6 @@ static void add_section(html_page *page, const stress_picture *picture, uint32_t
         add_renders(page, picture, picture->plain, true, count);
     }
 }
-
-/* ---- tables ------------------------------------------------------------------------------------------------------ */
 
 static void add_cells(html_page *page, const char *const *texts, uint32_t count)
 {

@@ -8,8 +8,6 @@
 
 #define RADIANS 0.017453292519943295
 
-/* ---- pose ------------------------------------------------------------------------------------------------------- */
-
 static int by_size(const void *a, const void *b)
 {
     const uint16_t x = *(const uint16_t *)a, y = *(const uint16_t *)b;
@@ -99,8 +97,6 @@ bool perturb_huge(stress_capture *capture, double exponent, uint32_t seed)
     }
     return true;
 }
-
-/* ---- rolling shutter -------------------------------------------------------------------------------------------- */
 
 static double between(double a, double b, double share)
 {

@@ -26,8 +26,6 @@ bool perturb_noise(stress_capture *capture, double levels, uint32_t seed)
     return true;
 }
 
-/* ---- blur ------------------------------------------------------------------------------------------------------- */
-
 /* Blurs `count` samples `step` apart, borders repeated. */
 static void blur_line(const double *weight, int reach, const double *from, double *to, int count, size_t step)
 {
@@ -87,8 +85,6 @@ bool perturb_blur(stress_capture *capture, double pixels, uint32_t seed)
     free(b);
     return done;
 }
-
-/* ---- gains ------------------------------------------------------------------------------------------------------ */
 
 /* Applies stops[c], up in even views, down in odd ones. */
 static void gains(stress_capture *capture, const double stops[3])

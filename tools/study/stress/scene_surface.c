@@ -11,8 +11,6 @@
 #define LEAVES_FAR 2.4
 #define BACKDROP 3.0
 
-/* ---- colours ---------------------------------------------------------------------------------------------------- */
-
 /* [0, 1) of the whole-numbered corner (x, y) */
 static double corner(double x, double y, uint32_t seed)
 {
@@ -56,8 +54,6 @@ static stress_hit paper(double x, double y, double dx, double dy, double z)
     tint(&hit, 210, 190, 160, 0.5 + 0.5 * speckle(at_x, at_y, 31));
     return hit;
 }
-
-/* ---- scenes ----------------------------------------------------------------------------------------------------- */
 
 /* Draws squares of `side` pixels on a plane two metres away that leans by one in five. */
 stress_hit stress_plane(double x, double y, double dx, double dy, double pixel, double side)

@@ -91,9 +91,6 @@ def options_of(arguments):
     return options
 
 
-# --- the run ----------------------------------------------------------------------------------------------------------
-
-
 def means(rows):
     """Returns each column's mean over the rows that have a number there."""
     columns = ([v for v in column if math.isfinite(v)] for column in zip(*rows))

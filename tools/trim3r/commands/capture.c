@@ -21,8 +21,6 @@
 #define MOST_MOTIONS 3000u           /* frames for estimating an offset */
 #define RANGE_NS INT64_C(1000000000) /* search range about the expected offset */
 
-/* ---- stopping ---- */
-
 static volatile sig_atomic_t stop;
 
 /* Handles signals; a second one ends the process. */
@@ -42,8 +40,6 @@ static void watch_signals(void)
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
 }
-
-/* ---- --list ---- */
 
 static void say_device(void *user, const char *line)
 {
@@ -68,8 +64,6 @@ static int list(void)
     printf("formats    %s; depth Z16 Y16\n", t3r_capture_formats());
     return CLI_OK;
 }
-
-/* ---- poses ---- */
 
 /* Measures the picture's motion from frame to frame; *count motions in a heap array. */
 static clock_motion *motions_of(const capture_options *o, uint32_t *count, char *error)
@@ -142,8 +136,6 @@ static int estimate_offset(const capture_options *o, const trajectory *poses, cl
     free(motions);
     return status == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
-
-/* ---- the run ---- */
 
 static int run(const capture_options *o, const trajectory *poses, const clock_offset *offset)
 {

@@ -64,8 +64,6 @@ static const struct argp argp = {
            "Exit status: 0 equal, 1 different or unreadable, 2 bad usage.",
 };
 
-/* ---- scenes ---------------------------------------------------------------------------------------------------- */
-
 typedef struct scene_difference {
     uint32_t different; /* Gaussians that are not the same */
     uint32_t first;     /* the first of them */
@@ -158,8 +156,6 @@ static int diff_scenes(const diff_options *o)
     scene_file_free(&scene[1]);
     return equal ? CLI_OK : CLI_BAD_INPUT;
 }
-
-/* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
 typedef struct picture_difference {
     uint64_t different; /* samples */

@@ -81,15 +81,11 @@ static inline TARGET void sum(int16_t *sums, const bytes values[T3R_PATH_LINKS],
     }
 }
 
-/* ---- census ---- */
-
 static inline TARGET bytes look_up(const uint8_t table[16], bytes x)
 {
     const __m256i both = _mm256_broadcastsi128_si256(_mm_loadu_si128((const __m128i *)table));
     return (bytes)_mm256_shuffle_epi8(both, (__m256i)x);
 }
-
-/* ---- winners ---- */
 
 static inline TARGET words load_words(const int16_t *from, uint32_t count)
 {

@@ -36,8 +36,6 @@ static uint64_t binary_bytes(const glb_layout *layout)
     return each * layout->count;
 }
 
-/* ---- JSON -------------------------------------------------------------------------------------------------------- */
-
 static void add_numbers(cJSON *object, const char *name, const double values[3])
 {
     cJSON *array = cJSON_AddArrayToObject(object, name);
@@ -121,8 +119,6 @@ static char *make_json(const glb_layout *layout)
     cJSON_Delete(root);
     return text;
 }
-
-/* ---- numbers ----------------------------------------------------------------------------------------------------- */
 
 static void put_attribute(const scene_row *row, uint32_t attribute, uint8_t *out)
 {
