@@ -68,7 +68,7 @@ t3r_v4l2_fetched t3r_v4l2_node_fetch(t3r_v4l2_node *node, bool error_polled, t3r
 int t3r_v4l2_node_requeue(t3r_v4l2_node *node, uint32_t buffer);
 /* Returns the number of buffers that the driver holds. */
 uint32_t t3r_v4l2_node_queued(const t3r_v4l2_node *node);
-/* Records how long the caller was away, from which the node tells whether frames were lost for want of buffers. */
+/* Records how long the caller was away; from this the node decides whether frames were lost for want of buffers. */
 void t3r_v4l2_node_was_away(t3r_v4l2_node *node, int64_t away_ns);
 /* Whether the node reported that its format is no longer valid. */
 bool t3r_v4l2_node_changed(t3r_v4l2_node *node);

@@ -23,7 +23,7 @@
 #include "room/room.h"
 #include "scratch.h"
 
-/* ---- the allocator: glibc's own, counted; it stands in for the whole process's, the C library included ---- */
+/* glibc's own allocator, counted; it replaces the whole process's, the C library included */
 
 static volatile uint64_t allocations;
 

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mutants of the fixed-point core, each compiled with the unit tests that should notice it.
 
-    mutants.py             a sample, the same each time: every mutant is caught, or listed in equivalent.txt with a
-reason     mutants.py --all       every mutant, and docs/study/mutants.md has the counts of today     mutants.py --write
-every mutant, and writes that page     mutants.py --only FILE those of one file, for who writes tests: prints which
-survive
+    mutants.py             a sample, the same each time: every mutant is caught, or equivalent.txt has the reason
+    mutants.py --all       every mutant, and docs/study/mutants.md has the current counts
+    mutants.py --write     every mutant, and writes that page
+    mutants.py --only FILE the mutants of one file, for authors of tests: prints the survivors
 
-Either way the tests are taken away first: a mutant must survive then.
+In each case a mutant is also run without its tests, and must survive.
 """
 import argparse
 import collections

@@ -257,8 +257,6 @@ static void test_turned_camera(void **state)
     discard(&shots[1]);
 }
 
-/* ---- what cannot be told ---------------------------------------------------------------------------------------- */
-
 static void refuse(shot *shots, poses_source source, const char *why)
 {
     motion poses[2];

@@ -269,7 +269,7 @@ static void queues_are_bounded(void **state)
         heard h;
         begin(&h, true, queue);
         send_info(&h);
-        for (int i = 1; i < 200; i++) { /* no pose ever, and time stands still */
+        for (int i = 1; i < 200; i++) { /* never a pose, and time does not advance */
             send(&h, FRAME_FEED_COLOUR, i * 33, 0);
             send(&h, FRAME_FEED_DEPTH, i * 33, 0);
             assert_true(h.held <= 2 * queue + 2);

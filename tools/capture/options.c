@@ -267,7 +267,7 @@ static void check(struct argp_state *state, capture_options *o)
  */
 typedef enum value_kind { FLAG, TEXT, COUNT, DECIMAL, SIZE } value_kind;
 
-/* Options whose value is one field; the others stand in parse(). */
+/* Options whose value is one field; parse() handles the others. */
 static const struct {
     int key;
     value_kind kind;

@@ -38,7 +38,7 @@ def passages_of(header, root, compiler):
 
 
 def declarations(text):
-    """Without what cffi does not take: bodies of functions, pragmas, macros that are no whole number."""
+    """Removes everything that cffi does not accept: bodies of functions, pragmas, macros that are no whole number."""
     kept = [line for line in text.splitlines() if not line.startswith("#") or NUMBER.match(line)]
     kept = [NUMBER.sub(r"#define \1 \2", line) for line in kept]
     return INLINE.sub("", "\n".join(kept) + "\n")

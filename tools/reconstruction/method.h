@@ -8,8 +8,8 @@
 
 #include "reconstruction/reconstruction.h"
 
-/* What a method's scenes of one context share, made when first needed, because many budgets use it. All zero: nothing
- * is made. Context, settings and recording must not change until it is closed. */
+/* Data shared by a method's scenes of one context, made when first needed, because many budgets use it. All zero:
+ * nothing is made. Context, settings and recording must not change until it is closed. */
 typedef struct method_source {
     void *made;
     void (*close)(void *made);

@@ -88,7 +88,7 @@ typedef struct reconstruction {
     bool stage_hashed[T3R_STAGE_COUNT];
 } reconstruction;
 
-/* What is reported about a build, however it was made. */
+/* The report on a build, by any method. */
 typedef struct reconstruction_account {
     char head[16], bits[8], crc[9]; /* as in chosen_head */
     uint32_t width, height;         /* working size */
@@ -137,7 +137,7 @@ int reconstruction_load(reconstruction *r, scene_file *scene, uint32_t width, ui
  * without harmonics are unchanged. */
 int reconstruction_look_from(reconstruction *r, const t3r_camera *camera);
 
-/* What the frames of a scene hold before it is built: valid points, and by stereo the scene's depth in world units, a
+/* Contents of a scene's frames before it is built: valid points, and by stereo the scene's depth in world units, a
  * power of two times 1.5 (0 by sensor). */
 typedef struct reconstruction_points {
     uint32_t valid;

@@ -3,7 +3,7 @@
 #ifndef T3R_KERNELS_LANES_INLINE_H
 #define T3R_KERNELS_LANES_INLINE_H
 
-/* For a function whose argument types require its callers' target. Without optimisation it is called: if inlined,
+/* For functions whose argument types require their callers' target. Without optimisation they are called: if inlined,
  * every intrinsic would take stack for its operands. */
 #if defined(__OPTIMIZE__)
 #define T3R_LANES_INLINE static inline __attribute__((always_inline))

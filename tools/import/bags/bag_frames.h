@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What import does with a bag's frames beyond reading them: composes and interpolates poses, registers depth to
- * colour. */
+/* Import's changes to a bag's frames: composes and interpolates poses, registers depth to colour. */
 #ifndef TRIM3R_TOOLS_BAG_FRAMES_H
 #define TRIM3R_TOOLS_BAG_FRAMES_H
 

@@ -414,7 +414,7 @@ class Reconstructor:
         return min(int(most), max(1, int(np.floor(points * keep / 100 + 0.5))))
 
     def _matched(self, runtime: Any) -> int:
-        """The points that a match finds: of the scene at hand, else of a build of one Gaussian."""
+        """Returns the number of points that a match finds: of the current scene, else of a build of one Gaussian."""
         scene = ffi.new("t3r_scene *")
         if lib.t3r_get_scene(runtime, scene) != lib.T3R_OK:
             request = ffi.new("t3r_request *", {"gaussians": 1, "head": lib.T3R_HEAD_ANALYTIC})
@@ -430,8 +430,8 @@ class Reconstructor:
 
 
 def _measured(frame: Frame, config: Any) -> Optional[int]:
-    """Pixels with a depth at the working size. A runtime tells them with a scene alone, so the image stage is asked.
-    None by stereo."""
+    """Returns the number of pixels with a depth at the working size, by the image stage, because a runtime counts
+    them only with a scene. None by stereo."""
     if config.depth != lib.T3R_DEPTH_SENSOR:
         return None
     steps = develop(frame, config.width, config.height).depth

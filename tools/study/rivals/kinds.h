@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How methods choose points, and how Gaussians are made of them. */
+/* The methods' ways of choosing points, and of making Gaussians of them. */
 #ifndef TRIM3R_TOOLS_RIVALS_KINDS_H
 #define TRIM3R_TOOLS_RIVALS_KINDS_H
 
@@ -14,7 +14,7 @@ typedef enum method_kind {
     METHOD_KIND_COUNT
 } method_kind;
 
-/* How the chosen points become Gaussians. */
+/* The way from chosen points to Gaussians. */
 typedef enum method_way {
     METHOD_PLAIN,
     METHOD_FINETUNE, /* the rival's Gaussians are fine-tuned on the context views */
