@@ -19,8 +19,7 @@
 #define NS_PER_MS INT64_C(1000000)
 #define PATIENCE_NS (100 * NS_PER_MS)             /* on top of the pairing distance */
 #define MOST_STAMP_NS ((int64_t)1000000000 << 31) /* recordings keep seconds in 31 bits */
-#define MOST_IDLE_ROUNDS 64u /* consecutive "ready" reports without an image after which the driver counts as faulty   \
-                              */
+#define MOST_IDLE_ROUNDS 64u /* consecutive "ready" reports without an image before the driver counts as faulty */
 
 enum { COLOUR, DEPTH, NODES };
 
