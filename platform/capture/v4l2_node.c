@@ -295,7 +295,7 @@ static const char *image_fault(const t3r_v4l2_node *node, const struct v4l2_buff
         return "the driver calls it corrupted";
     }
     if (buffer->bytesused > node->buffers[buffer->index].bytes) {
-        return "the driver tells more bytes than the buffer has";
+        return "the driver reports more bytes than the buffer has";
     }
     if (buffer->bytesused == 0 || buffer->bytesused < node->needed_bytes) {
         return "it is shorter than an image";

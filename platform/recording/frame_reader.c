@@ -59,7 +59,7 @@ static int read_record(t3r_frame_reader *reader, record *out)
     }
     *out = (record){head.opcode, reader->at + sizeof bytes, head.bytes};
     return reader->chunk_end != 0 && !t3r_mcap_in_chunk(head.opcode)
-               ? fail(reader, "a record stands in a chunk that may not")
+               ? fail(reader, "a chunk holds a record that may not be in one")
                : 1;
 }
 
@@ -367,7 +367,7 @@ static int finish(t3r_frame_reader *reader, const instant *now, t3r_capture_fram
 {
     if (reader->has_intrinsics &&
         (reader->camera_width != now->frame.width || reader->camera_height != now->frame.height)) {
-        return fail(reader, "the size in a CameraInfo is not that of the image");
+        return fail(reader, "the size in a CameraInfo is not the image's");
     }
     *frame = (t3r_capture_frame){
         .index = reader->frames,

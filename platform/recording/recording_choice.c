@@ -177,7 +177,7 @@ static void say_why(t3r_recording *recording, t3r_stream *stream)
         return;
     }
     if (stream->role == T3R_STREAM_OTHER) {
-        const char *why = stream->type == T3R_ROS_TYPE_COUNT ? "its type is none that is read" : "it has no messages";
+        const char *why = stream->type == T3R_ROS_TYPE_COUNT ? "its type is not read" : "it has no messages";
         snprintf(stream->unused, sizeof stream->unused, "%s", why);
         return;
     }

@@ -155,7 +155,7 @@ static void test_names_tell_what_differs(void **state)
         "trim3r \xC2\xB7 analytic",
         "pup",
         "pup+finetune",
-        "trim3r \xC2\xB7 head not told \xC2\xB7 bits not told \xC2\xB7 refine not told"};
+        "trim3r \xC2\xB7 head unknown \xC2\xB7 bits unknown \xC2\xB7 refine unknown"};
     assert_int_equal(points.series_count, 6);
     for (uint32_t s = 0; s < 6; s++) {
         assert_string_equal(names.series[s].text, expected[s]);
@@ -185,7 +185,7 @@ static void test_refusals(void **state)
         {"method,build_ms\na,1\n", "t.csv:1: the heading names no quality: one of psnr, ssim, perceptual, planar_psnr"},
         {"psnr,keep\n1,2\n",
          "t.csv:1: the heading names no cost: one of build_ms, render_ms, arena_bytes, scene_bytes"},
-        {"psnr,build_ms,psnr\n1,2,3\n", "t.csv:1: psnr stands in the heading twice"},
+        {"psnr,build_ms,psnr\n1,2,3\n", "t.csv:1: psnr is in the heading twice"},
         {"psnr,build_ms\n1,2\n\n1\n", "t.csv:4: 1 cells, where the heading has 2"},
         {"psnr,build_ms\n1,2,3\n", "t.csv:2: 3 cells, where the heading has 2"},
         {"psnr,build_ms\n1,inf\n", "t.csv:2: build_ms: 'inf' is not a finite number"},

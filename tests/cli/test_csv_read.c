@@ -71,8 +71,8 @@ static void test_refusals(void **state)
 {
     (void)state;
     refuse("a\n\"b", 4, "t.csv:2: a quote that is not closed");
-    refuse("a\n\n\"b\nc\"d", 9, "t.csv:3: text behind a quoted cell");
-    refuse("\"b\" ,", 5, "t.csv:1: text behind a quoted cell");
+    refuse("a\n\n\"b\nc\"d", 9, "t.csv:3: text after a quoted cell");
+    refuse("\"b\" ,", 5, "t.csv:1: text after a quoted cell");
     refuse("ab\"c", 4, "t.csv:1: a quote within a cell that did not begin with one");
     refuse("a\0b", 3, "t.csv:1: a control character");
     refuse("\"a\0b\"", 5, "t.csv:1: a control character");

@@ -66,7 +66,7 @@ given("recording", "chunk-lies-less.mcap", f.mcap(f.chunk("zstd", f.zstd([(0, 9 
 given("recording", "chunk-of-2^63.mcap", f.mcap(f.chunk("lz4", b"abcd", 1 << 63)), "may unpack to")
 given("recording", "chunk-uncompressed-lies.mcap", f.mcap(f.chunk("", b"abcd", 1 << 40)), "uncompressed_size")
 given("recording", "chunk-in-chunk.mcap",
-      lambda: f.mcap(f.chunk("", *[(c := f.chunk("", b"", 0)), len(c)])), "may not stand in a chunk")
+      lambda: f.mcap(f.chunk("", *[(c := f.chunk("", b"", 0)), len(c)])), "may not be in a chunk")
 given("recording", "chunk-crc.mcap", f.mcap(f.chunk("", f.channels(), len(f.channels()), 7)), "CRC")
 given("recording", "zstd-size-of-2^62.mcap", f.mcap(f.chunk("zstd", f.zstd([b"abc"], 1 << 62), 3)))
 given("recording", "record-of-2^63.mcap", f.mcap(f.record(5, b"", 1 << 63)), "past the file's end")

@@ -163,7 +163,7 @@ def robot(packing):
     check(use == {"/cam/color/image_raw/compressed": "colour", "/cam/color/camera_info": "camera_info",
                   "/cam/depth/image_rect_raw": "depth", "/cam/depth/camera_info": "camera_info of depth",
                   "/tf": "transforms", "/tf_static": "transforms"}, f"{use}")
-    check([(t["topic"], t["unused"]) for t in told["unused"]] == [("/imu", "its type is none that is read")],
+    check([(t["topic"], t["unused"]) for t in told["unused"]] == [("/imu", "its type is not read")],
           f"{told['unused']}")
     still = frames.matrix(yaw(0.2), (0.1, 0, 0.3)) @ frames.matrix(OPTICAL, (0, 0, 0))
     for i in range(count):
@@ -193,7 +193,7 @@ def robot(packing):
         refused = run(TRIM3R, command[0], "robot.mcap", *command[1:], expect=1)
         check("trim3r import robot.mcap -o NAME.mcap" in refused.stderr, f"{command}: {refused.stderr}")
     text = run(TRIM3R, "import", "robot.mcap", "-o", "out.mcap").stdout
-    check("not used             /imu (sensor_msgs/msg/Imu, 1 messages): its type is none that is read" in text, text)
+    check("not used             /imu (sensor_msgs/msg/Imu, 1 messages): its type is not read" in text, text)
 
 
 def odometry_and_named_topics():

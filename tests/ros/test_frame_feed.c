@@ -297,7 +297,7 @@ static void time_goes_on(void **state)
     send_info(&h);
     send(&h, FRAME_FEED_COLOUR, 5000, 0);
     send(&h, FRAME_FEED_COLOUR, 5000, 0); /* twice */
-    assert_string_equal(h.reason, "the stamp is not behind that of the message before");
+    assert_string_equal(h.reason, "the stamp is not after the previous message's");
     assert_int_equal(h.held, 1);
     send(&h, FRAME_FEED_COLOUR, 1000, 1); /* the clock was set back */
     assert_non_null(strstr(h.reason, "time went back"));

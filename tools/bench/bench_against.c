@@ -99,7 +99,8 @@ static int ask_for_help(contest_state *s)
     const bool known = status == 0 && strstr(text, "kmeans_ms") != NULL && strstr(text, "--json") != NULL;
     s->has_stages = strstr(text, "--stages") != NULL;
     free(text);
-    return known ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s: not a trim3r: its bench --help is none of a bench", other);
+    return known ? CLI_OK
+                 : cli_error(CLI_BAD_INPUT, "%s: not a trim3r program: its bench --help is not a bench's", other);
 }
 
 static bool ends_a_row(const char *key)

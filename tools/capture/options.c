@@ -157,7 +157,7 @@ static void parse_intrinsics(struct argp_state *state, const char *text, capture
         }
     }
     if (count != 4 && count != 8 && count != 9) {
-        argp_error(state, "--intrinsics takes fx,fy,cx,cy, with k1,k2,p1,p2,k3 behind them or not, not '%s'", text);
+        argp_error(state, "--intrinsics takes fx,fy,cx,cy, optionally followed by k1,k2,p1,p2,k3, not '%s'", text);
     }
     o->intrinsics.fx = numbers[0];
     o->intrinsics.fy = numbers[1];
@@ -232,7 +232,7 @@ static void check(struct argp_state *state, capture_options *o)
     if (o->source == NULL) {
         argp_error(state, "--source is missing (--list shows what there is)");
     } else if (o->output == NULL && o->scene == NULL && !o->hash) {
-        argp_error(state, "neither -o REC.mcap nor --build SCENE.ply says what is to become of the frames");
+        argp_error(state, "-o REC.mcap or --build SCENE.ply is missing");
     } else if (o->scene == NULL && (o->every > 0 || budget || o->build.context_count > 0 || o->local)) {
         argp_error(state, "--every, --local, --context and budgets belong to --build");
     } else if (o->scene != NULL && o->build.config.allocate == T3R_ALLOCATE_GIVEN) {

@@ -210,13 +210,13 @@ static const struct argp_option options[] = {
     {"keep", KEY_KEEP, "P,P,...", 0, "percents of the valid points, one row each; with --auto the upper bound (100)",
      0},
     {"gaussians", KEY_GAUSSIANS, "Z,Z,...", 0,
-     "numbers of Gaussians, one row each, behind those of --keep: all valid points where there are fewer", 0},
+     "numbers of Gaussians, one row each, after those of --keep: all valid points if there are fewer", 0},
     {"prune", KEY_PRUNE, "SCENE.ply", OPTION_READS,
      "scene, made elsewhere of the views of --context, to prune: percents are of its Gaussians; trim3r makes new ones "
      "of points among their means; where a view has no depth, the mask is of the means",
      0},
     {"scene", KEY_SCENE, "SCENE", OPTION_READS,
-     "scene file, of trim3r or made elsewhere, to score as it is: nothing is built; it stands in the recording's "
+     "scene file, of trim3r or made elsewhere, to score as it is: nothing is built; it is in the recording's "
      "world, and the frames of --context, or of the triplets, make the mask alone; where one has no depth, the mask is "
      "of the "
      "scene's means",
@@ -229,7 +229,7 @@ static const struct argp_option options[] = {
     {"from-file", KEY_FROM_FILE, NULL, 0, "write each scene as .ply, read it back and draw that", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
     {"csv", KEY_CSV, "FILE", OPTION_WRITES(FILE_TABLE),
-     "table to write; each row appears when it is made, or without --resume all at the end where a table stands", 0},
+     "table to write; each row appears when it is made, or without --resume all at the end if a table exists", 0},
     {"images", KEY_IMAGES, "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
      "folder to write pictures into: DIR/<target>/<method>_<keep>.png, target.png, mask.png, context_a.png, ...; with "
      "--heads <head> is in the name, and settings that are not the default come before <keep>, as in "

@@ -18,7 +18,7 @@
 static int open_page(evaluation_report *report)
 {
     char error[ERROR_BYTES] = "";
-    report->page = html_page_new("trim3r: rendered views beside recorded ones",
+    report->page = html_page_new("trim3r: rendered views next to recorded ones",
                                  "A scene is built from the context views alone, with the share of their points that "
                                  "stands under each picture, and drawn from where the target was taken.");
     if (report->page == NULL) {

@@ -148,7 +148,7 @@ void frame_feed_warn(frame_feed *feed, frame_feed_topic topic, const char *reaso
     }
     char line[FRAME_FEED_REASON_BYTES];
     if (more > 0) {
-        t3r_reason(line, sizeof line, "%s (%" PRIu64 " more like the one before)", reason, more);
+        t3r_reason(line, sizeof line, "%s (%" PRIu64 " more like the previous one)", reason, more);
     } else {
         t3r_reason(line, sizeof line, "%s", reason);
     }
@@ -167,10 +167,10 @@ static bool is_in_order(frame_feed *feed, frame_feed_topic topic, int64_t stamp_
     const int64_t last_ns = feed->last_ns[topic];
     if (last_ns != INT64_MIN && stamp_ns <= last_ns) {
         if (last_ns - stamp_ns < JUMP_NS) {
-            frame_feed_warn(feed, topic, "the stamp is not behind that of the message before", now_ns);
+            frame_feed_warn(feed, topic, "the stamp is not after the previous message's", now_ns);
             return false;
         }
-        frame_feed_warn(feed, topic, "time went back: what waited is dropped, the map stays", now_ns);
+        frame_feed_warn(feed, topic, "time went back: waiting messages are dropped, the map stays", now_ns);
         empty_queues(feed);
     }
     feed->last_ns[topic] = stamp_ns;

@@ -43,7 +43,7 @@ uint64_t option_bytes(struct argp_state *state, const char *option, const char *
 {
     uint64_t bytes;
     if (!bytes_of_text(text, &bytes) || bytes == 0) {
-        argp_error(state, "--%s takes a number of bytes, with K, M or G behind it or not, not '%s'", option, text);
+        argp_error(state, "--%s takes a number of bytes, optionally followed by K, M or G, not '%s'", option, text);
     }
     return bytes;
 }

@@ -76,11 +76,11 @@ static void say_lost(const t3r_recording *recording, char *text, size_t bytes)
         text[0] = '\0';
     } else if (cut.offset == cut.file_bytes) {
         snprintf(text, bytes,
-                 "the end and its index alone: the file stops at byte %" PRIu64 ", behind %" PRIu64 " whole messages",
+                 "the end and its index alone: the file stops at byte %" PRIu64 ", after %" PRIu64 " whole messages",
                  cut.offset, cut.messages);
     } else {
         snprintf(text, bytes,
-                 "what stood behind %" PRIu64 " whole messages: the file is cut or damaged from byte %" PRIu64
+                 "everything after %" PRIu64 " whole messages: the file is cut or damaged from byte %" PRIu64
                  " of %" PRIu64 " on",
                  cut.messages, cut.offset, cut.file_bytes);
     }

@@ -53,7 +53,8 @@ void reconstruction_parse_arena(struct argp_state *state, const char *text, reco
         o->arena = ARENA_MIN;
     } else {
         if (!bytes_of_text(text, &o->arena_bytes)) {
-            argp_error(state, "--arena takes a number of bytes, with K, M or G behind it or not, min or full, not '%s'",
+            argp_error(state,
+                       "--arena takes a number of bytes, optionally followed by K, M or G, or min or full, not '%s'",
                        text);
         }
         o->arena = ARENA_BYTES;

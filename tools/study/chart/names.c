@@ -97,7 +97,7 @@ static void name_untold(chart_names *names, const chart_points *points, uint32_t
     for (int s = 0; s < CHART_KEEP && taken; s++) {
         if (usuals[s][0] != '\0' && setting(points, first_of(points, series), (chart_setting)s)[0] == '\0') {
             append(text, CHART_NAME_BYTES, MIDDLE_DOT, chart_settings[s].column);
-            append(text, CHART_NAME_BYTES, " ", "not told");
+            append(text, CHART_NAME_BYTES, " ", "unknown");
         }
     }
 }

@@ -61,7 +61,7 @@ static int read_heading(csv_reader *reader, layout *l, char *error, size_t error
 {
     for (uint32_t i = 0; i < reader->cell_count; i++) {
         if (reader->cell[i][0] != '\0' && column(reader, reader->cell[i]) != i) {
-            return fail(reader, error, error_bytes, reader->cell[i], " stands in the heading twice");
+            return fail(reader, error, error_bytes, reader->cell[i], " is in the heading twice");
         }
     }
     l->cells = reader->cell_count;

@@ -96,7 +96,7 @@ static error_t parse_own(int key, char *arg, struct argp_state *state)
 static const struct argp_option own_options[] = {
     {"methods", KEY_METHODS, "M,M,...", 0, METHOD_HELP, 1},
     {"ablate", KEY_ABLATE, "NAME,NAME,...", OPTION_ARG_OPTIONAL,
-     "parts to take away, one in each row (all), at 60, 40, 20, 10 and 5 % unless --keep names others; a table of what "
+     "parts to remove, one in each row (all), at 60, 40, 20, 10 and 5 % unless --keep names others; a table of what "
      "each is worth comes at the end",
      1},
     {0},

@@ -159,7 +159,7 @@ static const struct argp_option argp_options[] = {
      "number of triplets of each recording, spread evenly over those that it carries (1)", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
     {"csv", KEY_CSV, "FILE", OPTION_WRITES(FILE_TABLE),
-     "table to write; each row appears when it is made, or all at the end where a table stands", 0},
+     "table to write; each row appears when it is made, or all at the end if a table exists", 0},
     {"html", KEY_HTML, "PAGE.html", OPTION_WRITES(FILE_PAGE),
      "page to write, with pictures of the worst cases; it needs no other file", 0},
     {"worst", KEY_WORST, "N", 0, "number of cases on the page, 1..64, one for each perturbation at most (12)", 0},
@@ -225,7 +225,7 @@ static const struct argp parser = {
         "  a Gaussian out of range or not finite, or a score that is no number\n"
         "  trim3r beyond its bounds on a still scene of n Gaussians for each of its\n"
         "    SuperClusters, n at least 1: 0.6 / sqrt(n) of the mask, at most half; a\n"
-        "    median movement of 3/4 of the spacing beyond what the depth's noise makes\n"
+        "    median movement of 3/4 of the spacing beyond the depth noise's share\n"
         "Of several cases the tables show means; * marks that some were refused.\n"
         "\n"
         "Examples:\n"

@@ -9,7 +9,7 @@
 #include "study/rivals/methods.h"
 
 #define METHOD_HELP                                                                                                    \
-    "trim3r (default), or a rival: random, eagles, lightgaussian, pup, efficientgs; +finetune behind any of them "     \
+    "trim3r (default), or a rival: random, eagles, lightgaussian, pup, efficientgs; +finetune after any of them "      \
     "fine-tunes its Gaussians, +head makes new ones of its points"
 
 /* Parse an option's value: a method, or up to METHOD_COUNT different ones separated by commas. */

@@ -273,7 +273,7 @@ void stress_relate(stress_row *rows, const stress_row *unperturbed, uint32_t cou
         bool fewer = value[STRESS_GAUSSIANS] < base[STRESS_GAUSSIANS];
         if (ours && (value[STRESS_ARENA_BYTES] > base[STRESS_ARENA_BYTES] ||
                      (!fewer && value[STRESS_ARENA_BYTES] < base[STRESS_ARENA_BYTES]))) {
-            set_status(&rows[i], STRESS_BROKEN, "the arena is not what it was");
+            set_status(&rows[i], STRESS_BROKEN, "the arena's size has changed");
         }
     }
 }

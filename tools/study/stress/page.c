@@ -134,7 +134,7 @@ static void add_section(html_page *page, const stress_picture *picture, uint32_t
     snprintf(heading, sizeof heading, "%s %s (%s%s%s)", row->what, strength, row->scene,
              row->target[0] == '\0' ? "" : ": frame ", row->target);
     html_page_section(page, heading, picture->width, picture->height, picture->target);
-    html_page_strip(page, "What goes in, and the view to be met");
+    html_page_strip(page, "The input, and the target view");
     for (uint32_t v = 0; v < picture->views; v++) {
         snprintf(heading, sizeof heading, "context %c", (char)('a' + v));
         html_page_picture(page, heading, picture->width, picture->height, 3, picture->context[v], 0);

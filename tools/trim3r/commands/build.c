@@ -120,7 +120,7 @@ const struct argp build_argp = {
            "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% -o s.ply\n"
            "  trim3r build room.mcap --keep 10% --colmap start\n"
            "  trim3r build room.mcap --keep 10% --poses estimate -o scene.ply\n\n"
-           "The scene stands in the recording's world frame unless --local is given.\n\n"
+           "The scene is in the recording's world frame unless --local is given.\n\n"
            "--prune: the means of the file's Gaussians, seen from each context view, are its depth. They are in the "
            "same world, and those of an opacity below 0.05 do not count. trim3r makes new Gaussians of points among "
            "them. The recording's own depth is ignored.\n"
