@@ -149,7 +149,7 @@ def refuses(folder):
 
     out = ("--svg", f"{folder}/never.svg")
     refuse(USAGE, "EVAL.csv is missing", *out)
-    refuse(USAGE, "nothing is to be written", table)
+    refuse(USAGE, "there is no output", table)
     refuse(USAGE, "--pictures belongs", table, *out, "--pictures", folder)
     refuse(USAGE, "one folder for all", table, "-o", f"{folder}/never.html", "--pictures", folder, "--pictures", folder)
     refuse(USAGE, "--dark belongs", table, *out, "--dark")

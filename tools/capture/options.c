@@ -72,8 +72,8 @@ static const struct argp_option options[] = {
      0},
     {"pose-topic", KEY_POSE_TOPIC, "TOPIC", 0, "topic of the bag (the only one with poses)", 0},
     {"clock-offset", KEY_OFFSET, "S|estimate[:S]", 0,
-     "seconds that the poses' clock is ahead of the camera's (0), or estimate: found from how the picture moves, "
-     "within a second of S; S is 0 where the times overlap, else what brings their starts together",
+     "seconds that the poses' clock is ahead of the camera's (0), or estimate: from the motion of the picture, "
+     "within a second of S; S is 0 if the times overlap, else the difference of their starts",
      0},
     {NULL, 0, NULL, 0, "What is written:", 4},
     {"output", 'o', "REC.mcap", OPTION_WRITES(FILE_RECORDING),
@@ -88,8 +88,7 @@ static const struct argp_option options[] = {
      "are there",
      0},
     {"every", KEY_EVERY, "N", 0,
-     "distance in frames of further builds, each of a frame and the one N before it; SCENE.ply is that of the last one",
-     0},
+     "distance in frames of further builds, each of a frame and the Nth before it; SCENE.ply is the last one's", 0},
     {"local", KEY_LOCAL, NULL, 0, "write positions from the first context camera's centre", 0},
     {"hash", KEY_HASH, NULL, 0, "print the hash of all frames: a replay of the recording has the same", 0},
     {"quiet", KEY_QUIET, NULL, 0, "show no progress line", 0},
@@ -381,21 +380,23 @@ static const struct argp_child children[] = {{&reconstruction_budget_argp, 0, "V
 static const struct argp argp = {
     .options = options,
     .parser = parse,
-    .doc =
-        "Capture frames into a recording, straight into Gaussians, or both. Ctrl-C ends it; the recording is whole."
-        "\vExamples:\n"
-        "  trim3r capture --list\n"
-        "  trim3r capture --source v4l2:/dev/video0 -o rec.mcap\n"
-        "  trim3r capture --source v4l2:/dev/video0 --depth-source /dev/video2 \\\n"
-        "    --intrinsics 615,615,320,240 --max-bytes 2G -o rec.mcap\n"
-        "  trim3r capture --source replay:rec.mcap --poses tracker.txt \\\n"
-        "    --clock-offset estimate -o posed.mcap\n"
-        "  trim3r capture --source replay:posed.mcap --build s.ply --keep 10%\n\n"
-        "Poses are known after the capture as a rule: record first, then add them from the recording as above. "
-        "Devices may come back under another name: those of /dev/v4l/by-id do not.\n\n"
-        "Every frame that is not recorded is counted under its cause and reported on the topic /camera/events, as is "
-        "every pair of colour and depth. A process that is killed loses at most the message that it was writing, with "
-        "--compression the frame.",
+    .doc = "Capture frames into a recording, straight into Gaussians, or both. Ctrl-C ends it; the recording is "
+           "whole.\v"
+           "Examples:\n"
+           "  trim3r capture --list\n"
+           "  trim3r capture --source v4l2:/dev/video0 -o rec.mcap\n"
+           "  trim3r capture --source v4l2:/dev/video0 --depth-source /dev/video2 \\\n"
+           "    --intrinsics 615,615,320,240 --max-bytes 2G -o rec.mcap\n"
+           "  trim3r capture --source replay:rec.mcap --poses tracker.txt \\\n"
+           "    --clock-offset estimate -o posed.mcap\n"
+           "  trim3r capture --source replay:posed.mcap --build s.ply --keep 10%\n"
+           "\n"
+           "Poses are usually known only after the capture: record first, then add them to the recording as above. A "
+           "device may come back under another name, but not below /dev/v4l/by-id.\n"
+           "\n"
+           "Every frame that is not recorded is counted under its cause and reported on the topic /camera/events, as "
+           "is every pair of colour and depth. A process that is killed loses at most the message that it was writing, "
+           "with --compression the frame.",
     .children = children,
 };
 

@@ -275,10 +275,11 @@ const struct argp evaluation_argp = {
     .parser = parse,
     .args_doc = "REC.mcap...\n--planar IMAGE...",
     .doc = "Score views of a reconstruction against recorded ones.\v"
-           "A row is one scene, context, target, method, head and budget. Cells that do not apply are empty. Several "
-           "cases end in lines of means, which the CSV leaves out.\n"
-           "  keep          percent of the valid points that was asked for\n"
-           "  requested     number of Gaussians that was asked for instead\n"
+           "A row is one scene, context, target, method, "
+           "head and budget. Cells that do not apply are empty. Several cases end in lines of means, which the CSV "
+           "leaves out.\n"
+           "  keep          requested percent of the valid points\n"
+           "  requested     requested number of Gaussians instead\n"
            "  bits          of a network's weights, and of its activations if not the same\n"
            "  psnr, ssim    on the mask; decibels are averaged as decibels\n"
            "  sharp         mean gradient over the target's, on the mask\n"
@@ -295,16 +296,16 @@ const struct argp evaluation_argp = {
            "transmittance below 0.3.\n"
            "\n"
            "--views N: the frames of the triplet, or of --context, come first. Then come the other frames that have "
-           "pose, intrinsics and (but for --depth stereo) depth, the nearest to the target's camera first. Two "
-           "parts make up the distance, as the root of their squares: the distance of the centres over the median "
-           "depth of the first frame, and that of the directions of view as unit vectors. Of equal ones the lower "
-           "index is taken, the target never. The mask is that of all N. A recording with too few frames is refused.\n"
+           "pose, intrinsics and (but for --depth stereo) depth, the nearest to the target's camera first. The "
+           "distance is the root of a sum of two squares: the distance of the centres over the median depth of the "
+           "first frame, and the distance of the viewing directions as unit vectors. Of equal ones the lower index "
+           "is taken; the target is never taken. The mask is of all N. A recording with too few frames is refused.\n"
            "\n"
-           "--poses estimate: the first context view and the target keep their recorded poses, so that an error of the "
-           "others is seen. build_ms does not count the estimate.\n"
+           "--poses estimate: the first context view and the target keep their recorded poses, so that errors of "
+           "the others show. build_ms does not count the estimate.\n"
            "\n"
            "Refused cases (without depth or stereo match) are left out and reported, and --resume tries them again. "
-           "Where no case is left the exit status is 1.\n",
+           "If no case is left, the exit status is 1.\n",
     .help_filter = add_examples,
     .children = children,
 };

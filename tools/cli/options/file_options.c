@@ -291,13 +291,13 @@ static error_t parse_force(int key, char *argument, struct argp_state *state)
 
 static const struct argp_option listing_options[] = {
     {"color", KEY_COLOR, "WHEN", 0,
-     "use of colours in messages and headings: auto (default), on terminals alone; always; never", -1},
+     "use of colours in messages and headings: auto (default), only on terminals; always; never", -1},
     {"file-options", KEY_LISTING, NULL, OPTION_HIDDEN, "the options that name files, as JSON", -1},
     {"complete", KEY_COMPLETE, NULL, OPTION_HIDDEN, "all options, for completion", -1},
     {"man-page", KEY_MAN_PAGE, NULL, OPTION_HIDDEN, "the page for man(1)", -1},
     {0}};
 static const struct argp_option force_options[] = {
-    {"force", KEY_FORCE, NULL, 0, "replace a file of another kind than the one to be written, too", -1}, {0}};
+    {"force", KEY_FORCE, NULL, 0, "replace also a file of another kind", -1}, {0}};
 static const struct argp listing_argp = {.options = listing_options, .parser = parse_listing};
 static const struct argp force_argp = {.options = force_options, .parser = parse_force};
 

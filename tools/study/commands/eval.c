@@ -96,8 +96,8 @@ static error_t parse_own(int key, char *arg, struct argp_state *state)
 static const struct argp_option own_options[] = {
     {"methods", KEY_METHODS, "M,M,...", 0, METHOD_HELP, 1},
     {"ablate", KEY_ABLATE, "NAME,NAME,...", OPTION_ARG_OPTIONAL,
-     "parts to remove, one in each row (all), at 60, 40, 20, 10 and 5 % unless --keep names others; a table of what "
-     "each is worth comes at the end",
+     "parts to remove, one in each row (all), at 60, 40, 20, 10 and 5 % unless --keep names others; a table of "
+     "their effects comes at the end",
      1},
     {0},
 };
@@ -105,11 +105,11 @@ static const struct argp_option own_options[] = {
 static const struct argp own_argp = {
     .options = own_options,
     .parser = parse_own,
-    .doc = "\v--ablate: each row changes one thing of the settings given.\n"
+    .doc = "\v--ablate: each row changes one of the given settings.\n"
            "  full                      nothing\n"
            "  no-adaptation             the head works as if nothing had been pruned; what\n"
            "                            it makes of all points is pruned, then refined\n"
-           "  no-mask                   the network works so, but its splats still grow\n"
+           "  no-mask                   only the network works so; its splats still grow\n"
            "                            with the distance of retained neighbours\n"
            "  random, uniform, paper, pixel   --allocate\n"
            "  random-clusters           SuperClusters exchange their textures at random\n"

@@ -136,9 +136,10 @@ static const struct argp parser = {
     .parser = parse_option,
     .args_doc = "HEAD.safetensors [REC.mcap|IMAGE...]",
     .doc = "Turn a trained head into integers for the runtime.\v"
-           "A head trained with quantization in mind brings its ranges along (layerN.range). Those that it lacks are "
-           "measured. The float head runs on what the runtime makes of the recordings' context pairs and of images on "
-           "a plane, with 100, 40, 20, 10 and 5 percent of the points retained. The same input gives the same file.\n"
+           "A head trained for quantization has its ranges "
+           "(layerN.range). Missing ones are measured: the float head runs on the runtime's input from the "
+           "recordings' context pairs and from images on a plane, with 100, 40, 20, 10 and 5 percent of the points "
+           "retained. The same input gives the same file.\n"
            "\n"
            "Examples:\n"
            "  trim3r quantize small.safetensors -o small.t3w\n"

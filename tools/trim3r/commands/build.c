@@ -33,12 +33,12 @@ static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
     {"output", 'o', "SCENE.ply", OPTION_WRITES(FILE_SCENE), "scene to write (needed, or --colmap)", 0},
     {"colmap", KEY_COLMAP, "DIR", OPTION_WRITES(FILE_OTHER) | OPTION_FOLDER,
-     "folder, new or empty, to write the start of an outside optimiser into: the context views, and the means and "
-     "colours of the Gaussians, as a COLMAP model in text",
+     "folder, new or empty, for the start of another optimiser: the context views, and the means and colours of the "
+     "Gaussians, as a COLMAP model in text",
      0},
     {"prune", KEY_PRUNE, "SCENE.ply", OPTION_READS,
-     "scene, made elsewhere, to prune instead of building one: the recording gives its views, --context names those it "
-     "was made of; percents are of its Gaussians",
+     "scene, made elsewhere, to prune instead of building one: the recording gives its views, --context names the "
+     "ones that it was made of; percents are of its Gaussians",
      0},
     {"local", KEY_LOCAL, NULL, 0,
      "write positions from the first context camera's centre instead of the world's origin", 0},
@@ -47,7 +47,7 @@ static const struct argp_option options[] = {
      "viewers that want it (not turned; .spz and .glb as for -y)",
      0},
     {"comments", KEY_COMMENTS, NULL, 0,
-     "name bits epoch, scene frame and head in header comments (some readers choke on them)", 0},
+     "name bits epoch, scene frame and head in header comments (some readers fail on them)", 0},
     {"profile", KEY_PROFILE, NULL, 0,
      "print the time of each stage: processor time of one thread, or with more of them elapsed time", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
@@ -109,8 +109,9 @@ const struct argp build_argp = {
     .options = options,
     .parser = parse,
     .args_doc = "REC.mcap",
-    .doc = "Make exactly Z Gaussians of a recording's context frames, or with --auto as few as they need."
-           "\vExamples:\n"
+    .doc = "Make exactly Z Gaussians of a recording's context frames, or with --auto as few as they "
+           "need.\v"
+           "Examples:\n"
            "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
            "  trim3r build room.mcap --gaussians 13107 --head analytic -o scene.ply\n"
            "  trim3r build room.mcap --head tiny --refine 4 --fit-passes off -o s.ply\n"
@@ -119,23 +120,25 @@ const struct argp build_argp = {
            "  trim3r build room.mcap --keep 5% --allocate given --importance dir -o s.ply\n"
            "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% -o s.ply\n"
            "  trim3r build room.mcap --keep 10% --colmap start\n"
-           "  trim3r build room.mcap --keep 10% --poses estimate -o scene.ply\n\n"
-           "The scene is in the recording's world frame unless --local is given.\n\n"
+           "  trim3r build room.mcap --keep 10% --poses estimate -o scene.ply\n"
+           "\n"
+           "The scene is in the recording's world frame unless --local is given.\n"
+           "\n"
            "--prune: the means of the file's Gaussians, seen from each context view, are its depth. They are in the "
            "same world, and those of an opacity below 0.05 do not count. trim3r makes new Gaussians of points among "
            "them. The recording's own depth is ignored.\n"
            "\n"
            "--poses estimate: the first context view keeps its recorded pose, or is the origin. Each other view is "
-           "joined to the best of those before it. With depth in both views, lengths are those of the depth; from "
-           "colour alone, the first two cameras are 1 apart, unless some depth gives their distance. Frames too "
-           "unlike, a camera that only turned, and corners on one plane are refused. `trim3r import --poses estimate` "
-           "keeps the poses in the recording.\n"
+           "joined to the best earlier one. With depth in both views, lengths come from the depth; from colour "
+           "alone, the first two cameras are 1 apart, unless some depth gives their distance. Frames too unlike, a "
+           "camera that only turned, and corners on one plane are refused. `trim3r import --poses estimate` keeps "
+           "the poses in the recording.\n"
            "\n"
            "--colmap: DIR/images/ holds the context views at the working size, undistorted. DIR/sparse/0/ holds "
-           "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir DIR) "
-           "look for them. InstantSplat's place for N views is DIR/sparse_N/0/. A point is observed in the view that "
-           "it came from. With --head none --refine 0 the points are the retained pixels themselves, otherwise they "
-           "are where the head and refinement put them.",
+           "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir "
+           "DIR) look for them. InstantSplat's place for N views is DIR/sparse_N/0/. A point is observed in the "
+           "view that it came from. With --head none --refine 0 the points are the retained pixels themselves, "
+           "otherwise they are where the head and refinement put them.",
     .children = children,
 };
 

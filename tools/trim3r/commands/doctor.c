@@ -68,15 +68,18 @@ static const struct argp_child children[] = {{.argp = &processor_argp}, {0}};
 static const struct argp argp = {
     .options = option_table,
     .parser = parse,
-    .doc = "List what this machine and this build have, and check that they give the bits that every machine gives."
-           "\vExamples:\n"
+    .doc = "List the features of this machine and this build, and check that they give the same bits as every "
+           "machine.\v"
+           "Examples:\n"
            "  trim3r doctor\n"
            "  trim3r doctor --cpu-mask none --json\n"
-           "  trim3r doctor --threads all\n\n"
+           "  trim3r doctor --threads all\n"
+           "\n"
            "The self-check builds a small scene of the built-in room and draws it, with the threads and vector "
-           "extensions given. Its hash is the same on every machine; exit status 1 where it is another. Then a second "
-           "build in plain C on one thread shows whether those are the cause.\n\n"
-           "Cameras are listed by the names that the system has for them. None is opened.",
+           "extensions given. Its hash is the same on every machine; otherwise the exit status is 1, and a second "
+           "build in plain C on one thread shows whether those are the cause.\n"
+           "\n"
+           "Cameras are listed by the system's names. None is opened.",
     .children = children,
 };
 

@@ -71,17 +71,17 @@ static const struct argp parser = {
     .options = argp_options,
     .parser = parse_option,
     .args_doc = "FILE.t3w\nFILE.safetensors",
-    .doc =
-        "Show a head's layers: what they read, their channels, multiply-accumulates a pixel with all points kept, "
-        "bytes and work bytes; every field of the file is checked.\v"
-        "Sources: 0 are the features, n is layer n. Bytes: weights, biases, multipliers and shifts; of a float head, "
-        "what they will be with 8-bit weights and activations. Work bytes: the rows of a layer's output that must be "
-        "in memory at once when a view goes through row by row.\n"
-        "\n"
-        "Examples:\n"
-        "  trim3r head-info small.t3w\n"
-        "  trim3r head-info small.safetensors --size 96x96\n"
-        "  trim3r head-info small.t3w --json",
+    .doc = "Show a head's layers: their sources, their channels, multiply-accumulates a pixel with all points kept, "
+           "bytes and work bytes; every field of the file is checked.\v"
+           "Sources: 0 are the features, n is layer n. "
+           "Bytes: weights, biases, multipliers and shifts; of a float head, what they will be with 8-bit weights and "
+           "activations. Work bytes: the rows of a layer's output that must be in memory at once when a view goes "
+           "through row by row.\n"
+           "\n"
+           "Examples:\n"
+           "  trim3r head-info small.t3w\n"
+           "  trim3r head-info small.safetensors --size 96x96\n"
+           "  trim3r head-info small.t3w --json",
 };
 
 /* Measures the work that the runtime lays out for a file, checked or an outline. */

@@ -150,7 +150,7 @@ static const struct argp_option argp_options[] = {
      "it)",
      0},
     {"poses", KEY_POSES, "SOURCE", 0,
-     "source of the poses: given (default), those of the folder; estimate, from corners that frames share, with depth "
+     "source of the poses: given (default), the folder's; estimate, from corners that frames share, with depth "
      "where two of them have it, or of all frames from pointmaps; estimate-colour, from colour alone, without "
      "pointmaps",
      0},
@@ -159,10 +159,9 @@ static const struct argp_option argp_options[] = {
     {"min-confidence", KEY_CONFIDENCE, "C", 0,
      "least confidence of a pointmap's point; points below it get no depth (all points are kept)", 0},
     {"depth-unit", KEY_UNIT, "U", 0,
-     "length of one step of depth: of depth beside a model of COLMAP (needed), of depth in floats (0.001), or of depth "
-     "made from "
-     "pointmaps "
-     "(integer_depth_scale of the folder, else a power of two with which the median has 4096 to 8192 steps)",
+     "length of one step of depth: for depth of a COLMAP model (needed), for depth in floats (0.001), or for depth "
+     "from pointmaps (integer_depth_scale of the folder, else a power of two with which the median has 4096 to 8192 "
+     "steps)",
      0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout", 0},
     {0},
@@ -175,54 +174,55 @@ static const struct argp parser = {
     .children = children,
     .parser = parse_option,
     .args_doc = "DIR\nBAG.mcap",
-    .doc =
-        "Turn a posed folder, or a bag of ROS 2, into a recording. A recording that was cut off is mended.\v"
-        "DIR holds one of\n"
-        "  transforms.json (instant-ngp, NeRFCapture, nerfstudio): camera_model OPENCV\n"
-        "    or OPENCV_FISHEYE, depth_path with integer_depth_scale, depth_file_path\n"
-        "    with depth_unit_scale_factor, trim3r_triplets\n"
-        "  rgb.txt, groundtruth.txt and optionally depth.txt (TUM RGB-D); pictures\n"
-        "    without a pose are left out\n"
-        "  sparse/0 or sparse with a model of COLMAP, text or binary, and images; depth\n"
-        "    with 16-bit PNG of their names, if --depth-unit is given, else\n"
-        "    stereo/depth_maps as COLMAP's patch_match_stereo leaves them\n"
-        "  metadata and rgbd, an unpacked .r3d of Record3D; depth must not be packed\n"
-        "  metadata.json, rgb and depth, its export with EXR\n"
-        "  pose, color, intrinsic and optionally depth (ScanNet): a text for each pose\n"
-        "  frame-N.pose.txt, .color.png, .depth.png (7-Scenes, 3DMatch)\n"
-        "  pictures alone, in the order of their names, with --poses estimate or\n"
-        "    --pointmaps\n"
-        "In all of them depth may be .exr in the place of .png: OpenEXR of one channel.\n"
-        "Frames get stamps 1/30 s apart. Pictures that cannot be read are left out and named.\n"
-        "\n"
-        "A pointmap, as DUSt3R, MASt3R and VGGT make them, is a point for each pixel of a frame, in the first "
-        "frame's camera, x right, y down, z forward. It is the file pointmap_path of a frame, or one of N in the "
-        "file of --pointmaps. A .npz may hold\n"
-        "  pts3d (or world_points, points, pointmap)   float32, H x W x 3\n"
-        "  conf (or world_points_conf)                 H x W\n"
-        "  poses, or extrinsic                         camera to points, 4x4;\n"
-        "                                              its inverse, 3x4\n"
-        "  intrinsics, or focals                       3x3, in pixels of the map\n"
-        "A .npy holds the points alone, with confidence_path beside it. Cameras of a .npz win over those of the "
-        "folder, and missing poses are taken from the points. Numbers that are not finite are refused. So are poses "
-        "of which some are in the folder's world and others in that of the points.\n"
-        "\n"
-        "Estimated poses are rounded into the recording: what is made of it later is the same everywhere. A frame "
-        "that cannot be posed is kept without a pose, and the reason is printed. With --poses estimate DIR may also be "
-        "a bag or a recording.\n"
-        "\n"
-        "Of a bag (MCAP) the frames are written anew: compressed images (JPEG, PNG, compressedDepth) decoded, poses "
-        "interpolated between two of their topic or composed of /tf and /tf_static, depth of another camera "
-        "registered to colour. A recording that lost its end is read as far as it goes. Topics that were not used "
-        "are named with the reason.\n\n"
-        "Examples:\n"
-        "  trim3r import scene --size 256x256 -o scene.mcap\n"
-        "  trim3r import rgbd_dataset_freiburg1_desk -o desk.mcap\n"
-        "  trim3r import desk --intrinsics 525,525,319.5,239.5 -o desk.mcap\n"
-        "  trim3r import photos --intrinsics 900,900,640,480 --poses estimate -o p.mcap\n"
-        "  trim3r import photos --pointmaps dust3r.npz --min-confidence 3 -o p.mcap\n"
-        "  trim3r import bag.mcap --fixed-frame map -o rec.mcap\n"
-        "  trim3r import broken.mcap -o whole.mcap",
+    .doc = "Turn a posed folder, or a bag of ROS 2, into a recording. A truncated recording is repaired.\v"
+           "DIR holds "
+           "one of\n"
+           "  transforms.json (instant-ngp, NeRFCapture, nerfstudio): camera_model OPENCV\n"
+           "    or OPENCV_FISHEYE, depth_path with integer_depth_scale, depth_file_path\n"
+           "    with depth_unit_scale_factor, trim3r_triplets\n"
+           "  rgb.txt, groundtruth.txt and optionally depth.txt (TUM RGB-D); pictures\n"
+           "    without a pose are left out\n"
+           "  sparse/0 or sparse with a model of COLMAP, text or binary, and images; depth\n"
+           "    with 16-bit PNG of their names, if --depth-unit is given, else\n"
+           "    stereo/depth_maps as COLMAP's patch_match_stereo leaves them\n"
+           "  metadata and rgbd, an unpacked .r3d of Record3D; depth must not be packed\n"
+           "  metadata.json, rgb and depth, its export with EXR\n"
+           "  pose, color, intrinsic and optionally depth (ScanNet): a text for each pose\n"
+           "  frame-N.pose.txt, .color.png, .depth.png (7-Scenes, 3DMatch)\n"
+           "  pictures alone, in the order of their names, with --poses estimate or\n"
+           "    --pointmaps\n"
+           "In all of them depth may be .exr in the place of .png: OpenEXR of one channel.\n"
+           "Frames get stamps 1/30 s apart. Pictures that cannot be read are left out and named.\n"
+           "\n"
+           "A pointmap, as DUSt3R, MASt3R and VGGT make them, is a point for each pixel of a frame, in the first "
+           "frame's camera, x right, y down, z forward. It is the file pointmap_path of a frame, or one of N in the "
+           "file of --pointmaps. A .npz may hold\n"
+           "  pts3d (or world_points, points, pointmap)   float32, H x W x 3\n"
+           "  conf (or world_points_conf)                 H x W\n"
+           "  poses, or extrinsic                         camera to points, 4x4;\n"
+           "                                              its inverse, 3x4\n"
+           "  intrinsics, or focals                       3x3, in pixels of the map\n"
+           "A .npy holds only the points, and confidence_path names their confidence. Cameras of a .npz win over those "
+           "of the folder, and missing poses are taken from the points. Numbers that are not finite are refused. So "
+           "are poses if some are in the folder's world and others in the points' world.\n"
+           "\n"
+           "Estimated poses are stored rounded, so that later results are the same everywhere. A frame that cannot be "
+           "posed is kept without a pose, and the reason is printed. With --poses estimate DIR may also be a bag or a "
+           "recording.\n"
+           "\n"
+           "The frames of a bag (MCAP) are written again: compressed images (JPEG, PNG, compressedDepth) decoded, "
+           "poses interpolated between two of their topic or composed from /tf and /tf_static, depth of another camera "
+           "registered to colour. A recording that lost its end is read as far as it goes. Topics that were not used "
+           "are named with the reason.\n"
+           "\n"
+           "Examples:\n"
+           "  trim3r import scene --size 256x256 -o scene.mcap\n"
+           "  trim3r import rgbd_dataset_freiburg1_desk -o desk.mcap\n"
+           "  trim3r import desk --intrinsics 525,525,319.5,239.5 -o desk.mcap\n"
+           "  trim3r import photos --intrinsics 900,900,640,480 --poses estimate -o p.mcap\n"
+           "  trim3r import photos --pointmaps dust3r.npz --min-confidence 3 -o p.mcap\n"
+           "  trim3r import bag.mcap --fixed-frame map -o rec.mcap\n"
+           "  trim3r import broken.mcap -o whole.mcap",
 };
 
 /* Returns the folder's own name, the recording's source. */

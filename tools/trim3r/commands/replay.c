@@ -67,7 +67,7 @@ static const struct argp_option options[] = {
      "folder to write the held-back frames that have a depth and their views into: frame_<frame>.png, mask_, live_, "
      "final_",
      0},
-    {"output", 'o', "MAP.ply", OPTION_WRITES(FILE_SCENE), "scene to write: the map as it is in the end", 0},
+    {"output", 'o', "MAP.ply", OPTION_WRITES(FILE_SCENE), "scene to write: the final map", 0},
     {0},
 };
 

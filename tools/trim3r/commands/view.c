@@ -102,16 +102,17 @@ static const struct argp argp = {
     .options = options,
     .parser = parse,
     .args_doc = "REC.mcap|SCENE.ply [REC.mcap|SCENE.ply]",
-    .doc = "Show a scene or a recording in a browser, by the runtime itself as WebAssembly."
-           "\vExamples:\n"
+    .doc = "Show a scene or a recording in a browser, by the runtime itself as WebAssembly.\v"
+           "Examples:\n"
            "  trim3r view room.mcap --context 0,2 -o view.html\n"
            "  trim3r view room.mcap --context 0,2 --keep 5% --head tiny\n"
            "  trim3r view scene.ply -o view.html\n"
-           "  trim3r view scene.ply room.mcap --context 0,2 --port 8080\n\n"
+           "  trim3r view scene.ply room.mcap --context 0,2 --port 8080\n"
+           "\n"
            "The page builds scenes of a recording itself: a slider changes the budget, and mask, SuperClusters, "
-           "texture and "
-           "error are drawn over the frames. The first scene is built here as well, and the page compares the hashes. "
-           "A scene file is drawn as it is; with a recording beside, the page does both.\n\n"
+           "texture and error are drawn over the frames. The first scene is built here as well, and the page "
+           "compares the hashes. A scene file is drawn as it is; with a recording as well, the page does both.\n"
+           "\n"
            "With -o the page is one file that fetches nothing. Without, it is served on 127.0.0.1 until Ctrl-C.",
     .children = children,
 };
