@@ -32,7 +32,6 @@ static const char *get_header(t3r_cdr_reader *in, t3r_ros_header *header)
     return nanoseconds < NS_PER_S ? NULL : "header.stamp.nanosec is over 999999999";
 }
 
-/* Opens a message that begins with a header. */
 static const char *open_message(t3r_cdr_reader *in, const uint8_t *bytes, size_t count, t3r_ros_header *header)
 {
     t3r_cdr_open(in, bytes, count);

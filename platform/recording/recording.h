@@ -20,7 +20,7 @@ typedef struct t3r_triplet {
 
 /* ---- reading ------------------------------------------------------------------------------------- */
 
-/* What is read, whoever wrote the file:
+/* The contents that are read, whatever program wrote the file:
  *   colour  the first sensor_msgs/Image topic in rgb8, bgr8, yuv422_yuy2 (yuyv), yuv422 (uyvy) or nv12 (Y plane, then
  *           UV, rows of `step` bytes), else the first sensor_msgs/CompressedImage topic, else the first in mono8
  *   depth   16UC1 or mono16: steps of the unit in metadata "trim3r", else of 0.001; 32FC1 metres become steps of

@@ -89,7 +89,6 @@ struct t3r_recording {
     const char *import_reason, *import_pose_reason; /* static texts; NULL: none */
 };
 
-/* Adds a remark to the note. */
 void t3r_recording_remark(t3r_recording *recording, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* recording_inspect.c: reads a message of a known type: its stamp, and from the first messages the role and frames of

@@ -128,7 +128,6 @@ static bool has_labels(const t3r_runtime *rt)
     return rt->config.views > 0 && !rt->config.stream && rt->config.clusters > 0;
 }
 
-/* Damages bytes of the state, or of any place. */
 static void damage_bytes(t3r_runtime *rt, input *in, bool of_the_state)
 {
     const size_t range = of_the_state ? sizeof *rt : (size_t)rt->arena_bytes, at = take32(in) % range;

@@ -60,7 +60,6 @@ static double length_at(const made *m, int x, int y)
                                       : ldexp(1, (y * WIDTH + x) % 19 - 10);
 }
 
-/* Writes each chunk's numbers, from (x, y) on. */
 static void write_chunk(exr_context_t context, const made *m, const exr_chunk_info_t *chunk, int x, int y)
 {
     exr_encode_pipeline_t work = EXR_ENCODE_PIPELINE_INITIALIZER;

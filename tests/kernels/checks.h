@@ -38,7 +38,6 @@ typedef struct checked_entry {
 } checked_entry;
 extern const checked_entry checked_entries[];
 extern const size_t checked_entries_count;
-/* Returns the entry of that name, or NULL. */
 const checked_entry *checked_entry_named(const char *name);
 
 /* All variants of this build, followed by NULL. A table chosen by exactly these features contains the variant. */

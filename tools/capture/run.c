@@ -227,7 +227,6 @@ static int make_scene(run_state *s, const t3r_capture_frame *frame)
     return s->plan->every > 0 ? CLI_OK : write_scene(s);
 }
 
-/* Builds once, from the chosen frames. */
 static int build_chosen(run_state *s, const t3r_capture_frame *frame)
 {
     uint32_t wanted = context_at(s->plan, s->next_context);

@@ -14,7 +14,7 @@
 #include "ros/throttle.h"
 
 #define POSES_MOST 256u
-#define JUMP_NS INT64_C(1000000000) /* stamps that go back so far mean that the clock was set */
+#define JUMP_NS INT64_C(1000000000) /* stamps that go back this far mean that the clock was reset */
 #define WHAT_BYTES 160u
 
 typedef struct image_slot {

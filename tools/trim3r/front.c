@@ -48,7 +48,6 @@ static struct {
     const char *heading;
 } commands;
 
-/* Returns the command, or NULL. */
 static trim3r_command *command_named(const char *name)
 {
     trim3r_command *found = NULL;

@@ -95,7 +95,6 @@ typedef struct equations {
     ints a[PARAMETERS][PARAMETERS], b[PARAMETERS], damping, a_up, b_up;
 } equations;
 
-/* Returns room_of(). */
 static inline T3R_LANES_TARGET ints room_of(const ints *x, int count, int32_t bits)
 {
     ints all = {0};
@@ -155,7 +154,6 @@ typedef struct inverse_root {
     ints root, straight, up;
 } inverse_root;
 
-/* Returns inverse_root_of(). */
 static inline T3R_LANES_TARGET inverse_root inverse_root_of(ints d)
 {
     const ints up = (31 - highest_bit(d)) >> 1;
@@ -170,7 +168,6 @@ static inline T3R_LANES_TARGET inverse_root inverse_root_of(ints d)
     return (inverse_root){root, (ints)((f * (uints)root) >> 15), up};
 }
 
-/* Returns correlation_of(). */
 static inline T3R_LANES_TARGET ints correlation_of(ints a, const inverse_root *i, const inverse_root *j)
 {
     const ints whole = all_of(INT16_MAX), half = (held(scaled(a, i->up + j->up - 17), whole) * i->root) >> 16;

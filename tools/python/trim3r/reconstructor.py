@@ -398,7 +398,7 @@ class Reconstructor:
         check(status)
 
     def _budget(self, runtime: Any, gaussians: Optional[int], keep: Optional[float]) -> int:
-        """In Gaussians; 0 = that of the constructor."""
+        """Returns the budget in Gaussians; 0 = the constructor's."""
         most = self._config.max_gaussians
         if gaussians is not None and keep is not None:
             raise ValueError("a budget is either `gaussians` or `keep`")

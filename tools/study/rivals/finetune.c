@@ -20,7 +20,7 @@ typedef struct tuner {
     splat_model *model;
     splat_view *views;
     photometric *losses;
-    uint32_t view_count;  /* of both, the opened ones */
+    uint32_t view_count;  /* number of opened entries in both */
     splat_gradient *flat; /* derivatives of one view's splats */
     double *gradient;     /* of all parameters, like the next two */
     double *mean, *square;

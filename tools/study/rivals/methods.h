@@ -18,7 +18,6 @@ typedef struct rival_method {
 #define RIVAL_METHOD(kind, way) (&rival_methods[(way)*METHOD_KIND_COUNT + (kind)-1].method)
 extern const rival_method rival_methods[METHOD_COUNT - 1];
 
-/* Returns the method of that name, or NULL. */
 const method *method_named(list_word name);
 
 static inline method_kind method_kind_of(const method *m)

@@ -44,7 +44,6 @@ static void add_numbers(cJSON *object, const char *name, const double values[3])
     }
 }
 
-/* Adds the accessor of the next attribute, and its view. */
 static void add_attribute(cJSON *views, cJSON *accessors, cJSON *attributes, const char *name, const char *type,
                           int component, double offset, double bytes, const glb_layout *layout)
 {
