@@ -51,8 +51,7 @@ typedef void t3r_depthwise_kernel(const t3r_convolution *layer, const t3r_block 
 t3r_convolve_kernel t3r_convolve_c;
 t3r_depthwise_kernel t3r_depthwise_c;
 
-/* --- packed layers: for instruction sets that need weights in their own order
- * -------------------------------------- */
+/* --- packed layers: for instruction sets that need weights in their own order ----------------------------------- */
 
 #define T3R_PACKED_OUTPUTS 8u /* outputs come in groups of this size, the last one padded */
 #define T3R_PACKED_TAPS 4u    /* likewise the taps of a run */

@@ -8,9 +8,6 @@
 #include "refine/refine.h"
 #include "state/remembered.h"
 
-/* --- coverage of the map by a remembered keyframe
-   --------------------------------------------------------------------- */
-
 /* Sets the view's lens and pose to the keyframe's. Returns false if it is out of the map's range. */
 static bool stand_at(const t3r_runtime *rt, const t3r_camera *camera, t3r_view *view)
 {
@@ -53,9 +50,6 @@ void t3r_remembered_hold(const t3r_runtime *rt, t3r_map *map)
         }
     }
 }
-
-/* --- remembering and forgetting
-   --------------------------------------------------------------------------------------- */
 
 /* Thresholds of an ordered dither, in 1/16: flat surfaces keep their mean in five bits. */
 static const uint8_t dither[4][4] = {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};

@@ -27,8 +27,7 @@
 
 #define REBASE_Q20 (1 << 29) /* distance from the origin beyond which the origin follows: 512 scene units */
 
-/* --- origin of the map
- * ------------------------------------------------------------------------------------------------ */
+/* --- origin of the map ------------------------------------------------------------------------------------------ */
 
 /* Moves the origin to the camera by whole scene units: whole steps of Q32 world units for any exponent, and of Q20, so
  * nothing is rounded. Rounds towards 0, so that the origin stays between its old place and the camera, both below
@@ -75,8 +74,7 @@ static void leave_far_keyframes(t3r_runtime *rt, const t3r_view *views, uint32_t
     }
 }
 
-/* --- the keyframe alone, and among the live ones
- * ---------------------------------------------------------------------- */
+/* --- the keyframe alone, and among the live ones ---------------------------------------------------------------- */
 
 static t3r_view_span alone(uint32_t slot)
 {
@@ -139,8 +137,7 @@ static t3r_status compare_keyframes(t3r_runtime *rt, t3r_view *views, uint32_t s
     return status == T3R_OK ? level_keyframe(rt, views, slot) : status;
 }
 
-/* --- the map as the keyframe sees it
- * ---------------------------------------------------------------------------------- */
+/* --- the map as the keyframe sees it ---------------------------------------------------------------------------- */
 
 /* Marks pixels whose surface the map shows as covered; returns their number. */
 static uint32_t mark_shown(const t3r_pointmap *keyframe, const uint32_t *drawn_q20)
@@ -197,8 +194,7 @@ static t3r_status see_map(t3r_runtime *rt, const t3r_view *views, uint32_t slot,
     return status;
 }
 
-/* --- new points
- * ------------------------------------------------------------------------------------------------------- */
+/* --- new points ------------------------------------------------------------------------------------------------- */
 
 static t3r_status add_points(t3r_runtime *rt, t3r_view *views, uint32_t slot, t3r_stream_report *report)
 {
@@ -231,8 +227,7 @@ static t3r_status add_points(t3r_runtime *rt, t3r_view *views, uint32_t slot, t3
     return T3R_OK;
 }
 
-/* --- the whole keyframe
- * ----------------------------------------------------------------------------------------------- */
+/* --- the whole keyframe ----------------------------------------------------------------------------------------- */
 
 /* Takes the keyframe whose planes are in the slot. Not inlined, like refine_map(), so that only one of them has its
  * views on the stack. */

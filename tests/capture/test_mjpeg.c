@@ -110,7 +110,7 @@ static void pictures_are_decoded_with_and_without_tables(void **state)
 }
 
 /* Progressive, with any number of scans: the means first, then one coefficient of one colour per scan, one bit more
-   each time. */
+ * each time. */
 static void many_scans_are_refused_early(void **state)
 {
     (void)state;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""chart's report in a headless Chromium: every axis, the legend, pointer and keyboard, pictures, light and dark, a phone;
-no errors, no requests.
+"""chart's report in a headless Chromium: every axis, the legend, pointer and keyboard, pictures, light and dark, a
+phone; no errors, no requests.
 
 report.py TRIM3R [FOLDER]; with FOLDER, screenshots go there."""
 import sys

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""scene_info.py TRIM3R: `info SCENE.ply` against NumPy on the same file: counts, bounds, quantiles and bins of scales, in
-world units and in pixels; the picture."""
+"""scene_info.py TRIM3R: `info SCENE.ply` against NumPy on the same file: counts, bounds, quantiles and bins of scales,
+in world units and in pixels; the picture."""
 import json
 import re
 import sys

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""viewer.py TRIM3R VIEWER [FOLDER]: two commands make a scene of a folder of pictures with poses. PlayCanvas's SuperSplat
-viewer, whose page and code lie in VIEWER, opens the scene in a headless Chromium and shows what trim3r draws from the
-same place. With FOLDER, screenshots go there."""
+"""viewer.py TRIM3R VIEWER [FOLDER]: two commands make a scene of a folder of pictures with poses. PlayCanvas's
+SuperSplat viewer, whose page and code lie in VIEWER, opens the scene in a headless Chromium and shows what trim3r draws
+from the same place. With FOLDER, screenshots go there."""
 import functools
 import http.server
 import json

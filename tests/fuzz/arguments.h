@@ -34,7 +34,7 @@ uint32_t below(input *in, uint32_t bound);
 uint32_t take_side(input *in);
 
 /* Draws the settings from `first` on, each in its range and at most the one of `most`; a setting with no choice takes
-   no input. */
+ * no input. */
 void take_settings(input *in, size_t first, const t3r_config *most, t3r_config *config);
 #define SETTING_AT(name) (offsetof(t3r_config, name) / sizeof(uint32_t))
 /* Returns the largest value of each setting. */

@@ -24,7 +24,7 @@ static uint8_t *sample_file(uint32_t bits, size_t *count)
 }
 
 /* data: bits, then damages: two bytes with the place (even: in header and table), one with the value. Above 255 the
-   rest is the file. */
+ * rest is the file. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static uint8_t *samples[4];

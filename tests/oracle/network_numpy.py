@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""network_numpy.py DRIVER, or network_numpy.py --build COMPILER RUNNER: computes each layer of random quantized networks in
-plain int64 by numpy, from the text of runtime/head/weights.h, and compares with the runtime's rows and outputs, bit for
-bit.
+"""network_numpy.py DRIVER, or network_numpy.py --build COMPILER RUNNER: computes each layer of random quantized
+networks in plain int64 by numpy, from the text of runtime/head/weights.h, and compares with the runtime's rows and
+outputs, bit for bit.
 
 Networks of every kind of layer, kernel, stride, level, phase, width of weights and activations, with two sources and
-upsampling; sums at the edge of their accumulators; images of odd and of the smallest sizes. --build makes the driver for
-another processor with the other byte order and runs it under an emulator.
+upsampling; sums at the edge of their accumulators; images of odd and of the smallest sizes. --build makes the driver
+for another processor with the other byte order and runs it under an emulator.
 """
 import pathlib
 import struct

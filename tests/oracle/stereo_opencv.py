@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""stereo_opencv.py DRIVER DATA [--time]: compares matching with OpenCV's StereoSGBM on Middlebury's teddy, by the share of
-pixels seen by both views that are off by more than two: as captured, with one picture half as bright, and with noise.
-With --time, for a release build on an idle machine, also the ratio of processor times: its median over the rounds is
-held to a limit, and its spread is printed.
+"""stereo_opencv.py DRIVER DATA [--time]: compares matching with OpenCV's StereoSGBM on Middlebury's teddy, by the share
+of pixels seen by both views that are off by more than two: as captured, with one picture half as bright, and with
+noise. With --time, for a release build on an idle machine, also the ratio of processor times: its median over the
+rounds is held to a limit, and its spread is printed.
 
 OpenCV matches with all eight paths and 64 disparities, at its best block size in each case. Its picture is extended by
 64 columns to the left, so that it has the same candidates. A pixel without a disparity counts as off."""

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""comments.py: the comments of the runtime's headers read plainly. Every field of a public struct has a comment of its own,
-which begins with a capital and ends as a sentence; no sentence is long; some words have no place in a reference."""
+"""comments.py: the comments of the runtime's headers read plainly. Every field of a public struct has a comment of its
+own, which begins with a capital and ends as a sentence; no sentence is long; some words have no place in a reference.
+"""
 import re
 import sys
 

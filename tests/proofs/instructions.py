@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""instructions.py [--update]: no stage takes more instructions than instructions.txt allows. callgrind counts those of two
-small builds in plain C at -O2; other programs on the machine do not disturb the counts. The runtime predicts the
+"""instructions.py [--update]: no stage takes more instructions than instructions.txt allows. callgrind counts those of
+two small builds in plain C at -O2; other programs on the machine do not disturb the counts. The runtime predicts the
 operations of other builds (work.py). --update rewrites the table.
 
 The compiler's version is part of the table: another one makes other instructions, and skips the proof.

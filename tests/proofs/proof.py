@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shared by the proofs: compiling the runtime for a target, and the verdict.
 
-A proof first shows that it can fail: it must find each kind of offence planted in planted/. Then it checks the real code.
-Exit 0: holds; 1: broken; 77: skipped, a tool is absent.
+A proof first shows that it can fail: it must find each kind of offence planted in planted/. Then it checks the real
+code. Exit 0: holds; 1: broken; 77: skipped, a tool is absent.
 """
 import contextlib
 import os

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """stack_depth.py TARGET [--markdown]: the deepest stack of each public function, from the compiler's own call graph.
 
-Fails on recursion, frames of unknown size, a depth over the limit, and calls through pointers that pointers.txt does not
-declare. Stack of the caller's callbacks comes on top.
+Fails on recursion, frames of unknown size, a depth over the limit, and calls through pointers that pointers.txt does
+not declare. Stack of the caller's callbacks comes on top.
 """
 import re
 import sys

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""structure.py [LIBRARY...]: the layers of the tree hold. Every area includes only areas below it, and no two source files
-of a library call each other, not even through others.
+"""structure.py [LIBRARY...]: the layers of the tree hold. Every area includes only areas below it, and no two source
+files of a library call each other, not even through others.
 
-MAY is the whole picture: what each area may include. An area that is not in it is a finding, so a new one is entered here
-with its arrows.
+MAY is the whole picture: what each area may include. An area that is not in it is a finding, so a new one is entered
+here with its arrows.
 """
 import pathlib
 import re

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """words.py: the source of the runtime has no real numbers, no heap, no streams, no operating system.
 
-The compiler may fold a real constant away, so symbols cannot show it; hence the source itself is searched. The words must
-not appear in comments either, so that a plain grep is enough to verify it.
+The compiler may fold a real constant away, so symbols cannot show it; hence the source itself is searched. The words
+must not appear in comments either, so that a plain grep is enough to verify it.
 """
 import pathlib
 import re

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""work.py --fit: fits the operations per unit of each kind of work to instruction counts of builds in plain C at -O2, and
-writes runtime/layout/operations.h.
+"""work.py --fit: fits the operations per unit of each kind of work to instruction counts of builds in plain C at -O2,
+and writes runtime/layout/operations.h.
 
 The proof `instructions` checks the fit on other builds: these builds and their large stages take within 25 % of the
 operations that follow from t3r_count_work().

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """ros1.py TRIM3R ros1_node|none ros1_play|none: runs the node for ROS 1 as a process, with Debian's master. It gets a
-recording as messages over TCP; clouds and hashes are compared with `trim3r replay --stream`, with pose messages and with
-tf."""
+recording as messages over TCP; clouds and hashes are compared with `trim3r replay --stream`, with pose messages and
+with tf."""
 import os
 import pathlib
 import shutil

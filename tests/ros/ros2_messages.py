@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""ros2_messages.py FOLDER: generates the C++ messages of ROS 2 that the node uses, by Debian's rosidl. The definitions are
-Debian's for ROS 1 (packages ros-*-msgs), changed where ROS 2 differs: names of packages, the header, times and the names
-of CameraInfo's arrays. Ends with 77 where a package is missing."""
+"""ros2_messages.py FOLDER: generates the C++ messages of ROS 2 that the node uses, by Debian's rosidl. The definitions
+are Debian's for ROS 1 (packages ros-*-msgs), changed where ROS 2 differs: names of packages, the header, times and the
+names of CameraInfo's arrays. Ends with 77 where a package is missing."""
 import json
 import pathlib
 import re

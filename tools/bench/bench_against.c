@@ -35,8 +35,7 @@ static void add_word(char list[LIST_BYTES], const char *word)
     snprintf(list + length, LIST_BYTES - length, "%s%s", length > 0 ? "," : "", word);
 }
 
-/* ---- one run ------------------------------------------------------------------------------------------------------
- */
+/* ---- one run --------------------------------------------------------------------------------------------------- */
 
 /* Returns the object that `bench --json` of that program prints; NULL after a message. If `allowed`, refused options
  * give no message. */
@@ -170,8 +169,7 @@ static int share_stages(contest_state *s, const cJSON *theirs)
                : cli_error(CLI_BAD_INPUT, "%s: it has none of the stages: %s", s->contest->other, s->this_alone);
 }
 
-/* ---- the turns ----------------------------------------------------------------------------------------------------
- */
+/* ---- the turns ------------------------------------------------------------------------------------------------- */
 
 static int take_turns(contest_state *s)
 {

@@ -2,8 +2,8 @@
 """declare.py HEADER ROOT PACKAGE BUILD COMPILER OPTION...: what the Python package knows of C, out of the headers.
 
 PACKAGE/_declarations.py has every type and constant that HEADER leads to below ROOT, and the functions of the headers
-that HEADER itself includes, in the form that cffi loads. PACKAGE/_settings.py has the settings. BUILD/exports.ld makes the linker take these functions and
-data from their archives, and BUILD/exports.map exports nothing else.
+that HEADER itself includes, in the form that cffi loads. PACKAGE/_settings.py has the settings. BUILD/exports.ld makes
+the linker take these functions and data from their archives, and BUILD/exports.map exports nothing else.
 """
 import pathlib
 import re

@@ -57,8 +57,7 @@ static int verdict(const char *wrong, char *reason)
     return wrong == NULL ? 0 : t3r_reason(reason, FRAME_FEED_REASON_BYTES, "%s", wrong);
 }
 
-/* ---- opening and closing
- * -------------------------------------------------------------------------------------------- */
+/* ---- opening and closing --------------------------------------------------------------------------------------- */
 
 frame_feed_settings frame_feed_defaults(void)
 {
@@ -137,8 +136,7 @@ frame_feed_counts frame_feed_counts_of(const frame_feed *feed)
     return feed->counts;
 }
 
-/* ---- warnings
- * -------------------------------------------------------------------------------------------------------- */
+/* ---- warnings -------------------------------------------------------------------------------------------------- */
 
 void frame_feed_warn(frame_feed *feed, frame_feed_topic topic, const char *reason, int64_t now_ns)
 {
@@ -177,8 +175,7 @@ static bool is_in_order(frame_feed *feed, frame_feed_topic topic, int64_t stamp_
     return true;
 }
 
-/* ---- poses
- * ----------------------------------------------------------------------------------------------------------- */
+/* ---- poses ----------------------------------------------------------------------------------------------------- */
 
 static int64_t apart(int64_t a, int64_t b)
 {
@@ -255,8 +252,7 @@ static frame_feed_found locate(frame_feed *feed, const image_slot *colour, t3r_c
     return verdict(t3r_message_pose(pose, camera), reason) == 0 ? FRAME_FEED_FOUND : FRAME_FEED_NEVER;
 }
 
-/* ---- a pair to a frame
- * --------------------------------------------------------------------------------------------- */
+/* ---- a pair to a frame ----------------------------------------------------------------------------------------- */
 
 static int take_depth(frame_feed *feed, const image_slot *slot, t3r_frame *frame, char *reason)
 {
@@ -356,8 +352,7 @@ static bool finish_pair(frame_feed *feed, int64_t now_ns)
     return true;
 }
 
-/* ---- the queues
- * ------------------------------------------------------------------------------------------------------ */
+/* ---- the queues ------------------------------------------------------------------------------------------------ */
 
 void frame_feed_tick(frame_feed *feed, int64_t now_ns)
 {

@@ -30,7 +30,7 @@ static inline TARGET pairs multiply_signed(lanes a, lanes b)
 }
 
 /* Largest error of three Newton steps, from rounding below 2^32: the reciprocal is lowered by it, so that it is never
-   too large. */
+ * too large. */
 #define NEWTON_ERROR 3
 
 static inline TARGET pairs odd(lanes x)
@@ -80,7 +80,7 @@ static inline TARGET lanes divide(lanes x, lanes z, ulanes shift, ulanes inverse
 {
     const lanes sign = x >> 31, size = (x ^ sign) - sign;
     /* 0 to 3 too small: less than 2^28 2^-27 by the reciprocal, less than 1 by rounding down, a half by the final
-       rounding */
+     * rounding */
     lanes q = (lanes)(high((ulanes)size << shift, inverse) >> 2);
     /* the remainder of size 2^24 plus half of z, or half of z - 1 where x is negative: 0 up to 4 z */
     lanes rest = (lanes)(((ulanes)size << 24) + (ulanes)((z + sign) >> 1) - (ulanes)q * (ulanes)z);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The budget for a bounded loss, from made-up evidence: equal to the formula in doubles, within its bounds at all
-   extremes. */
+ * extremes. */
 #include "unit/unit.h"
 
 #include "loss/budget_choice.h"

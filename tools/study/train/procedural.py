@@ -88,11 +88,12 @@ class Procedural:
         return image, depth
 
     def room(self, width, height, views=3):
-        """Returns `views` (1 to 16) views of one room along a hand-held path; of three, the middle one lies between the others.
-        
-        The result is a list of dictionaries: image uint8 [height, width, 3] RGB; depth float32 [height, width] metres along the
-        axis; intrinsics float32 [4] fx fy cx cy, pixels; pose float32 [4, 4] camera-to-world, axes x right, y down, z forward,
-        metres. Pixel (0, 0) is the centre of the top-left pixel. All views share one exposure."""
+        """Returns `views` (1 to 16) views of one room along a hand-held path; of three, the middle one lies between the
+        others.
+
+        The result is a list of dictionaries: image uint8 [height, width, 3] RGB; depth float32 [height, width] metres
+        along the axis; intrinsics float32 [4] fx fy cx cy, pixels; pose float32 [4, 4] camera-to-world, axes x right, y
+        down, z forward, metres. Pixel (0, 0) is the centre of the top-left pixel. All views share one exposure."""
         images, depths = np.empty((views, height, width, 3), np.uint8), np.empty((views, height, width), np.float32)
         intrinsics, poses = np.empty((views, 4), np.float32), np.empty((views, 4, 4), np.float32)
         pointers = (a.ctypes.data for a in (images, depths, intrinsics, poses))
@@ -156,12 +157,13 @@ def depth_lattice(rng, shape):
 
 
 def degrade_depth(rng, depth, holes=True, noise=True):
-    """Returns `depth` as a depth sensor might have measured it: float32 metres, 0 without a measurement. `depth` is unchanged.
-    
-    rng: a numpy Generator, or a seed for one. Noise: a deviation of 0.05 to 0.5 % of a metre at 1 m, growing with the square
-    of depth, smooth over a few pixels; then rounding to steps that grow likewise (of disparity) or of a millimetre. Holes,
-    each kind on some pictures only: the lattice of a coarser sensor projected into the camera, borders without overlap,
-    patches (gloss, black), depth edges, and depths beyond the sensor's range."""
+    """Returns `depth` as a depth sensor might have measured it: float32 metres, 0 without a measurement. `depth` is
+    unchanged.
+
+    rng: a numpy Generator, or a seed for one. Noise: a deviation of 0.05 to 0.5 % of a metre at 1 m, growing with the
+    square of depth, smooth over a few pixels; then rounding to steps that grow likewise (of disparity) or of a
+    millimetre. Holes, each kind on some pictures only: the lattice of a coarser sensor projected into the camera,
+    borders without overlap, patches (gloss, black), depth edges, and depths beyond the sensor's range."""
     rng, made = _rng(rng), np.array(depth, np.float32)
     shape = made.shape
     edges = depth_edges(made)

@@ -83,8 +83,7 @@ static const struct argp argp = {
     .children = children,
 };
 
-/* ---- what there is ------------------------------------------------------------------------------------------------
- */
+/* ---- what there is --------------------------------------------------------------------------------------------- */
 
 typedef struct camera_list {
     char name[CAMERAS_MOST][CAMERA_BYTES]; /* "/dev/video0: its name" */
@@ -155,8 +154,7 @@ static void look_around(machine *m, const options *o)
     find_cameras(&m->cameras);
 }
 
-/* ---- what is printed -----------------------------------------------------------------------------------------------
- */
+/* ---- what is printed ------------------------------------------------------------------------------------------- */
 
 static void print_json(const machine *m, const options *o)
 {

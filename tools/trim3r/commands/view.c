@@ -117,8 +117,7 @@ static const struct argp argp = {
     .children = children,
 };
 
-/* ---- what the page is given -----------------------------------------------------------------------------------------
- */
+/* ---- what the page is given ------------------------------------------------------------------------------------ */
 
 static int add_frames(viewpoints *v, const view_options *o, const t3r_recording *recording, const reconstruction *r)
 {
@@ -172,8 +171,7 @@ static void prepare_scene(const scene_file *scene, viewpoints *v, viewer_page *p
     viewpoints_add_before(v, scene, WIDTH, HEIGHT);
 }
 
-/* ---- where the page goes
- * ---------------------------------------------------------------------------------------------- */
+/* ---- where the page goes --------------------------------------------------------------------------------------- */
 
 static void tell(const view_options *o, const viewer_page *page, const char *key, const char *where, uint64_t bytes)
 {
