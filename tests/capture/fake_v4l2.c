@@ -127,7 +127,7 @@ void fake_sleep(fake_v4l2 *fake, int64_t ns)
     run(fake);
 }
 
-/* ---- faults on order ---- */
+/* ---- requested faults ---- */
 
 static int fault(fake_v4l2 *fake, unsigned long call)
 {

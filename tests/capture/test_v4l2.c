@@ -261,7 +261,7 @@ static void a_call_that_fails_while_opening_is_told_and_leaves_nothing(void **st
     finish(&fake, capture);
 }
 
-/* ---- what goes wrong while it streams ---- */
+/* ---- failures while streaming ---- */
 
 static void damaged_images_are_left_out_counted_and_named(void **state)
 {

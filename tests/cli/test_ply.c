@@ -156,7 +156,7 @@ static void decomposes_shapes(void **state)
     }
 }
 
-/* ---- files that are none ------------------------------------------------------------------------------------ */
+/* ---- other files -------------------------------------------------------------------------------------------- */
 
 static const char header[] =
     "ply\nformat binary_little_endian 1.0\nelement vertex 1\n"

@@ -28,7 +28,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 enum { WIDTH = 40, HEIGHT = 32, BUDGET = 100, FEW = 5, MANY = 300, MOST_DAMAGES = 12, MOST_CALLS = 4, FAR_MM = 1500 };
 
-/* ---- sound arenas -------------------------------------------------------------------------------- */
+/* ---- valid arenas -------------------------------------------------------------------------------- */
 
 /* ANALYSED_MANY has labels of nine bits. */
 typedef enum base { ANALYSED, BY_STEREO, STREAM, SCENE_ONLY, VIEWS_ONLY, BUILT, ANALYSED_MANY, BASES } base;
@@ -379,7 +379,7 @@ static void damage(t3r_runtime *rt, input *in)
     mend(rt, take8(in) % 3 == 0 ? take8(in) : 15);
 }
 
-/* ---- whatever may be called ---------------------------------------------------------------------- */
+/* ---- calls --------------------------------------------------------------------------------------- */
 
 static uint32_t calls_until_cancelled;
 

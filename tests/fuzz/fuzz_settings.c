@@ -95,7 +95,7 @@ static uint8_t part_of(const way *w, size_t part)
     return ((const uint8_t *)w)[parts[part].at];
 }
 
-/* ---- what is seen of a run ----------------------------------------------------------------------- */
+/* ---- results of a run ---------------------------------------------------------------------------- */
 
 typedef struct note {
     const char *call, *what; /* "t3r_render", "the colours" */

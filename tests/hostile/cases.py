@@ -144,7 +144,7 @@ given("recording", "escapes-in-compression.mcap", f.mcap(f.chunk(f.ESCAPE, b"", 
 
 
 
-# --- files that are none ---------------------------------------------------------------------------------------------
+# --- other files -----------------------------------------------------------------------------------------------------
 
 
 @case("path", "pipe.mcap", "not a regular file")

@@ -66,7 +66,7 @@ static void refused_at(bench *b, t3r_status got, t3r_status want, int line)
         refused_at((b), (call), (want), __LINE__);                                                                     \
     } while (0)
 
-/* ---- a picture to hand in ------------------------------------------------------------------------ */
+/* ---- an input picture ---------------------------------------------------------------------------- */
 
 static uint8_t pixels[T3R_PIXEL_FORMAT_COUNT][POINTS * 3];
 static uint8_t depths[POINTS * 2];

@@ -405,7 +405,7 @@ static void binding(void **state)
     free(weights);
 }
 
-/* --- what the outputs mean ---------------------------------------------------------------------------------------- */
+/* --- meaning of the outputs --------------------------------------------------------------------------------------- */
 
 static t3r_gaussian constant_scene[POINTS];
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """readme.py example LIBRARY... | table PROGRAM [--update]: what the documents show is what happens.
 
-example: the README's C program compiles without a warning, links with the runtime and the shipped heads only, and prints
+example: the README's C program compiles without a warning, links with only the runtime and the heads, and prints
          what the README shows.
 table:   the arena table of docs/firmware.md is the output of `trim3r plan --markdown`; --update writes it there.
 """

@@ -155,7 +155,7 @@ static void frame_out_of_range_is_refused(void **state)
     bag_bytes_free(&bytes);
 }
 
-/* ---- where messages end, by the record reader ---- */
+/* ---- ends of messages, by the record reader ---- */
 
 typedef struct ends {
     const uint8_t *base;

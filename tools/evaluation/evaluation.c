@@ -45,7 +45,7 @@ int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluatio
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, "render", &r->config, r->arena_bytes);
 }
 
-/* ---- what the rows of a case share -------------------------------------------------------------------------- */
+/* ---- shared by the rows of a case --------------------------------------------------------------------------- */
 
 void evaluation_views_free(evaluation_views *views)
 {

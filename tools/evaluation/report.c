@@ -54,7 +54,7 @@ int evaluation_report_open(evaluation_report *report, const evaluation_outputs *
     return code;
 }
 
-/* ---- what is written as rows arrive --------------------------------------------------------------------------- */
+/* ---- output as rows arrive ------------------------------------------------------------------------------------ */
 
 /* Whether rows of the same target, seen from other frames, have its folder. */
 static bool folder_taken(const evaluation_report *report, const evaluation_row *names)
@@ -189,7 +189,7 @@ void evaluation_report_refuse(evaluation_report *report, const evaluation_case *
     cli_progress_within("rows", report->known_count, report->row_count, report->row_total);
 }
 
-/* ---- what is written at the end --------------------------------------------------------------------------------- */
+/* ---- output at the end ------------------------------------------------------------------------------------------ */
 
 static void print_json(const evaluation_report *report, const evaluation_row *means, uint32_t mean_count)
 {

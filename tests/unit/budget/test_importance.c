@@ -88,7 +88,7 @@ static t3r_budget_settings settings_of(uint32_t gaussians)
                                  .pass_over_covered = false};
 }
 
-/* ---- which points ------------------------------------------------------------------------------------------------ */
+/* ---- chosen points ----------------------------------------------------------------------------------------------- */
 
 typedef struct point {
     uint32_t importance, order; /* order: view after view, row after row */
@@ -145,7 +145,7 @@ static void the_highest_are_retained(void **state)
     }
 }
 
-/* ---- how dense --------------------------------------------------------------------------------------------------- */
+/* ---- density ----------------------------------------------------------------------------------------------------- */
 
 static double log_share(uint32_t retained, uint32_t valid)
 {

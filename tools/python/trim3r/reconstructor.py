@@ -300,7 +300,7 @@ class Reconstructor:
             self._check(lib.t3r_get_scene, runtime, scene)
         return Picture(colour, depth, alpha, scene.frame.exponent)
 
-    # ---- what is known of it ----
+    # ---- properties ----
 
     @property
     def valid_points(self) -> Optional[int]:
@@ -340,7 +340,7 @@ class Reconstructor:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    # ---- inside ----
+    # ---- internal ----
 
     @contextlib.contextmanager
     def _at_work(self) -> Iterator[Any]:

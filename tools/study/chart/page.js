@@ -35,7 +35,7 @@
   }
   const many = (s) => s[4] >= 4; // fewer cases have no meaningful quartiles
 
-  /* ---- what is shown ---- */
+  /* ---- shown data ---- */
   function shown() {
     return points.map((_, p) => p).filter((p) => !state.hidden.has(points[p].series) && spread(p, state.quality) && spread(p, state.cost));
   }

@@ -237,7 +237,7 @@ static void mark_leaf(painting *p, int index)
     }
 }
 
-/* ---- what a place holds ----------------------------------------------------------------------------------------- */
+/* ---- contents of a place ---------------------------------------------------------------------------------------- */
 
 static void group_draw(const painting *p, group *made, generator *g, float fine)
 {

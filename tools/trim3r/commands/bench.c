@@ -253,7 +253,7 @@ static int time_rows(bench_work *w, const bench_options *o, row rows[BENCH_STAGE
     return CLI_OK;
 }
 
-/* ---- what is printed --------------------------------------------------------------------------------------------- */
+/* ---- output ------------------------------------------------------------------------------------------------------ */
 
 typedef struct figures {
     double median, least, most; /* in the row's unit */

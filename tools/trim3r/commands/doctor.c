@@ -83,7 +83,7 @@ static const struct argp argp = {
     .children = children,
 };
 
-/* ---- what there is --------------------------------------------------------------------------------------------- */
+/* ---- features -------------------------------------------------------------------------------------------------- */
 
 typedef struct camera_list {
     char name[CAMERAS_MOST][CAMERA_BYTES]; /* "/dev/video0: its name" */
@@ -154,7 +154,7 @@ static void look_around(machine *m, const options *o)
     find_cameras(&m->cameras);
 }
 
-/* ---- what is printed ------------------------------------------------------------------------------------------- */
+/* ---- output ---------------------------------------------------------------------------------------------------- */
 
 static void print_json(const machine *m, const options *o)
 {

@@ -117,7 +117,7 @@ static const struct argp argp = {
     .children = children,
 };
 
-/* ---- what the page is given ------------------------------------------------------------------------------------ */
+/* ---- the page's data ------------------------------------------------------------------------------------------- */
 
 static int add_frames(viewpoints *v, const view_options *o, const t3r_recording *recording, const reconstruction *r)
 {
@@ -171,7 +171,7 @@ static void prepare_scene(const scene_file *scene, viewpoints *v, viewer_page *p
     viewpoints_add_before(v, scene, WIDTH, HEIGHT);
 }
 
-/* ---- where the page goes --------------------------------------------------------------------------------------- */
+/* ---- output ---------------------------------------------------------------------------------------------------- */
 
 static void tell(const view_options *o, const viewer_page *page, const char *key, const char *where, uint64_t bytes)
 {
