@@ -56,7 +56,7 @@ t3r_status t3r_find_depth(t3r_runtime *rt, t3r_view *views, t3r_view_span span)
     return status;
 }
 
-/* Chooses the frame, which is all that the pointmap needs beside depth and pose. */
+/* Chooses the frame, which is all that the pointmap needs besides depth and pose. */
 t3r_status t3r_choose_frame(t3r_runtime *rt, t3r_view *views)
 {
     t3r_scene_frame frame = rt->frame;

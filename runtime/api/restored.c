@@ -10,7 +10,7 @@
 #include "pointmap/align.h"
 #include "superclusters/superclusters.h"
 
-/* Whether depths of valid pixels are above 0: stages divide by them. Stereo makes its planes anew in every analysis. */
+/* Whether depths of valid pixels are above 0: stages divide by them. Stereo makes new planes in every analysis. */
 static bool is_depth(const t3r_runtime *rt, const t3r_view *view)
 {
     if (t3r_is_by_stereo(&rt->config) && !rt->analysed) {

@@ -63,7 +63,7 @@ static t3r_blended_row *rows_at(const t3r_refine_view *job, uint32_t rows)
 }
 
 /* Draws the list up to `end`, or until all pixels are opaque, and keeps its last splats: a full buffer is emptied and
- * filled anew. */
+ * filled again. */
 static kept_splats draw(const t3r_refine_view *job, const uint32_t *list, uint32_t end, uint32_t left, uint32_t top,
                         t3r_tile *tile)
 {

@@ -15,7 +15,7 @@
 typedef enum t3r_depth_source {
     T3R_NO_DEPTH,     /* all bits are 0 */
     T3R_FILLED,       /* a small hole, filled from the measured pixels around it (depth.h, stereo_fill.h) */
-    T3R_BRIDGED,      /* a wide hole (bridge.h), bridged anew by every analysis */
+    T3R_BRIDGED,      /* a wide hole (bridge.h), bridged again by every analysis */
     T3R_MEASURED = 3, /* by the sensor, or matched by stereo */
     T3R_DEPTH_SOURCE_BITS = 3
 } t3r_depth_source;

@@ -92,8 +92,8 @@ static void add_shown(const t3r_map *map, const t3r_view *view, const uint16_t *
     }
 }
 
-/* Returns the remembered keyframe that the map needs least beside the one in the slot: by the Gaussians that it shows,
- * times its weight. */
+/* Returns the remembered keyframe that the map needs least, other than the one in the slot: by the Gaussians that it
+ * shows, times its weight. */
 static uint32_t least_needed(const t3r_runtime *rt, uint32_t slot)
 {
     const t3r_map map = t3r_map_of(rt);

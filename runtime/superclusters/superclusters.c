@@ -258,7 +258,7 @@ static void set_weights(const means_job *job, uint32_t points)
     }
 }
 
-/* Places all centres anew. Returns false when cancelled. */
+/* Places all centres again. Returns false when cancelled. */
 static bool place_centres(const means_job *job, const t3r_cluster_settings *settings, t3r_cluster *clusters,
                           uint32_t total)
 {
@@ -271,7 +271,7 @@ static bool place_centres(const means_job *job, const t3r_cluster_settings *sett
 }
 
 /* Runs the first batch with the last build's centres. Centres that get fewer than half of the mean number of its
- * points are placed anew. Returns false if cancelled. */
+ * points are placed again. Returns false if cancelled. */
 static bool follow_centres(means_job *job, const t3r_cluster_settings *settings, t3r_cluster *clusters, uint32_t total)
 {
     bool stays[T3R_MAX_CLUSTERS];

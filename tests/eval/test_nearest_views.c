@@ -61,7 +61,7 @@ static void test_median_depth(void **state)
     for (int i = 0; i < 8; i++) {
         bytes[6 * (i / 2) + 2 * (i % 2)] = (uint8_t)(steps[i / 2][i % 2] & 255);
         bytes[6 * (i / 2) + 2 * (i % 2) + 1] = (uint8_t)(steps[i / 2][i % 2] >> 8);
-        bytes[6 * (i / 2) + 4] = 77; /* beside the picture */
+        bytes[6 * (i / 2) + 4] = 77; /* outside the picture */
     }
     t3r_frame frame = {.depth = bytes,
                        .depth_width = 2,

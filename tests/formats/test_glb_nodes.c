@@ -77,7 +77,7 @@ static void goes_up_the_tree(void **state)
                 15, 10, -6);
     /* unequal scales that cancel each other */
     check_point("[{\"scale\": [2, 1, 4], \"children\": [1]}, {\"mesh\": 0, \"scale\": [0.5, 1, 0.25]}]", 3, 5, 7);
-    /* a node beside it */
+    /* a node next to it */
     check_point("[{\"translation\": [9, 9, 9], \"children\": [1]}, {\"mesh\": 7}, {\"mesh\": 0}]", 3, 5, 7);
 }
 

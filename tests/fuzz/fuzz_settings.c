@@ -506,7 +506,7 @@ static t3r_status get_scene(run *r)
 
 /* ---- the way through a case ---------------------------------------------------------------------- */
 
-/* Builds and draws. A build may be cancelled if the next one begins anew in any case. */
+/* Builds and draws. A build may be cancelled if the next one starts from scratch in any case. */
 static void build_and_look(run *r, bool follows)
 {
     r->request = &r->drawn->first;

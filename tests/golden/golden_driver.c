@@ -3,7 +3,8 @@
  * "configuration stage hash". It uses the runtime, the room and a shipped head alone, so that it builds wherever
  * they do.
  *
- * What must not matter can be varied: --arena min|full|ten, --tasks plain|reverse, --workers 1..8 of those tasks,
+ * Options vary everything without influence: --arena min|full|ten, --tasks plain|reverse, --workers 1..8 of those
+ * tasks,
  * --moved (the arena is copied to another place and attached again between any two calls). */
 #include <inttypes.h>
 #include <stdbool.h>
@@ -187,7 +188,7 @@ typedef struct run {
     t3r_runtime *rt;
     size_t arena_bytes;
     uint32_t here;          /* index of the arena that holds the state */
-    const uint8_t *weights; /* NULL but for the learned head */
+    const uint8_t *weights; /* NULL except for the learned head */
     uint8_t *made;          /* made up; to be freed */
     size_t weights_bytes;
 } run;

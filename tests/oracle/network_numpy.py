@@ -208,7 +208,7 @@ def random_network(rng, net):
     made, unread = [0], set()
     for _ in range(int(rng.integers(0, 8))):
         layer = plane_layer(rng, net, made)
-        if unread and rng.random() < 0.7:  # go on from the last
+        if unread and rng.random() < 0.7:  # continue from the last
             layer = plane_layer(rng, net, [max(unread)])
         unread -= set(layer.sources)
         made.append(net.add(layer))

@@ -261,7 +261,7 @@ static void kmeans(void **state)
     kmeans_case("to the ends of the range", &c, 512, 1.15);
 }
 
-/* Returns the mean squared distance after clustering, started from the previous centres or anew. */
+/* Returns the mean squared distance after clustering, started from the previous centres or from scratch. */
 static double kmeans_of(const cloud *c, uint32_t k, bool follows, t3r_cluster *clusters)
 {
     const t3r_point_source source = source_of(c);
@@ -280,7 +280,7 @@ static double kmeans_of(const cloud *c, uint32_t k, bool follows, t3r_cluster *c
     return msd;
 }
 
-/* The points move by a third of the room: centres without points are placed anew, and quality is not lost. */
+/* The points move by a third of the room: centres without points are placed again, and quality is not lost. */
 static void kmeans_that_follows(void **state)
 {
     (void)state;
@@ -343,7 +343,7 @@ static void kmeans_that_stays(void **state)
         const t3r_cluster_host host = {.workers = {NULL, 1}, .context = &s, .step = take_step};
         const t3r_point_source source = source_of(&c);
         memcpy(following, anew, sizeof anew);
-        following[1].centre_q19[0] = following[2].centre_q19[0] = away; /* two are placed anew */
+        following[1].centre_q19[0] = following[2].centre_q19[0] = away; /* two are placed again */
         const uint32_t valid = t3r_superclusters(&source, &settings, following, work, &host);
         assert_int_equal(valid, stop_at == 0 ? COUNT : T3R_CLUSTERS_CANCELLED);
         all = stop_at == 0 ? s.calls : all;

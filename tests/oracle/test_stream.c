@@ -422,7 +422,7 @@ static void nothing_overlaps_with_nothing(void **state)
 }
 
 /* A camera that jumps from one end of the range to the other takes the origin along. The previous keyframe is then out
- * of range, so the scene is that of a stream that begins at the new place. */
+ * of range, so the scene equals one of a stream that begins at the new place. */
 static void jumps_leave_keyframes_behind(void **state)
 {
     (void)state;

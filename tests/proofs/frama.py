@@ -22,7 +22,7 @@ UNSIGNED = "-warn-unsigned-overflow"
 # Keeps a function's returns apart, so that conditions it checked hold in its caller.
 APART = ["-eva-interprocedural-history", "-eva-partition-history"]
 
-# Subjects: sources beside the driver, Eva's options, and the page's texts on functions, ranges and omissions.
+# Subjects: sources besides the driver, Eva's options, and the page's texts on functions, ranges and omissions.
 SUBJECTS = {
     "fixed": (
         ["runtime/core/fixed.c"], ["-eva-precision", "4", "-eva-slevel", "400"],

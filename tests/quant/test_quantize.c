@@ -113,7 +113,7 @@ static void test_layers(void **state)
     }
 }
 
-/* Channels that are dead, tiny, huge, or all bias give a sound file or a refusal. */
+/* Channels that are dead, tiny, huge, or all bias give a valid file or a refusal. */
 static void test_extremes(void **state)
 {
     (void)state;

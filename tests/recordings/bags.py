@@ -168,7 +168,7 @@ def robot(packing):
     still = frames.matrix(yaw(0.2), (0.1, 0, 0.3)) @ frames.matrix(OPTICAL, (0, 0, 0))
     for i in range(count):
         check(np.array_equal(told["read"]["image"][i], colour_rows(i)), f"picture {i}")
-        at = (10 + 33 * i) / 100  # in tenths of a second; yaw changes evenly, so the arc is that of the angle
+        at = (10 + 33 * i) / 100  # in tenths of a second; yaw changes evenly, so the arc is proportional to the angle
         moving = frames.matrix(yaw(0.4 * at), (1 + 0.5 * at, 2, 0))
         same_pose(told["read"]["pose"][i], moving @ still, f"pose {i}")
     for z in told["read"]["depth"]:

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Our own recordings: what is written is what is read, wherever the file is cut; changed files are refused. */
+/* Our own recordings: they read back as written, also when truncated anywhere; changed files are refused. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

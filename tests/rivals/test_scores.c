@@ -102,7 +102,7 @@ static void efficientgs(void **state)
     splat_model model = two_and_one();
     splat_view view = view_of(&model, &camera, SPLAT_ALPHA_LEAST);
     assert_true(score_efficientgs(&model, &view, 1, score));
-    /* the front ball outweighs the back one wherever both are: only the front one is dominant */
+    /* the front ball outweighs the back one where both are: only the front one is dominant */
     assert_near(score[1], pixels[0] + 0.5, 1e-9);
     assert_near(score[0], 0.5 * weights[1] / weights[0], 1e-4);
     assert_true(score[2] == 0);

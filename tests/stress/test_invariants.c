@@ -110,7 +110,7 @@ static void arenas_too_small_for_perturbed_frames(void **state)
     assert_non_null(strstr(f->rows[0].reason, "too small"));
 }
 
-/* An arena that grew, or changed for the same budget, is reported; a rival's arena is that of all points. */
+/* An arena that grew, or changed for the same budget, is reported; a rival's arena is the one for all points. */
 static void arenas_that_change(void **state)
 {
     (void)state;

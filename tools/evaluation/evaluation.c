@@ -114,7 +114,7 @@ static int have_depth(const evaluation_case *what, bool *all)
 
 int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings)
 {
-    /* all points of the raw depth with the plain analytic head, whatever is compared; the sensor's depth if all
+    /* all points of the raw depth with the plain analytic head for every comparison; the sensor's depth if all
      * frames have it */
     reconstruction_options options = *settings;
     bool sensed;

@@ -50,7 +50,7 @@ typedef struct evaluation_views {
     method_source source; /* shared by the rows of a method */
 } evaluation_views;
 
-/* Makes the masks from the frames' own depth if every context view has one, whatever the rows are made of. Call
+/* Makes the masks from the frames' own depth if every context view has one, for every kind of row. Call
  * evaluation_views_free() after CLI_OK, and only then. */
 int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings);
 void evaluation_views_free(evaluation_views *views);
@@ -93,15 +93,15 @@ void evaluation_name_case(evaluation_row *row, const evaluation_case *what);
 int evaluation_name_row(evaluation_row *row, const evaluation_case *what, evaluation_budget budget,
                         const reconstruction_options *settings);
 
-/* Builds `what` by the settings' method with so many Gaussians, renders and scores it. The views keep what the rows
- * of a method share, so `settings` must be the same for all of these rows. With from_file the scene is written as
+/* Builds `what` by the settings' method with that number of Gaussians, renders and scores it. The views keep what the
+ * rows of a method share, so `settings` must be the same for all of these rows. With from_file the scene is written as
  * .ply, read back and rendered from that file. If the settings name a scene file, that scene is rendered and nothing
  * is built. `render` (width x height x 3) gets the target view. */
 int evaluation_measure(evaluation_row *row, uint8_t *render, evaluation_views *views, const evaluation_case *what,
                        evaluation_budget budget, bool from_file, const reconstruction_options *settings);
 
-/* The steps of evaluation_measure() after the build, for callers that build from other frames than those of the
- * views (stress). evaluation_draw() renders the scene as `camera` sees it; rgb (width x height x 3) or alpha (width
+/* The steps of evaluation_measure() after the build, for callers that build from frames other than the views' (stress)
+ * . evaluation_draw() renders the scene as `camera` sees it; rgb (width x height x 3) or alpha (width
  * x height, 32767 = opaque) may be NULL. evaluation_score() renders the target into `render` and fills the scores
  * and render_ms of *row; context_psnr is NaN if the views hold no context. */
 int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluation_views *views, uint8_t *rgb,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The runtime: views in, a scene of exactly so many Gaussians, pictures of it."""
+"""The runtime: views in, a scene of an exact number of Gaussians, pictures of it."""
 import collections
 import contextlib
 import os
@@ -26,7 +26,7 @@ class Reconstructor:
     """A runtime and its arena, which is all the memory that it uses.
 
     The order of calls is that of trim3r.h: views are added, then a scene is built, rebuilt at other budgets and drawn;
-    `reset()` begins anew. It is a context manager, and `close()` ends it. Calls release Python's lock, so several
+    `reset()` starts over. It is a context manager, and `close()` ends it. Calls release Python's lock, so several
     reconstructors work at the same time in threads. One of them takes one call at a time.
 
     Parameters

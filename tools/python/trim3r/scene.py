@@ -39,7 +39,7 @@ class Scene:
 
     @classmethod
     def read(cls, path: Union[str, "os.PathLike[str]"]) -> "Scene":
-        """A scene from a file: .ply, .splat, .spz, .glb and what else `trim3r convert` reads. Colours are those of
+        """A scene from a file: .ply, .splat, .spz, .glb and all that `trim3r convert` reads. Colours are those of
         harmonics of degree 0.
 
         Raises
@@ -63,7 +63,7 @@ class Scene:
         return cls(gaussians, (x, y, z), frame.exponent, valid_points, fresh)
 
     def save(self, path: Union[str, "os.PathLike[str]"], local: bool = False, comments: bool = False) -> None:
-        """Writes a file in the format of its suffix: .ply, .splat, .spz, .glb and what else `trim3r build` writes.
+        """Writes a file in the format of its suffix: .ply, .splat, .spz, .glb and all that `trim3r build` writes.
 
         Parameters
         ----------
@@ -73,7 +73,7 @@ class Scene:
             Positions are from the scene's origin, not the world's.
         comments : bool
             A .ply names the bits epoch and the scene's frame, with which read() gives the same integers. Some readers
-            choke on comments.
+            fail on comments.
 
         Raises
         ------

@@ -78,7 +78,7 @@ void settings_add_json(cJSON *object, const t3r_config *config)
     }
 }
 
-#define FIRST_KEY 512 /* above those of the commands */
+#define FIRST_KEY 512 /* above the commands' keys */
 
 /* Appends the range and the default to the help of a setting: ", 0..16 (4)", " (on)". */
 static void append_values(const setting *s, char *text, size_t bytes)

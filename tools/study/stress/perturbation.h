@@ -14,7 +14,7 @@
 typedef struct perturbation {
     const char *name, *unit;
     double strength[STRESS_GRADES]; /* ascending; 0 would change nothing */
-    bool each_frame;                /* drawn anew for each capture of a still scene, like noise */
+    bool each_frame;                /* drawn again for each capture of a still scene, like noise */
     const char *about;              /* text for --help */
     /* Returns false if out of memory; the capture is then partly changed. */
     bool (*apply)(stress_capture *capture, double strength, uint32_t seed);

@@ -108,7 +108,7 @@ int stress_report_close(stress_report *report, int code)
     if (isatty(STDERR_FILENO)) {
         fputs("\r\033[K", stderr);
     }
-    const bool is_whole = code == CLI_OK; /* whatever the rows say */
+    const bool is_whole = code == CLI_OK; /* independent of the rows */
     if (code == CLI_OK) {
         code = finish(report);
     }

@@ -39,7 +39,7 @@ typedef struct stress_case {
 int stress_case_open(stress_case *c, const stress_contest *contest);
 void stress_case_close(stress_case *c);
 
-/* One capture of a case, perturbed, recorded anew, and ready to build from. */
+/* One capture of a case, perturbed, recorded again, and ready to build from. */
 typedef struct stress_run {
     stress_capture capture;
     uint8_t *bytes;

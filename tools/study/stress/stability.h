@@ -28,13 +28,13 @@
 #define STRESS_MASK_CHANGED_ONE 0.6  /* likewise */
 #define STRESS_MOTION_MOST 0.75      /* as a share of the spacing of retained pixels */
 
-/* Return the allowed share of the retained pixels that change with so many Gaussians, and the allowed motion as a
- * share of the spacing, to which the depth's noise contributes `noise`. */
+/* Return the allowed share of the retained pixels that change with this number of Gaussians, and the allowed motion as
+ * a share of the spacing, to which the depth's noise contributes `noise`. */
 double stress_mask_changed_most(double gaussians, uint32_t clusters);
 double stress_motion_most(double noise);
 
 /* Returns the median motion of a Gaussian between two captures due to the depth's noise, as a share of the spacing of
- * so many Gaussians; 0 without Gaussians. */
+ * this number of Gaussians; 0 without Gaussians. */
 double stress_still_motion(const stress_capture *capture, double gaussians);
 
 /* Fills mask_changed and motion of a case's measured unperturbed rows (stress_row_count()), and marks rows beyond the

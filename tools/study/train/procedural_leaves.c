@@ -38,7 +38,7 @@ typedef struct {
 typedef struct {
     float x, y, spread_x, spread_y; /* centre and extent, pixels */
     float low, high;                /* sizes */
-    float near, far;                /* ratio of the leaves' 1/z to that of their background */
+    float near, far;                /* ratio of the leaves' 1/z to their background's */
     float shapes[SHAPE_COUNT];
     float upright; /* share of leaves parallel to the picture's axes */
     float stretch; /* largest aspect ratio */

@@ -488,7 +488,7 @@ static float share_of(const float wanted[UNKNOWNS], const float squares[UNKNOWNS
     return fminf(fmaxf(share, fmaxf(last / 4, SHARE_LEAST)), fminf(2 * last, SHARE_MOST));
 }
 
-/* Corrects a splat. `change`: the changes of the previous pass, 0 in the first; on return those of this pass. */
+/* Corrects a splat. `change`: the changes of the previous pass, 0 in the first; on return this pass's. */
 static void correct(const sums *z, float *change, float *s)
 {
     float before[CHANGES];

@@ -14,7 +14,7 @@ their surfaces and drawn in a third view as well. The loss of a picture is log(M
 over pictures is minus the mean PSNR, but for the perceptual term (GaussianTrim3R eq. 3). The last share of the steps
 runs with weights and activations rounded as `trim3r quantize` will round them.
 
-OUT gets checkpoint.pt (run the same command again to go on), log.csv, curves.png and NAME.safetensors. The same command
+OUT gets checkpoint.pt (the same command again continues), log.csv, curves.png and NAME.safetensors. The same command
 and seed give the same head on the same machine with as many processes."""
 import argparse
 import csv

@@ -25,7 +25,7 @@
 #include "reconstruction/reconstruction_error.h"
 
 typedef struct plan_options {
-    t3r_config config; /* but for the head; a render_width of 0 is the working size */
+    t3r_config config; /* without the head; a render_width of 0 is the working size */
     uint64_t within;   /* bytes of the arena; 0 = as many as it takes */
     uint64_t ram;      /* bytes of RAM; 0 = the settings are given */
     double keep;       /* the budget as percent of the points; 0 = as a count */
