@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A file that a recording grows in and that may be cut off at any moment. Every message is passed to the system as soon
- * as it is complete, so that a process that dies loses at most the message in progress; with `sync` it also goes to the
+/* A growing file of a recording that may be cut off at any moment. Every message is passed to the system as soon as it
+ * is complete, so that a process that dies loses at most the message in progress; with `sync` it also goes to the
  * disk. */
 #ifndef T3R_PLATFORM_RECORDING_FILE_H
 #define T3R_PLATFORM_RECORDING_FILE_H

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""boards.py TRIM3R FOLDER BOARD...: the firmware of each board makes the bits of this machine, takes what docs/study/boards.md
-has, and says what it lacks. The boards share a port."""
+"""boards.py TRIM3R FOLDER BOARD...: the firmware of each board makes the bits of this machine, has the sizes in
+docs/study/boards.md, and says what it lacks. The boards share a port."""
 import json
 import pathlib
 import re
@@ -31,7 +31,7 @@ def boards(*words, expect=0):
 
 
 def shown(label, name):
-    """A figure of the page, of the firmware with this name."""
+    """Returns a figure from the page, for the firmware with this name."""
     row = re.search(rf"^\| {re.escape(label)} \|(.*)\|$", TABLE, re.M)
     check(row is not None, f"the page has no row {label}")
     check(name in NAMES, f"the page has no column {name}")

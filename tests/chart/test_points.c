@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tables to points: grouping, means over scenes, quartiles, what is on the front, names. */
+/* Tables to points: grouping, means over scenes, quartiles, membership of the front, names. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -151,7 +151,8 @@ TEST(test_names_tell_what_differs)
         assert_string_equal(names.series[s].text, expected[s]);
     }
     assert_string_equal(names.common, "small, 8 bits, refine 4");
-    assert_int_equal(names.series[0].colour, names.series[1].colour); /* who: the colour; how: the shape */
+    assert_int_equal(names.series[0].colour,
+                     names.series[1].colour); /* program: the colour; configuration: the shape */
     assert_int_not_equal(names.series[0].shape, names.series[1].shape);
     assert_int_not_equal(names.series[0].colour, names.series[2].colour);
     assert_int_equal(names.series[0].shape, names.series[3].shape);

@@ -55,11 +55,11 @@ def share(all_branches, taken):
 
 
 def files_of(counted):
-    """{file: (branches, those taken)}"""
+    """Returns {file: (branches, those taken)}."""
     files = collections.defaultdict(lambda: (0, 0))
     for (file, _, _), ways in counted.items():
         known, taken = files[file]
-        # below 0: gcov subtracts counts, of which threads that count at once lose some
+        # below 0: gcov subtracts counts, and concurrent threads lose some counts
         files[file] = (known + len(ways), taken + sum(count != 0 for count in ways))
     return files
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Figures in a table that was copied by hand stand side by side in a row of its source: PSNR alone, or PSNR / SSIM."""
+"""Figures in a hand-copied table are next to each other in a row of its source: PSNR alone, or PSNR / SSIM."""
 import re
 
 NUMBER = r"(\d+\.\d{2,3})"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""eval_budgets.py TRIM3R: `trim3r eval --gaussians` and `--poses` mean what they mean for `trim3r build`."""
+"""eval_budgets.py TRIM3R: `--gaussians` and `--poses` work in `trim3r eval` as in `trim3r build`."""
 import json
 import os
 import sys
@@ -17,7 +17,7 @@ def rows(*options):
 
 
 def built(*options):
-    """PSNR of the view that a scene of `build` gives, over all pixels."""
+    """Returns the PSNR of the view from a scene of `build`, over all pixels."""
     run(trim3r, "build", "room.mcap", "--context", "0,2", *map(str, options), "-o", "scene.ply")
     run(trim3r, "render", "scene.ply", "room.mcap", "--view", "1", "-o", "view.png")
     if not os.path.exists("recorded"):

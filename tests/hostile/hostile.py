@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every command that reads, over files that were made to hurt it: each is read or refused with one line that names it, in
-3 seconds of the processor and 512 MB, and nothing of its text reaches the terminal raw.
+"""Every command that reads, with hostile files: each is read or refused with one line that names it, in 3 seconds of
+processor time and 512 MB, and none of its text reaches the terminal unescaped.
 
 hostile.py TRIM3R [--table] [--write]
 
@@ -68,7 +68,7 @@ def limit():
 
 
 def run(command):
-    """Status, output, errors, seconds of the processor, megabytes."""
+    """Returns status, output, errors, seconds of processor time, megabytes."""
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         # pylint: disable=subprocess-popen-preexec-fn
         process = subprocess.Popen([TRIM3R, *command], stdin=subprocess.DEVNULL, stdout=out, stderr=err, preexec_fn=limit)
@@ -97,7 +97,7 @@ def check_run(name, command, why, ended):
         check(RAW.search(text) is None, f"{what}: raw {RAW.search(text)} in its {stream}: {text[:200]!r}")
     if status != 0:
         lines = message.strip().split("\n")
-        most = 2 if command[0] == "capture" else 1  # what a frame lacks, then what that means
+        most = 2 if command[0] == "capture" else 1  # what a frame lacks, then the consequence
         check(len(lines) <= most and all(line.startswith(f"trim3r {command[0]}: ") for line in lines),
               f"{what}: not one line: {message[:300]!r}")
         check(out == b"", f"{what}: output beside an error: {out[:100]!r}")
@@ -108,7 +108,7 @@ def check_run(name, command, why, ended):
 
 
 def check_case(kind, name, why, path):
-    """Runs all commands; the worst of each, and the first refusal."""
+    """Runs all commands; returns the maxima, and the first refusal."""
     worst, ended = [0.0, 0.0], []
     refusal = ""
     for command in commands(kind, path, "out/it"):
@@ -133,7 +133,7 @@ def size_text(path):
 
 
 def make_good():
-    """Makes the good files that hostile files are read with."""
+    """Makes the valid files that are read together with hostile ones."""
     for command in (("room", "-o", "room.mcap", "--frames", "3", "--size", "64x64"),
                     ("build", "room.mcap", "--context", "0,2", "--gaussians", "40", "-o", "room.ply")):
         subprocess.run([TRIM3R, *command], check=True, capture_output=True)
@@ -151,7 +151,7 @@ def make_good():
 
 
 def place(kind, name, make):
-    """Makes the file or folder in a process of its own, because its memory would count for processes started later."""
+    """Makes the file or folder in a separate process, because its memory would count for processes started later."""
     path = f"pictures/{name}" if kind == "picture" else name
     child = os.fork()
     if child == 0:
@@ -167,7 +167,7 @@ def place(kind, name, make):
 
 
 def check_arguments():
-    """Names on the command line, which a shell takes from folders of others."""
+    """Checks names on the command line, which a shell takes from other people's folders."""
     for name in (f"{formats.ESCAPE}.mcap", "line\nbreak.ply", b"\xff.mcap"):
         ended = run(("info", name))
         check(ended[0] == 2 and ended[1] == b"", f"{name!r}: status {ended[0]}")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""measured_figures.py SCRIPTS: what the scripts that measure share: tables, means, blocks of a file, triplets, and files that
-are made once for each program and command."""
+"""measured_figures.py SCRIPTS: functions shared by the scripts that measure: tables, means, blocks of a file,
+triplets, and files that are made once for each program and command."""
 import contextlib
 import io
 import json
@@ -19,7 +19,7 @@ sys.path.insert(0, sys.argv[1])
 sys.dont_write_bytecode = True
 import measured  # noqa: E402
 
-# writes its arguments to the last of them, notes that it was called, and fails once where it is told to
+# writes its arguments to the last of them, records the call, and fails once on request
 PROGRAM = """#!/bin/sh
 if [ "$1" = --version ]; then
     echo "trim3r 1.0, bits epoch 7"

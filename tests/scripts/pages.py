@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""pages.py SCRIPTS DOCS: `pages` reads the epochs that pages name, goes on where one page fails, notes how long each took, and
-the index of docs/study is as it would write it."""
+"""pages.py SCRIPTS DOCS: `pages` reads the epochs that pages name, continues after a page fails, records the time of
+each, and the index of docs/study equals its output."""
 import contextlib
 import importlib.machinery
 import importlib.util
@@ -45,7 +45,7 @@ def epochs(folder):
 
 
 def made(folder):
-    """One page is made, one fails: told, noted, and the third made all the same."""
+    """One page is made, one fails: reported, recorded, and the third is still made."""
     pages.PAGES, pages.ROOT, pages.INDEX, pages.PROGRAM = folder, folder, f"{folder}/README.md", "/bin/true"
     pages.bits_epoch = lambda program: "6"
     script = "for page; do printf 'bits epoch 6.' >\"$page\"; done"
@@ -71,7 +71,7 @@ def made(folder):
 
 
 def index():
-    """What the repository tells is what its pages say."""
+    """The repository's index agrees with its pages."""
     told = read(os.path.join(docs, "study", "README.md"))
     stands = re.search(r"<!-- pages:begin -->\n(.*?)<!-- pages:end -->", told, re.DOTALL)[1].splitlines()
     check(stands == pages.lines(pages.minutes_told()), "docs/study/README.md: tools/study/scripts/pages --index")

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""speed.py TRIM3R SPEED: the README's picture of speed against accuracy, of tiny rooms: it names every method and head."""
+"""speed.py TRIM3R SPEED: the README's picture of speed against accuracy, for tiny rooms: it names every method and
+head."""
 import os
 import sys
 import tempfile

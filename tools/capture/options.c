@@ -167,7 +167,7 @@ static const struct {
     {KEY_STALL, "v4l2 libcamera opencv", false},  {KEY_RECONNECT, "v4l2 libcamera opencv", false},
 };
 
-/* Whether the word is one of the words, which are separated by spaces. */
+/* Whether the word is in `words`, which are separated by spaces. */
 static bool is_among(const char *word, size_t length, const char *words)
 {
     for (const char *at = words; *at != '\0'; at += strspn(at, " ")) {

@@ -15,7 +15,7 @@ typedef struct scene_format {
     const char *foreign; /* error for files with other first bytes; NULL: as magic */
     scene_axes axes;     /* of written files; the reader knows its own */
     uint32_t degree;     /* highest degree of harmonics that is written, 0..3 */
-    /* As scene_file_parse(); NULL: not read. */
+    /* like scene_file_parse(); NULL: not read */
     int (*parse)(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
     /* Writes to a stream whose errors the caller checks. Returns 0, or -1 with the reason in error[]; NULL: not
      * written. */

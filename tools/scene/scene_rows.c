@@ -24,7 +24,6 @@ static int64_t to_q32(double value)
     return (int64_t)nearbyint(ldexp(value, 32));
 }
 
-/* Reads a row and turns it to the axes of the scene. */
 static int read_row(const scene_rows *rows, const scene_turn *turn, uint32_t index, scene_row *row, char *error,
                     size_t error_bytes)
 {

@@ -11,7 +11,7 @@
 
 /* The axes of a format's files. */
 typedef enum scene_axes {
-    SCENE_AXES_AS_THEY_ARE, /* the scene's axes, whatever they are */
+    SCENE_AXES_AS_THEY_ARE, /* the scene's axes, unchanged */
     SCENE_AXES_RUB,         /* x right, y up, z backward */
     SCENE_AXES_LUF,         /* x left, y up, z forward */
 } scene_axes;

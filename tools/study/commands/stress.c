@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r stress: what perturbed frames and hard scenes do to each method. */
+/* trim3r stress: measures how perturbed frames and hard scenes affect each method. */
 #include "study/commands/commands.h"
 
 #include <argp.h>
@@ -299,7 +299,7 @@ static int perturb_all(stress_report *report, const options *o, const stress_cas
     return code;
 }
 
-/* Measures a scene. Its rows are named after its perturbation. */
+/* Measures a scene. Its rows have the name of its perturbation. */
 static int measure_scene(stress_report *report, const options *o, const stress_case *c, cells *m,
                          const stress_scene *scene, uint32_t grade)
 {
@@ -313,7 +313,7 @@ static int measure_scene(stress_report *report, const options *o, const stress_c
     return code == CLI_OK ? stress_report_cell(report, m->rows, m->renders, NULL, c, NULL) : code;
 }
 
-/* `scene` NULL: a case of recorded frames. The case's `base` is filled. */
+/* Measures a case and fills its `base`. `scene` NULL: a case of recorded frames. */
 static int measure_case(stress_report *report, const options *o, stress_case *c, const stress_scene *scene,
                         uint32_t grade)
 {
@@ -400,7 +400,7 @@ static int stress_recording(stress_report *report, const options *o, const t3r_r
     uint32_t all = t3r_recording_triplet_count(recording), chosen = triplet_count(o, recording);
     int code = CLI_OK;
     for (uint32_t i = 0; i < chosen && code == CLI_OK; i++) {
-        /* of one triplet the first; of several, the first of each of as many equal parts */
+        /* the first triplet of one; of several, the first of each of that many equal parts */
         uint32_t at = (uint32_t)((uint64_t)i * all / chosen);
         code = stress_triplet(report, o, recording, path, t3r_recording_triplet(recording, at));
     }

@@ -133,7 +133,7 @@ static const struct argp argp = {
 
 /* ---- the rows -------------------------------------------------------------------------------------------------- */
 
-/* Which rows are timed, of a comma-separated list of keys; NULL: all. */
+/* Chooses the rows to time from a comma-separated list of keys; NULL: all. */
 static int choose_stages(const char *list, bool chosen[BENCH_STAGES_MOST])
 {
     for (int s = 0; s < BENCH_STAGES_MOST; s++) {
@@ -153,10 +153,10 @@ static int choose_stages(const char *list, bool chosen[BENCH_STAGES_MOST])
     return CLI_OK;
 }
 
-/* A row, once it is timed. */
+/* A timed row. */
 typedef struct row {
     const bench_stage *stage; /* NULL: it is not chosen */
-    double items;             /* that a run handles; 0 = they are not counted */
+    double items;             /* items per run; 0 = not counted */
     double seconds[MAX_RUNS];
     spread taken;        /* of them */
     stage_times profile; /* the least of each stage; all 0 where none is wanted */
@@ -184,7 +184,7 @@ static double seconds_of(clockid_t clock)
     return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
 }
 
-/* One more build, by stages, where that is wanted. */
+/* Times one more build by stages, if requested. */
 static bool profile_row(bench_work *w, const bench_options *o, row *r)
 {
     stage_times times;
@@ -198,8 +198,7 @@ static bool profile_row(bench_work *w, const bench_options *o, row *r)
     return good;
 }
 
-/* Round after round through all rows, so that a slow moment of the machine hits each alike; the first is not counted.
- */
+/* Times all rows in rounds, so that a slow moment of the machine affects each alike; the first round is not counted. */
 static int time_rows(bench_work *w, const bench_options *o, row rows[BENCH_STAGES_MOST])
 {
     clockid_t clock = o->settings.processor.threads > 1 ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID;
@@ -229,7 +228,7 @@ static int time_rows(bench_work *w, const bench_options *o, row rows[BENCH_STAGE
     return CLI_OK;
 }
 
-/* ---- what is printed --------------------------------------------------------------------------------------------- */
+/* ---- output ------------------------------------------------------------------------------------------------------ */
 
 typedef struct figures {
     double median, least, most; /* in the row's unit */
@@ -269,7 +268,7 @@ static void print_profiles(const row rows[BENCH_STAGES_MOST])
     }
 }
 
-/* "build_small_stages_ms" for the row build_small_ms. */
+/* Adds "build_small_stages_ms" for the row build_small_ms. */
 static void add_profiles(cJSON *root, const row rows[BENCH_STAGES_MOST])
 {
     for (int s = 0; s < BENCH_STAGES_MOST; s++) {
@@ -370,7 +369,7 @@ static int run_alone(const bench_options *o, const bool chosen[BENCH_STAGES_MOST
     return code;
 }
 
-/* Both get the options that are not the default. */
+/* Passes the options that are not the default to both. */
 static int run_against(const bench_options *o, const bool chosen[BENCH_STAGES_MOST])
 {
     char points[PATH_BYTES], head[PATH_BYTES], depth[32], threads[32], mask[64];
@@ -400,7 +399,7 @@ static int run_against(const bench_options *o, const bool chosen[BENCH_STAGES_MO
     return bench_against(&contest);
 }
 
-/* Prices of this machine, into a file. */
+/* Writes this machine's prices to a file. */
 static int run_calibration(const bench_options *o)
 {
     machine m = {.threads = o->settings.processor.threads};

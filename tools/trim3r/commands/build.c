@@ -140,7 +140,7 @@ static bool refines(const build_options *o)
     return o->settings.config.refine > 0 && o->settings.method->refines;
 }
 
-/* Frames that stereo could match with no other. */
+/* Adds the frames that stereo could match with no other. */
 static void add_unmatched(cJSON *root, const build_options *o, const reconstruction_account *account,
                           const reconstruction *r)
 {
@@ -213,13 +213,13 @@ static void print_json(const build_options *o, const reconstruction_account *acc
         cJSON_AddItemToArray(origin, cJSON_CreateNumber((double)r->scene.frame.origin_q32[i] / 4294967296.0));
     }
     cJSON_AddNumberToObject(root, "exponent", r->scene.frame.exponent);
-    if (o->settings.method == &method_trim3r) { /* floats promise no bits */
+    if (o->settings.method == &method_trim3r) { /* floats have no promise of identical bits */
         json_add_hash(root, "hash", reconstruction_hash(r));
     }
     json_print(root);
 }
 
-/* "head small crc 1a2b3c4d"; "pruned" of a scene made elsewhere */
+/* Writes "head small crc 1a2b3c4d"; "pruned" for a scene made elsewhere. */
 static void note_head(const reconstruction_account *account, char *text, size_t bytes)
 {
     int length = snprintf(text, bytes, account->head[0] != '\0' ? "head %s" : "pruned%s", account->head);
@@ -247,7 +247,7 @@ static int write_all(const build_options *o, const t3r_recording *recording, con
     return o->colmap != NULL ? colmap_start_write(&start, folder, o->colmap) : CLI_OK;
 }
 
-/* What the context views cost to draw: of the one whose tiles list most. */
+/* Computes the drawing cost of the context view whose tiles list most. */
 static int account_for_lists(const build_options *o, const t3r_recording *recording, const t3r_scene *scene,
                              const reconstruction_account *account, tile_lists *most)
 {
@@ -307,7 +307,7 @@ static void print_text(const build_options *o, const reconstruction_account *acc
     }
 }
 
-/* Spells out the default, the first two frames. */
+/* Makes the default explicit: the first two frames. */
 static void name_context(reconstruction_options *settings, const t3r_recording *recording)
 {
     if (settings->context_count == 0) {

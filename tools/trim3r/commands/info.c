@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r info: what a recording or scenes hold. */
+/* trim3r info: describes a recording or scenes. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
@@ -112,7 +112,7 @@ static const char *distortion_name(t3r_distortion distortion)
     return distortion == T3R_DISTORTION_NONE ? "none" : distortion == T3R_DISTORTION_RADTAN ? "radtan" : "fisheye";
 }
 
-/* Of compressed images the first is decoded, as a sample. */
+/* Returns the number of frames to read: of compressed images only the first is decoded, as a sample. */
 static uint32_t frames_to_see(const t3r_recording *recording)
 {
     uint32_t count = t3r_recording_frame_count(recording);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r render: a scene file seen from somewhere. */
+/* trim3r render: draws a scene file from a viewpoint. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
@@ -237,7 +237,7 @@ static int choose_viewpoints(const render_options *o, viewpoint_list *views)
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
-/* "dir/view.png" with index 7 of several: "dir/view_0007.png" */
+/* Writes "dir/view_0007.png" for "dir/view.png" with index 7 of several. */
 static int numbered_path(const char *path, uint32_t index, uint32_t count, char out[MAX_PATH_BYTES])
 {
     const char *slash = strrchr(path, '/');
@@ -258,7 +258,7 @@ static int write_picture(const char *path, uint32_t index, uint32_t count, const
     return picture_write_png(name, p, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
-/* Scene units in Q20 to steps of the depth picture; what does not fit 16 bits becomes 65535. */
+/* Converts scene units in Q20 to steps of the depth picture; 65535 for depths beyond 16 bits. */
 static void convert_depth(const uint32_t *depth_q20, size_t count, double unit, int exponent, uint16_t *out)
 {
     double steps = ldexp(1.0, exponent - 20) / unit;

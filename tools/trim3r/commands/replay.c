@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r replay: the hash of every stage, against an earlier run's. */
+/* trim3r replay: hashes every stage and compares with an earlier run. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
@@ -158,7 +158,7 @@ static const struct argp argp = {
 
 /* ---- the run ---------------------------------------------------------------------------------------------------- */
 
-/* The first place that differs, as text; "" when none does. */
+/* Writes the first place that differs as text; "" if none does. */
 static void find_difference(const expectation *e, const reconstruction *r, const replayed_view *view, char *text,
                             size_t text_bytes)
 {

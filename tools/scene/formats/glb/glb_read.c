@@ -34,8 +34,6 @@ typedef struct glb_file {
     glb_placement placement;
 } glb_file;
 
-/* ---- JSON -------------------------------------------------------------------------------------------------------- */
-
 static const cJSON *get(const cJSON *object, const char *name)
 {
     return cJSON_GetObjectItemCaseSensitive(object, name);
@@ -121,8 +119,6 @@ static int check_extensions(const reader *r, const cJSON *root, const cJSON *pri
                ? 0
                : FAIL(r, "only the kernel ellipse in the colour space srgb_rec709_display is read");
 }
-
-/* ---- numbers ----------------------------------------------------------------------------------------------------- */
 
 static uint32_t bytes_of(uint32_t component)
 {
@@ -250,8 +246,6 @@ static int read_row(void *user, uint32_t index, scene_row *row, char *error, siz
                ? 0
                : t3r_reason(error, error_bytes, "Gaussian %" PRIu32 ": nodes put it infinitely far away", index);
 }
-
-/* ---- containers -------------------------------------------------------------------------------------------------- */
 
 static int parse_json(const reader *r, const cJSON *root, scene_file *out)
 {

@@ -213,7 +213,7 @@ int ply_header_rows(const ply_header *header, const char *name, size_t count, co
         return t3r_reason(error, error_bytes, "the header names no element %s", name);
     }
     if (element->lists) {
-        return t3r_reason(error, error_bytes, "element %s has lists or lies behind some: they are not read", name);
+        return t3r_reason(error, error_bytes, "element %s has lists or follows some: they are not read", name);
     }
     const uint64_t end = element->at + (uint64_t)element->count * element->row_bytes;
     if (end > count) {

@@ -28,8 +28,6 @@ typedef struct ply_vertices {
     const ply_property *values[VALUES_MOST];
 } ply_vertices;
 
-/* ---- header --------------------------------------------------------------------------------------------- */
-
 static int find_wanted(const ply_header *header, const ply_element *vertex, const char *name, const ply_property **out,
                        char *error, size_t error_bytes)
 {
@@ -85,8 +83,6 @@ static int find_values(const ply_header *header, const ply_element *vertex, ply_
     }
     return find_rest(header, vertex, out, error, error_bytes);
 }
-
-/* ---- vertices --------------------------------------------------------------------------------------------- */
 
 /* Whether an infinity is intended: exporters write the logit of opacity 1 or 0, and the logarithm of scale 0, so. */
 static bool is_meant(uint32_t index, double value)

@@ -44,7 +44,7 @@ uint32_t spz_stream_bytes(const spz_layout *layout, int stream);
 #define SPZ_SCALE_STEPS 16.0
 #define SPZ_SCALE_LEAST -10.0
 
-/* As in scene_format: version 4, and versions 2 and 3. */
+/* like scene_format's: version 4, and versions 2 and 3 */
 int spz_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
 int spz_parse_gzip(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
 int spz_write(FILE *file, const scene_source *source, char *error, size_t error_bytes);

@@ -26,8 +26,6 @@ uint32_t spz_stream_bytes(const spz_layout *layout, int stream)
                                                              : bytes[stream];
 }
 
-/* ---- Gaussians --------------------------------------------------------------------------------------------------- */
-
 static double position_of(const uint8_t *bytes, uint32_t fraction_bits)
 {
     const uint32_t low = (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16;
@@ -98,8 +96,6 @@ static int make_scene(spz_file *file, scene_file *out, char *error, size_t error
                              .user = file};
     return scene_file_from_rows(&rows, out, error, error_bytes);
 }
-
-/* ---- containers -------------------------------------------------------------------------------------------------- */
 
 /* Reads the fields that both headers have; the number of Gaussians is limited by `packed` bytes. */
 static int read_header(const uint8_t *bytes, uint64_t packed, spz_layout *out, char *error, size_t error_bytes)
