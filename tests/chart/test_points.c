@@ -174,7 +174,7 @@ TEST(test_refusals)
         {"method,build_ms\na,1\n", "t.csv:1: the heading names no quality: one of psnr, ssim, perceptual, planar_psnr"},
         {"psnr,keep\n1,2\n",
          "t.csv:1: the heading names no cost: one of build_ms, render_ms, arena_bytes, scene_bytes"},
-        {"psnr,build_ms,psnr\n1,2,3\n", "t.csv:1: psnr stands in the heading twice"},
+        {"psnr,build_ms,psnr\n1,2,3\n", "t.csv:1: psnr is in the heading twice"},
         {"psnr,build_ms\n1,2\n\n1\n", "t.csv:4: 1 cells, where the heading has 2"},
         {"psnr,build_ms\n1,2,3\n", "t.csv:2: 3 cells, where the heading has 2"},
         {"psnr,build_ms\n1,inf\n", "t.csv:2: build_ms: 'inf' is not a finite number"},

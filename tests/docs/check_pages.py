@@ -86,7 +86,7 @@ ROWS = {  # how many findings
 
 
 def find_what_is_planted(program):
-    """Pages with one offence each, which must be found alone, and one without."""
+    """Checks pages with one error each, which must be found alone, and one page without."""
     planted = ROOT / "planted.md"
     for page, text in OFFENCES.items():
         found = check(planted, f"# Planted\n\n{page}\n", program)

@@ -35,7 +35,7 @@ def rows(*command):
 
 
 class Choice:
-    """The Gaussians that `--auto` took of a view's points, and the loss of PSNR."""
+    """The number of Gaussians that `--auto` took of a view's points, and the loss of PSNR."""
 
     def __init__(self, whole, chosen):
         self.share = chosen["gaussians"] / whole["gaussians"] * 100

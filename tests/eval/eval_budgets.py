@@ -3,6 +3,7 @@
 """eval_budgets.py TRIM3R: `--gaussians` and `--poses` work in `trim3r eval` as in `trim3r build`."""
 import json
 import os
+import shutil
 import sys
 import tempfile
 
@@ -53,6 +54,9 @@ def counts():
 
 
 def poses():
+    # OpenCV finds too few features in the smaller room
+    run(trim3r, "room", "--size", "96x96", "-o", "room.mcap")
+    shutil.rmtree("recorded")
     given, again = (rows(*ONE, "--gaussians", 500, *more)[0] for more in ((), ("--poses", "given")))
     same = [key for key in given if key not in ("build_ms", "render_ms")]
     check([given[key] for key in same] == [again[key] for key in same], "--poses given changes rows")
@@ -78,6 +82,6 @@ with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     run(trim3r, "room", "--size", "64x64", "-o", "room.mcap")
     counts()
-    poses()
     refused()
+    poses()
 done()

@@ -27,7 +27,7 @@ METHODS = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs")
 
 
 def tables(text):
-    """{heading: its tables, each a list of rows of cells}"""
+    """Returns {heading: its tables, each a list of rows of cells}."""
     found = {}
     for section in text.split("## ")[1:]:
         blocks = re.findall(r"(?:^\|.*\n)+", section + "\n", re.M)

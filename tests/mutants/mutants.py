@@ -70,7 +70,7 @@ CAUGHT, SURVIVED, BROKEN = "caught", "survived", "did not compile"
 
 
 class Bench:
-    """Where mutants are compiled and run. What a mutant does not touch is compiled once."""
+    """Compiles and runs mutants. Objects that a mutant does not affect are compiled once."""
 
     def __init__(self, folder, options=()):
         self.folder, self.options = folder, options
@@ -86,7 +86,7 @@ class Bench:
         return RUNTIME / source if (RUNTIME / source).exists() else TESTS / source
 
     def prepare(self, suite):
-        """The suite with the core as it stands: its objects, and the time that it takes."""
+        """Compiles the suite with the unchanged core: its objects, and its running time."""
         parts = []
         for number, source in enumerate(SUITES[suite]):
             self.objects[suite, source] = self.folder / f"{suite}-{number}.o"
@@ -103,7 +103,7 @@ class Bench:
         self.limit_s[suite] = 2 + int(5 * (time.monotonic() - begun))
 
     def fails(self, suite, core, changed, program, sanitized):
-        """Whether the suite fails with that core; None where it does not compile."""
+        """Whether the suite fails with that core; None if it does not compile."""
         parts = [self.place(source, core) if sanitized or changed.endswith(".h") or source == f"core/{changed}"
                  else self.objects[suite, source] for source in SUITES[suite]]
         extra, limit_s = (SANITIZED, 10 * self.limit_s[suite]) if sanitized else ([], self.limit_s[suite])
@@ -133,7 +133,7 @@ class Bench:
 
 
 def stopped_after(seconds, program):
-    """In seconds of the processor's time, so that a busy machine changes nothing."""
+    """Returns a command limited in processor time, so that a busy machine changes nothing."""
     return ["prlimit", f"--cpu={seconds}", "--core=0", program]
 
 
@@ -160,7 +160,7 @@ def text_of(key):
 
 
 def faults_of(fates, listed, every):
-    """What must not be: a survivor without a reason, a reason for one that is caught, or for none."""
+    """Finds errors: a survivor without a reason, a reason for a caught mutant, or for none."""
     faults = []
     for mutant, fate in fates:
         if fate == SURVIVED and mutant.key not in listed:
@@ -177,7 +177,7 @@ def share_of(count):
 
 
 def rows_of(fates, listed):
-    """(rows of the table, the counts of all)"""
+    """Returns (rows of the table, the counts of all)."""
     counts = collections.defaultdict(collections.Counter)
     for mutant, fate in fates:
         counts[f"`{mutant.file}`"]["equivalent" if fate == SURVIVED and mutant.key in listed else fate] += 1
@@ -188,7 +188,7 @@ def rows_of(fates, listed):
 
 
 def makes_what_it_should():
-    """Of the planted source exactly the mutants that stand beside it."""
+    """Checks that the planted source gives exactly the listed mutants."""
     said = [f"{mutant.before} => {mutant.after}" for mutant in mutate.mutants_of("", (HERE / "planted.c").read_text())]
     want = (HERE / "planted.txt").read_text().splitlines()
     check(said == want, "planted.c has the mutants of planted.txt, not\n" + "\n".join(sorted(set(said) ^ set(want))))

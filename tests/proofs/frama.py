@@ -100,7 +100,7 @@ def eva(driver, sources, options, beside=()):
 
 
 def seconds_of(subject):
-    """Returns how long Eva took for the subject, which has no alarm."""
+    """Returns Eva's seconds for the subject, which must have no alarm."""
     sources, options = SUBJECTS[subject]
     before = time.monotonic()
     found = eva(DRIVERS / f"{subject}.c", sources, options)
@@ -109,7 +109,7 @@ def seconds_of(subject):
 
 
 def must_find_left_out(subject):
-    """Checks that Eva finds the check removed from a copy of one of the subject's sources."""
+    """Checks that Eva raises an alarm when the check is removed from a copy of the subject's source."""
     changed, says, instead, words = LEFT_OUT[subject]
     sources, options = SUBJECTS[subject]
     text = (proof.ROOT / changed).read_text()

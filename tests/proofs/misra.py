@@ -15,7 +15,7 @@ SCRIPT = proof.ROOT / "tools" / "misra"
 
 
 def script():
-    """tools/misra as a module."""
+    """Loads tools/misra as a module."""
     loader = importlib.machinery.SourceFileLoader("misra_script", str(SCRIPT))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader("misra_script", loader))
     loader.exec_module(module)
@@ -23,7 +23,7 @@ def script():
 
 
 def dies_unheard(misra, ending):
-    """Whether nothing is said when the addon's Python ends so."""
+    """Whether a failure of the addon's Python with this ending goes unreported."""
     path = os.environ["PATH"]
     with tempfile.TemporaryDirectory() as folder:
         python = pathlib.Path(folder, "python3")

@@ -33,12 +33,12 @@ static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
     {"output", 'o', "SCENE.ply", OPTION_WRITES(FILE_SCENE), "scene to write (needed, or --colmap)", 0},
     {"colmap", OPTION_TO(build_options, colmap), "DIR", OPTION_WRITES(FILE_OTHER) | OPTION_FOLDER,
-     "folder, new or empty, to write the start of an outside optimiser into: the context views, and the means and "
-     "colours of the Gaussians, as a COLMAP model in text",
+     "folder, new or empty, for the start of another optimiser: the context views, and the means and colours of the "
+     "Gaussians, as a COLMAP model in text",
      0},
     {"prune", OPTION_TO(build_options, settings.points_of), "SCENE.ply", OPTION_READS,
-     "scene, made elsewhere, to prune instead of building one: the recording gives its views, --context names those it "
-     "was made of; percents are of its Gaussians",
+     "scene, made elsewhere, to prune instead of building one: the recording gives its views, --context names the "
+     "ones that it was made of; percents are of its Gaussians",
      0},
     {"local", KEY_LOCAL, NULL, 0,
      "write positions from the first context camera's centre instead of the world's origin", 0},
@@ -47,7 +47,7 @@ static const struct argp_option options[] = {
      "viewers that want it (not turned; .spz and .glb as for -y)",
      0},
     {"comments", KEY_COMMENTS, NULL, 0,
-     "name bits epoch, scene frame and head in header comments (some readers choke on them)", 0},
+     "name bits epoch, scene frame and head in header comments (some readers fail on them)", 0},
     {"profile", OPTION_TO(build_options, profile), NULL, 0,
      "print the time of each stage: processor time of one thread, or with more of them elapsed time", 0},
     {"json", OPTION_TO(build_options, json), NULL, 0, "print one JSON object on stdout", 0},
@@ -114,16 +114,16 @@ const struct argp build_argp = {
            "them. The recording's own depth is ignored.\n"
            "\n"
            "--poses estimate: the first context view keeps its recorded pose, or is the origin. Each other view is "
-           "joined to the best of those before it. With depth in both views, lengths are those of the depth; from "
-           "colour alone, the first two cameras are 1 apart, unless some depth gives their distance. Frames too "
+           "joined to the best earlier one. With depth in both views, lengths come from the depth; from colour "
+           "alone, the first two cameras are 1 apart, unless some depth gives their distance. Frames too unlike, a "
            "unlike, a camera that only turned, and features on one plane are refused. `trim3r import --poses estimate` "
-           "keeps the poses in the recording.\n"
+           "the poses in the recording.\n"
            "\n"
            "--colmap: DIR/images/ holds the context views at the working size, undistorted. DIR/sparse/0/ holds "
-           "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir DIR) "
-           "look for them. InstantSplat's place for N views is DIR/sparse_N/0/. A point is observed in the view that "
-           "it came from. With --head none --refine 0 the points are the retained pixels themselves, otherwise they "
-           "are where the head and refinement put them.",
+           "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir "
+           "DIR) look for them. InstantSplat's place for N views is DIR/sparse_N/0/. A point is observed in the "
+           "view that it came from. With --head none --refine 0 the points are the retained pixels themselves, "
+           "otherwise they are where the head and refinement put them.",
     .children = children,
 };
 

@@ -381,7 +381,7 @@ static int prepare(const options *o, material *m, char *error)
     }
     if (o->pointmaps.depth_unit != 0 && !(depth && o->pointmaps.depth_unit == m->folder.depth_unit)) {
         return t3r_reason(error, ERROR_BYTES,
-                          "%s: --depth-unit is for pointmaps and for depth whose unit the folder does not tell",
+                          "%s: --depth-unit is for pointmaps and for depth whose unit the folder does not give",
                           o->directory);
     }
     return 0;

@@ -67,7 +67,7 @@ static const struct argp_option options[] = {
      "bytes of an arena, for the largest budget that it can hold, at most --gaussians (all points of the views)", 0},
     {"ram", KEY_RAM, "BYTES[K|M|G]", 0,
      "bytes of a device's RAM, as 256K or 4M: print the best settings for it, and what takes it", 0},
-    {"preset", KEY_PRESET, "fast|balanced|best", 0, "head and refinement that build has for so much work", 0},
+    {"preset", KEY_PRESET, "fast|balanced|best", 0, "head and refinement of build for an amount of work", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
     {"keep-analysis", KEY_KEEP_ANALYSIS, NULL, 0, "keep the analysis after the build, so that the budget can change",
      0},

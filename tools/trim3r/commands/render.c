@@ -45,9 +45,9 @@ static const struct argp_option options[] = {
     {"view", KEY_VIEW, "N", 0, "frame of REC.mcap whose camera draws", 0},
     {"pose", OPTION_TO(render_options, pose), "FILE", OPTION_READS, "camera as JSON (below)", 0},
     {"trajectory", OPTION_TO(render_options, trajectory), "FILE", OPTION_READS,
-     "TUM poses, one numbered picture each; the lens is that of --view, --pose or --fov", 0},
+     "TUM poses, one numbered picture each; the lens comes from --view, --pose or --fov", 0},
     {"fov", KEY_FOV, "DEGREES", 0, "horizontal angle of view of a trajectory, with --size", 0},
-    {"size", KEY_SIZE, "WxH", 0, "size of the picture; the lens is scaled along (the camera's)", 0},
+    {"size", KEY_SIZE, "WxH", 0, "size of the picture; the lens is scaled with it (the camera's)", 0},
     {NULL, 0, NULL, 0, "Pictures:", 2},
     {"output", 'o', "view.png", OPTION_WRITES(FILE_PICTURE), "picture to write (needed)", 0},
     {"depth", OPTION_TO(render_options, depth), "d.png", OPTION_WRITES(FILE_PICTURE),
@@ -58,7 +58,7 @@ static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "Bounds of the time that a view takes:", 3},
     {"max-ms", KEY_MAX_MS, "MS", 0, "give up when a view takes longer (never)", 0},
     {"tile-splats", KEY_TILE_SPLATS, "N", 0,
-     "draw a tile of 16 x 16 pixels from its N nearest Gaussians alone, 0..16777216; 0 = from all (0)", 0},
+     "draw a tile of 16 x 16 pixels only from its N nearest Gaussians, 0..16777216; 0 = from all (0)", 0},
     {"arena", KEY_ARENA, "BYTES[K|M|G]|min|full", 0,
      "bytes of memory of the runtime; min is the least that works, full the most that helps (full)", PROCESSOR_GROUP},
     {NULL, 0, NULL, 0, "Other:", PROCESSOR_GROUP + 1},
@@ -237,7 +237,7 @@ static int choose_viewpoints(const render_options *o, viewpoint_list *views)
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
-/* Writes "dir/view_0007.png" for "dir/view.png" with index 7 of several. */
+/* Writes "dir/view_0007.png" for "dir/view_0007.png" with index 7 of several. */
 static int numbered_path(const char *path, uint32_t index, uint32_t count, char out[MAX_PATH_BYTES])
 {
     const char *slash = strrchr(path, '/');
