@@ -233,7 +233,7 @@ def depth_kinds():
     a, b = 20000.0, -20.0  # metres are a / (sample - b)
     quantized = np.where(steps > 0, np.round(a / (np.maximum(steps, 1) * 0.001) + b), 0).astype(np.uint16)
     metres = np.where(quantized > 0, a / (quantized - b), 0)
-    png = frames.png
+    png = frames.picture
     kinds = {"16UC1": (image, "16UC1", steps.astype("<u2").tobytes()), "mono16": (image, "mono16", steps.astype("<u2").tobytes()),
              "32FC1": (image, "32FC1", (steps * np.float32(0.001)).astype("<f4").tobytes()),
              "png": (compressed, "16UC1; png compressed ", png(steps)),
