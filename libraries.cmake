@@ -14,7 +14,7 @@ function(t3r_library name module package)
   endif()
 endfunction()
 
-# t3r_must_have_all(WHAT SWITCH): ends the configuration where one of those asked for is missing.
+# t3r_must_have_all(WHAT SWITCH): ends the configuration if a requested package is missing.
 function(t3r_must_have_all what switch)
   if(T3R_MISSING AND NOT PKG_CONFIG_FOUND)
     list(PREPEND T3R_MISSING "pkg-config (Debian: pkg-config)")

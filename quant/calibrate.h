@@ -15,8 +15,8 @@ void calibration_free(calibration *c);
 
 /* Adds one view's features and retained pixels (float_run.h). Returns 0, or -1 without memory. */
 int calibration_add(calibration *c, const int8_t *features, const uint8_t *retained, uint32_t width, uint32_t height);
-/* Adds every context view of a runtime that holds a scene and its analysis (keep_analysis), as its last budget left
- * them. Returns 0, or -1 without either or without memory. */
+/* Adds every context view of a runtime that holds a scene and its analysis (keep_analysis), with the last budget's
+ * mask. Returns 0, or -1 without either or without memory. */
 int calibration_add_views(calibration *c, const t3r_runtime *runtime);
 
 /* Returns the number of pixels added so far, over all views and budgets. */

@@ -27,8 +27,6 @@ static int fail(const reader *r, const char *field, const char *what)
                      : quant_reason(r->error, r->error_bytes, "layer %u: %.32s: %s", (unsigned)r->n, field, what);
 }
 
-/* ---- the description ------------------------------------------------------------------------------------------- */
-
 /* Refuses unknown keys, which are probably misspelt. */
 static int check_keys(const reader *r, const cJSON *object, const char *const *known, size_t count)
 {
@@ -175,8 +173,6 @@ static int read_graph(reader *r, head_graph *graph)
     cJSON_Delete(root);
     return status;
 }
-
-/* ---- tensors --------------------------------------------------------------------------------------------------- */
 
 /* Finds the tensor "layerN.part" of the shape; NULL with a reason, or without one if it is optional and absent. */
 static const safetensors_tensor *find(const reader *r, const char *part, const uint32_t *shape, uint32_t rank,

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A head in floats, as training writes it: a .safetensors file (README.md, "Float heads"). */
+/* A head in floats, the output of training: a .safetensors file (README.md, "Float heads"). */
 #ifndef T3R_QUANT_FLOAT_HEAD_H
 #define T3R_QUANT_FLOAT_HEAD_H
 
 #include "head_graph.h"
 
-#define FLOAT_FEATURE_SCALE (1.0 / 64) /* what a step of an int8 feature means to the float head */
+#define FLOAT_FEATURE_SCALE (1.0 / 64) /* value of an int8 feature's step in the float head */
 
 typedef struct float_layer {
     float *weight; /* in the order of the weight file (head_weight_index()) */

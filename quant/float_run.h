@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Runs a float head over one view: for calibration, and to compare the quantized head with. */
+/* Runs a float head over one view: for calibration, and for comparison with the quantized head. */
 #ifndef T3R_QUANT_FLOAT_RUN_H
 #define T3R_QUANT_FLOAT_RUN_H
 

@@ -9,7 +9,7 @@
 #include "head/weights.h"
 #include "weight_file.h"
 
-/* The constants for the features, and the larger ones for 16-bit activations. */
+/* Constants for the features, with the larger ones for 16-bit activations. */
 static const struct {
     uint32_t channel;
     int64_t value;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The only way in which quant/ reports what went wrong. */
+/* All of quant/ reports errors through this function. */
 #ifndef T3R_QUANT_REASON_H
 #define T3R_QUANT_REASON_H
 

@@ -35,8 +35,6 @@ double quantized_input_scale(const quantized_head *head, const head_layer *layer
     return head->layers[source - 1].output_scale[channel];
 }
 
-/* ---- one layer --------------------------------------------------------------------------------------------------- */
-
 typedef struct work {
     quantized_head *out;
     const head_layer *layer;

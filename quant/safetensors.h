@@ -29,7 +29,6 @@ typedef struct safetensors {
 int safetensors_parse(safetensors *file, const void *bytes, size_t count, char *error, size_t error_bytes);
 void safetensors_free(safetensors *file);
 
-/* Returns the tensor of that name, or NULL. */
 const safetensors_tensor *safetensors_find(const safetensors *file, const char *name);
 /* Returns a text of __metadata__, or NULL. */
 const char *safetensors_metadata(const safetensors *file, const char *key);

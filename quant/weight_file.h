@@ -15,7 +15,7 @@ enum {
     WEIGHT_AT_EPOCH = 6,
     WEIGHT_AT_BYTES = 8,
     WEIGHT_AT_CRC = 12,
-    WEIGHT_AT_SEALED = 16, /* what the CRC is of begins */
+    WEIGHT_AT_SEALED = 16, /* start of the bytes that the CRC covers */
     WEIGHT_AT_WEIGHT_BITS = 16,
     WEIGHT_AT_ACTIVATION_BITS = 17,
     WEIGHT_AT_LAYERS = 18,
@@ -57,7 +57,7 @@ size_t weight_file_bytes(const head_graph *graph, uint32_t weight_bits, uint32_t
 uint32_t weight_macs_q8(const head_graph *graph);
 uint32_t weight_parameters(const head_graph *graph);
 
-/* A number of a block, in two's complement of 1, 2, 4 or 8 bytes. */
+/* Writes a number of a block, in two's complement of 1, 2, 4 or 8 bytes. */
 void weight_number_put(uint8_t *to, int64_t value, uint32_t bytes);
 int64_t weight_number(const uint8_t *from, uint32_t bytes);
 

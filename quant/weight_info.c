@@ -23,7 +23,7 @@ static head_layer layer_of(const t3r_layer *from, uint32_t activation_bits)
     };
 }
 
-/* Reads header and table, which lie in the file. */
+/* Reads header and table, which must lie in the file. */
 static void read_shape(weight_info *info, const uint8_t *bytes)
 {
     const t3r_weights_header header = t3r_weights_header_of(bytes);
@@ -44,8 +44,8 @@ static void read_shape(weight_info *info, const uint8_t *bytes)
     }
 }
 
-/* `bytes` are aligned. Faults are found in the order of their numbers, those of the header before those of layers;
- * which layer has one, and which of its fields, head_graph_check() says. */
+/* Checks aligned bytes. Faults are found in the order of their numbers, the header's before the layers';
+ * head_graph_check() names the layer and field. */
 static int check(weight_info *info, const uint8_t *bytes, size_t count, char *error, size_t error_bytes)
 {
     const t3r_weights_fault fault = t3r_weights_fault_of(bytes, count);

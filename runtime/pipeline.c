@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The way of the data. The image stage comes before, frame by frame (develop.c), rendering follows (render.c):
+/* The order of the stages. The image stage runs before, frame by frame (develop.c), rendering follows (render.c):
  *
- *     frames - image -+- wavelet -- texture energy --+
- *                     |                              +- superclusters - budget - mask - head - scene - refine - raster
- *                     +- depth ---- pointmap --------+
- *                        sensor | stereo
+ *   frames - image -+- wavelet -- texture energy --+
+ *                   |                              +- superclusters - budget - mask - head - scene - refine - raster
+ *                   +- depth ---- pointmap --------+
+ *                  sensor | stereo
  *
- * A keyframe of a stream goes through the same stages (stages.c) on its own way (stream.c). The stage_hash hook gets a
- * hash of each stage's output. */
+ * A keyframe of a stream goes through the same stages (stages.c) in its own order (stream.c). The stage_hash hook gets
+ * a hash of each stage's output. */
 #include "pipeline.h"
 
 #include "budget/budget.h"
@@ -28,14 +28,12 @@
 #include "superclusters/pixel_clusters.h"
 #include "superclusters/superclusters.h"
 
-/* --- analysis --------------------------------------------------------------------------------------------------- */
-
 static t3r_view_span all_of(const t3r_runtime *rt)
 {
     return (t3r_view_span){0, rt->views};
 }
 
-/* Takes back what an earlier analysis made of the same planes. */
+/* Resets the results of an earlier analysis of the same planes. */
 static void begin_analysis(t3r_runtime *rt, t3r_view *views)
 {
     if (t3r_is_by_stereo(&rt->config)) {
@@ -58,7 +56,7 @@ static void begin_analysis(t3r_runtime *rt, t3r_view *views)
     t3r_hash_image(rt, views, 0, rt->views);
 }
 
-/* Doubtful stereo pixels also count as measured. */
+/* Counts measured pixels, including doubtful stereo ones. */
 static uint32_t count_measured(const t3r_runtime *rt, const t3r_view *views)
 {
     uint32_t pixels = rt->config.width * rt->config.height, measured = 0;
@@ -76,7 +74,7 @@ static t3r_status align(t3r_runtime *rt, t3r_view *views)
     return aligns ? t3r_align_views(rt, views, t3r_pointmap_steps(rt, all_of(rt))) : T3R_OK;
 }
 
-/* Brings the views to one exposure. */
+/* Computes the gains that bring the views to one exposure. */
 static t3r_status exposure(t3r_runtime *rt, t3r_view *views)
 {
     for (uint32_t v = 0; v < T3R_MAX_VIEWS; v++) {
@@ -94,7 +92,7 @@ static t3r_status exposure(t3r_runtime *rt, t3r_view *views)
     return T3R_OK;
 }
 
-/* Marks surfaces that are seen twice. */
+/* Marks surfaces seen twice. */
 static t3r_status redundancy(t3r_runtime *rt, t3r_view *views)
 {
     const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
@@ -123,14 +121,14 @@ static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
         t3r_shuffle_texture(clusters, rt->config.clusters, rt->config.seed);
     }
     t3r_rank_clusters(clusters, rt->config.clusters);
-    /* means are of the texture as it is, densities of it blurred */
+    /* cluster means use the unblurred texture, densities the blurred one */
     t3r_blur_texture(&rt->kernels, views, rt->views, &workers);
     return T3R_OK;
 }
 
 t3r_status t3r_analyse(t3r_runtime *rt)
 {
-    rt->strips = (t3r_strips){0}; /* stages work where its sums are */
+    rt->strips = (t3r_strips){0}; /* stages overwrite its sums */
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
     begin_analysis(rt, views);
@@ -169,8 +167,6 @@ t3r_status t3r_analyse(t3r_runtime *rt)
     return status;
 }
 
-/* --- scene ------------------------------------------------------------------------------------------------------ */
-
 static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_settings *settings)
 {
     t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
@@ -188,7 +184,7 @@ static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
     if (rt->build.refine == 0) {
         return T3R_OK;
     }
-    rt->analysed &= rt->config.keep_analysis; /* else refinement works where labels and clusters are */
+    rt->analysed &= rt->config.keep_analysis; /* otherwise refinement overwrites labels and clusters */
     rt->passes = rt->config.fit_passes ? t3r_fitted_passes(rt, views, rt->build.refine) : rt->build.refine;
     t3r_status status = t3r_refine(rt, views, rt->passes);
     if (status == T3R_OK) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The way of the data, from the planes of the context views to the scene. */
+/* The stages from the planes of the context views to the scene. */
 #ifndef T3R_PIPELINE_H
 #define T3R_PIPELINE_H
 
@@ -8,9 +8,9 @@
 #include "state/views.h"
 #include "trim3r.h"
 
-/* Depth, pointmap, wavelet, superclusters: all that does not depend on the budget. */
+/* Runs depth, pointmap, wavelet and superclusters: everything that does not depend on the budget. */
 t3r_status t3r_analyse(t3r_runtime *rt);
-/* Budget, head and refinement: the scene. `importance` is that of the allocation `given`, NULL for the others. */
+/* Runs budget, head and refinement. `importance`: for the allocation `given`, NULL for the others. */
 t3r_status t3r_build_scene(t3r_runtime *rt, const t3r_view *views, const t3r_build *build,
                            const t3r_importance *importance);
 

@@ -34,7 +34,7 @@ static void write_frame(const t3r_runtime *rt, t3r_hash_writer *w)
     t3r_write_u32(w, (uint32_t)rt->frame.exponent);
 }
 
-/* Pixels that are written at once, two bytes each at most. */
+/* Pixels written at the same time, at most two bytes each. */
 #define PIXELS (T3R_HASH_RUN / 2)
 
 static uint32_t run_at(size_t i, size_t count)
@@ -42,7 +42,7 @@ static uint32_t run_at(size_t i, size_t count)
     return (uint32_t)T3R_MIN(count - i, (size_t)PIXELS);
 }
 
-/* Depths where nothing but a measurement counts. */
+/* Writes depths, 0 unless reliably measured. */
 static void write_measured(const t3r_runtime *rt, const t3r_view *view, t3r_hash_writer *w)
 {
     for (size_t i = 0; i < pixels_of(rt); i += PIXELS) {
@@ -102,8 +102,8 @@ void t3r_hash_depth(const t3r_runtime *rt, const t3r_view *views, uint32_t first
     report(rt, T3R_STAGE_DEPTH, &w);
 }
 
-/* The pointmap is a function of planes that are hashed whole; to evaluate all of it again would take longer than any
- * stage before it. */
+/* The pointmap is a function of fully hashed planes; evaluating all of it again would take longer than any earlier
+ * stage. */
 #define POINTMAP_STEP 4
 
 void t3r_hash_pointmap(const t3r_runtime *rt, const t3r_view *views, uint32_t first, uint32_t end)
@@ -149,7 +149,7 @@ void t3r_hash_wavelet(const t3r_runtime *rt, const t3r_view *views, uint32_t fir
     report(rt, T3R_STAGE_WAVELET, &w);
 }
 
-#define NO_LABEL UINT16_MAX /* of a pixel without depth */
+#define NO_LABEL UINT16_MAX /* of pixels without depth */
 
 static void write_labels(const t3r_runtime *rt, const t3r_view *view, t3r_hash_writer *w)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What each stage made, hashed for the replay that expects the same bits (SPEC.md, "Hash"). Each does nothing
- * unless the stage_hash hook is set; views `first` to `end` - 1 are hashed. */
+/* Hashes of each stage's output, for replays that expect the same bits (SPEC.md, "Hash"). Each does nothing unless the
+ * stage_hash hook is set; views `first` to `end` - 1 are hashed. */
 #ifndef T3R_STAGE_HASH_H
 #define T3R_STAGE_HASH_H
 

@@ -14,15 +14,13 @@
 #include "stereo/stereo_views.h"
 #include "wavelet/wavelet.h"
 
-/* --- views by themselves ------------------------------------------------------------------------------------------ */
-
 typedef struct views_job {
     const t3r_runtime *rt;
     t3r_view *views;
     uint32_t first; /* view of the task of index 0 */
 } views_job;
 
-/* Runs a task for each view by itself: as many at once as there are workers. Reports steps from `done` on. */
+/* Runs a task for each view, one view per worker at a time. Reports steps from `done` on. */
 static t3r_status each_view(const t3r_runtime *rt, t3r_view *views, t3r_view_span span, t3r_task *task, t3r_stage stage,
                             uint32_t done, uint32_t total)
 {
@@ -38,8 +36,6 @@ static t3r_status each_view(const t3r_runtime *rt, t3r_view *views, t3r_view_spa
     return T3R_OK;
 }
 
-/* --- depth -------------------------------------------------------------------------------------------------------- */
-
 static void fill_view(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
@@ -51,7 +47,7 @@ static void fill_view(void *context, uint32_t index, uint32_t worker)
 
 t3r_status t3r_find_depth(t3r_runtime *rt, t3r_view *views, t3r_view_span span)
 {
-    const t3r_status status = t3r_is_by_stereo(&rt->config) /* it fills its own holes */
+    const t3r_status status = t3r_is_by_stereo(&rt->config) /* stereo fills its own holes */
                                   ? t3r_stereo_views(rt, views)
                                   : each_view(rt, views, span, fill_view, T3R_STAGE_DEPTH, 0, span.end - span.first);
     if (status == T3R_OK) {
@@ -60,9 +56,7 @@ t3r_status t3r_find_depth(t3r_runtime *rt, t3r_view *views, t3r_view_span span)
     return status;
 }
 
-/* --- pointmap ----------------------------------------------------------------------------------------------------- */
-
-/* The pointmap is a function of depth and pose; what it needs is the frame that both are in. */
+/* Chooses the frame, which is all that the pointmap needs besides depth and pose. */
 t3r_status t3r_choose_frame(t3r_runtime *rt, t3r_view *views)
 {
     t3r_scene_frame frame = rt->frame;
@@ -109,7 +103,7 @@ static void bridge_view(void *context, uint32_t index, uint32_t worker)
     }
 }
 
-/* A hole that stereo left without depth shows nothing. */
+/* Bridges a sensor's holes. Stereo has filled its own: pixels that it left without depth show nothing. */
 t3r_status t3r_bridge_holes(t3r_runtime *rt, t3r_view *views, t3r_view_span span)
 {
     if (t3r_is_by_stereo(&rt->config) || rt->config.bridge_radius == 0) {
@@ -133,7 +127,7 @@ t3r_status t3r_bridge_holes(t3r_runtime *rt, t3r_view *views, t3r_view_span span
         if (!t3r_pointmap_step(rt, span, T3R_PART_SETTLE, v - span.first)) {
             return T3R_ERR_CANCELLED;
         }
-        const uint32_t open = (1u << span.end) - (1u << v); /* this view and those that follow */
+        const uint32_t open = (1u << span.end) - (1u << v); /* this view and the following ones */
         const uint32_t settled = ~open | (rt->reuse.views & ~(1u << v));
         (void)t3r_bridge_settle(views, rt->views, v, rt->frame.exponent, settled, &work);
     }
@@ -154,9 +148,7 @@ t3r_status t3r_find_flying_pixels(t3r_runtime *rt, t3r_view *views, t3r_view_spa
     return T3R_OK;
 }
 
-/* --- texture ------------------------------------------------------------------------------------------------------ */
-
-/* Each worker has a plane and work of its own. */
+/* Measures in the worker's own plane and work memory. */
 static void measure_texture(const t3r_runtime *rt, const t3r_view *view, uint32_t worker)
 {
     const t3r_config *config = &rt->config;
@@ -193,9 +185,7 @@ t3r_status t3r_find_texture(t3r_runtime *rt, t3r_view *views, t3r_view_span span
     return status;
 }
 
-/* --- budget ------------------------------------------------------------------------------------------------------- */
-
-/* A small budget of a build passes over surfaces seen twice; a map has what it shows already. */
+/* Whether covered points are deferred: in a small budget of a build, and in a stream, whose map already shows them. */
 static bool passes_over_covered(const t3r_runtime *rt, const t3r_view *views, uint32_t gaussians)
 {
     return t3r_is_stream(&rt->config) || (rt->config.redundancy && rt->build.allocate != T3R_ALLOCATE_GIVEN &&
@@ -205,7 +195,7 @@ static bool passes_over_covered(const t3r_runtime *rt, const t3r_view *views, ui
 t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view *views)
 {
     const t3r_config *config = &rt->config;
-    const uint32_t gaussians = T3R_MIN(rt->build.gaussians, rt->valid_points); /* filled holes add no budget */
+    const uint32_t gaussians = T3R_MIN(rt->build.gaussians, rt->valid_points); /* filled holes don't raise the budget */
     return (t3r_budget_settings){
         .allocate = rt->build.allocate,
         .gaussians = gaussians,

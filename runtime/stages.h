@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The stages that a build and a keyframe of a stream have in common, in the order of pipeline.c. Each works on a span
- * of the views, and may look at the others. */
+/* The stages shared by builds and a stream's keyframes, in the order of pipeline.c. Each works on a span of the views,
+ * and may read the others. */
 #ifndef T3R_STAGES_H
 #define T3R_STAGES_H
 
@@ -9,12 +9,12 @@
 #include "state/views.h"
 #include "trim3r.h"
 
-/* The views first..end - 1: all those of a build, one view of a keyframe. */
+/* The views first..end - 1: all views of a build, one view of a keyframe. */
 typedef struct t3r_view_span {
     uint32_t first, end;
 } t3r_view_span;
 
-/* Stage pointmap after alignment: each part has a step of the progress for every view. */
+/* Parts of stage pointmap after alignment: each has one step of progress per view. */
 typedef enum t3r_pointmap_part {
     T3R_PART_LEND,
     T3R_PART_BRIDGE,
@@ -25,15 +25,15 @@ typedef enum t3r_pointmap_part {
     T3R_PART_COUNT
 } t3r_pointmap_part;
 
-/* Reports step `done` of a part; true = go on. */
+/* Reports step `done` of a part; false cancels. */
 bool t3r_pointmap_step(const t3r_runtime *rt, t3r_view_span span, t3r_pointmap_part part, uint32_t done);
-/* Returns the steps of the stage, alignment's included. */
+/* Returns the steps of the stage, including alignment's. */
 uint32_t t3r_pointmap_steps(const t3r_runtime *rt, t3r_view_span span);
 
 /* Fills small holes in a sensor's depth, or finds depth by stereo in the views of a build. */
 t3r_status t3r_find_depth(t3r_runtime *rt, t3r_view *views, t3r_view_span span);
 
-/* Chooses the frame of the scene by all views, unless a build follows another, and poses the views in it. */
+/* Chooses the frame of the scene from all views, unless a build follows another, and computes the poses in it. */
 t3r_status t3r_choose_frame(t3r_runtime *rt, t3r_view *views);
 
 /* Bridges wide holes. */
@@ -42,11 +42,11 @@ t3r_status t3r_bridge_holes(t3r_runtime *rt, t3r_view *views, t3r_view_span span
 /* Marks pixels that other views contradict. */
 t3r_status t3r_find_flying_pixels(t3r_runtime *rt, t3r_view *views, t3r_view_span span);
 
-/* Measures texture, which is not blurred yet. */
+/* Measures texture; blurring follows later. */
 t3r_status t3r_find_texture(t3r_runtime *rt, t3r_view *views, t3r_view_span span);
 
-/* Returns what points are chosen by: those of the last build, or of a stream's next keyframe but for its number of
- * Gaussians, which the map leaves it. `views` are those of t3r_views_of(). */
+/* Returns the settings that choose points, of the last build or of a stream's next keyframe (except the number of
+ * Gaussians, which the map decides). `views` come from t3r_views_of(). */
 t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view *views);
 
 t3r_budget_work t3r_budget_work_of(const t3r_runtime *rt);

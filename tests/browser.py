@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A headless Chromium, driven over the pipe of its DevTools protocol: no other package, no port."""
+"""Drives a headless Chromium over the pipe of its DevTools protocol; needs no other package and no port."""
 import base64
 import json
 import os
@@ -13,25 +13,24 @@ NAMES = ("chromium", "chromium-browser", "google-chrome-stable", "google-chrome"
 FLAGS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--disable-dev-shm-usage", "--no-first-run",
          "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-extensions",
          "--hide-scrollbars", "--remote-debugging-pipe")
-WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")  # by the processor
+WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")  # rendered on the CPU
 
 
 def find():
-    """The program's path, or None."""
+    """Returns the path of Chromium, or None."""
     return next((path for path in map(shutil.which, NAMES) if path), None)
 
 
 def look(page, folder, name):
-    """What the page looks like, into the folder; None: nowhere."""
+    """Saves a screenshot of the page in the folder; None: does nothing."""
     if folder:
         os.makedirs(folder, exist_ok=True)
         page.shot(os.path.join(folder, f"{name}.png"))
 
 
 PHONE = (390, 844)
-SMALLEST_TEXT, SMALLEST_TARGET = 12, 40  # pixels of CSS
-# Texts that are drawn smaller, and controls that a finger misses: an input counts as its label, the points of a chart take
-# taps beside them.
+SMALLEST_TEXT, SMALLEST_TARGET = 12, 40  # CSS pixels
+# Sizes of all visible texts and controls. An input counts as its label; the points of a chart accept taps nearby.
 TEXTS = """(() => { const found = [], all = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
     while (all.nextNode()) {
         const text = all.currentNode.textContent.trim(), it = all.currentNode.parentElement;
@@ -45,7 +44,7 @@ TARGETS = """[...document.querySelectorAll("a[href], button, select, summary, la
 
 
 def on_a_phone(page):
-    """What a reader with a phone stumbles over on the page, as lines; the page then has a phone's size."""
+    """Sets the size of a phone; returns what is too wide, too small to read or too small to touch, one per line."""
     page.size(*PHONE, mobile=True)
     page.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
     wide, texts, targets = page.value("document.documentElement.scrollWidth"), page.value(TEXTS), page.value(TARGETS)
@@ -56,14 +55,14 @@ def on_a_phone(page):
 
 
 class Page:
-    """One page: what it logs, throws and asks the network for is kept."""
+    """A page; keeps its log lines, exceptions and network requests."""
 
     def __init__(self, program, width=1200, height=1000, timeout=60, webgl=False):
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         commands, self.write = os.pipe()
         self.read, answers = os.pipe()
 
-        def place():  # the protocol's two ends are the descriptors 3 and 4, by way of numbers that are neither
+        def place():  # the protocol needs descriptors 3 and 4; 13 and 14 keep one dup2 from closing the other
             for target, source in ((13, commands), (14, answers)):
                 os.dup2(source, target)
             os.dup2(13, 3)
@@ -127,16 +126,17 @@ class Page:
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=mobile)
 
     def scheme(self, name):
-        """light or dark, as the reader's system asks for; and, so that a click meets what it aims at, no scrolling in steps."""
+        """Sets light or dark as the system's scheme, and turns off animated scrolling, so that clicks hit their
+        target."""
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": name},
                                                           {"name": "prefers-reduced-motion", "value": "reduce"}])
 
     def before_all(self, script):
-        """What runs in every page that is opened from here on, before its own scripts."""
+        """Adds a script that runs in every page opened from now on, before the page's own scripts."""
         self.call("Page.addScriptToEvaluateOnNewDocument", source=script)
 
     def open(self, path):
-        """A file, or an address of http."""
+        """Opens a file or an http address."""
         self.events.clear()
         self.call("Page.navigate", url=path if path.startswith("http://") else "file://" + os.path.abspath(path))
         until = time.monotonic() + self.timeout
@@ -146,7 +146,7 @@ class Page:
                 self._note(message)
 
     def value(self, script):
-        """What a script's expression, awaited, comes to."""
+        """Returns the value of a script's expression, awaited."""
         result = self.call("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
         if "exceptionDetails" in result:
             raise RuntimeError(f"{script}: {result['exceptionDetails']}")
@@ -160,7 +160,7 @@ class Page:
             time.sleep(0.05)
 
     def place(self, selector):
-        """The middle of an element, brought into view."""
+        """Scrolls an element into view and returns its centre."""
         return self.value(f"""(() => {{ const it = document.querySelector({json.dumps(selector)});
             it.scrollIntoView({{ block: "center", behavior: "instant" }});
             const box = it.getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]; }})()""")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the scripts of all folders share: expectations, the first that fails ending the script."""
+"""Expectations shared by the scripts of all folders; the first failed one ends the script."""
 import subprocess
 import sys
 
@@ -19,7 +19,7 @@ def near(a, b, bound, text):
 
 
 def run(*command, expect=0):
-    """A command that ends with that status: what subprocess.run() returns."""
+    """Runs a command that must end with that status; returns the result of subprocess.run()."""
     # restore_signals: a child under a limit of file sizes must get the error, not the signal
     ended = subprocess.run([str(part) for part in command], capture_output=True, text=True, restore_signals=False)
     check(ended.returncode == expect,

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A reader of MCAP records and of the few ROS 2 messages that these tests look at, by the formats' documentation."""
+"""Reads MCAP records and the few ROS 2 messages that these tests need; written from the formats' documentation."""
 import struct
 
 
 def whole_records(data, at):
-    """(opcode, content) of whole records from `at` on, those of chunks that are not compressed among them."""
+    """Yields (opcode, content) of whole records from `at` on, including those in uncompressed chunks."""
     while at + 9 <= len(data) and data[at:at + 8] != b"\x89MCAP0\r\n":
         opcode, size = struct.unpack_from("<BQ", data, at)
         content = data[at + 9:at + 9 + size]
@@ -17,7 +17,7 @@ def whole_records(data, at):
 
 
 def records(data):
-    """(opcode, content) of whole records; a file may be cut off."""
+    """Yields (opcode, content) of whole records; a file may be truncated."""
     assert data[:8] == b"\x89MCAP0\r\n"
     return whole_records(data, 8)
 
@@ -28,7 +28,7 @@ def text(data, at):
 
 
 def messages(data):
-    """(topic, log time, message) in the file's order."""
+    """Yields (topic, log time, message) in the file's order."""
     topics = {}
     for opcode, content in records(data):
         if opcode == 0x04:

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A frame of rows without padding, and the camera of a square one, as most tests make them. */
+/* A frame of rows without padding, and the camera of a square frame, for most tests. */
 #ifndef T3R_TESTS_RGBD_FRAME_H
 #define T3R_TESTS_RGBD_FRAME_H
 
@@ -9,7 +9,7 @@
 
 enum { MILLIMETRE_Q40 = 1099511628 };
 
-/* RGB of 3 bytes a pixel, and depth of the same size, 2 bytes a pixel, in steps of unit_q40 metres. */
+/* Makes a frame of RGB, 3 bytes a pixel, and depth of the same size, 2 bytes a pixel, in steps of unit_q40 metres. */
 static inline t3r_frame rgbd_frame(const uint8_t *rgb, const uint8_t *depth, uint32_t width, uint32_t height,
                                    uint64_t unit_q40)
 {
@@ -25,7 +25,7 @@ static inline t3r_frame rgbd_frame(const uint8_t *rgb, const uint8_t *depth, uin
                        .depth_unit_q40 = unit_q40};
 }
 
-/* A camera at the origin that looks along z: a focal length of `side` pixels, the axis through the middle. */
+/* Makes a camera at the origin that looks along z: a focal length of `side` pixels, the axis through the middle. */
 static inline t3r_camera straight_camera(uint32_t side)
 {
     const int32_t focal_q16 = (int32_t)side << 16;

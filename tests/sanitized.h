@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Whether sanitizers watch, or branches are counted: what only repeats may then repeat less. */
+/* Whether sanitizers run, or branches are counted: loops that only repeat may then take fewer rounds. */
 #ifndef TRIM3R_TESTS_SANITIZED_H
 #define TRIM3R_TESTS_SANITIZED_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tests of whole builds run plain C, which sanitizers make ten times as slow. With them they take the processor's own
- * vectors: the bits are the same, and tests/kernels runs both kinds with sanitizers. */
+/* Tests of whole builds run plain C, which sanitizers slow down tenfold. Under sanitizers they use the processor's
+ * vector kernels instead: the bits are the same, and tests/kernels checks both with sanitizers. */
 #ifndef TRIM3R_TESTS_SANITIZED_CPU_H
 #define TRIM3R_TESTS_SANITIZED_CPU_H
 
@@ -14,10 +14,10 @@
 #include "sanitized.h"
 #include "trim3r.h"
 
-/* To be called after t3r_init() and after t3r_attach(), which both choose plain C. */
+/* Call after t3r_init() and after t3r_attach(), which both choose plain C. */
 static inline void vectors_if_sanitized(t3r_runtime *rt)
 {
-#if T3R_SANITIZED && !defined T3R_COVERAGE /* that counts the branches of plain C */
+#if T3R_SANITIZED && !defined T3R_COVERAGE /* coverage counts the branches of plain C */
     assert_int_equal(t3r_set_cpu(rt, t3r_cpu_features()), T3R_OK);
 #else
     (void)rt;

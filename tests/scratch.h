@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A folder of the test's own, removed with what is in it. */
+/* A folder for one test, removed with its contents. */
 #ifndef T3R_TESTS_SCRATCH_H
 #define T3R_TESTS_SCRATCH_H
 
@@ -11,7 +11,7 @@
 
 typedef struct scratch {
     char directory[256];
-    char path[600]; /* of the name given last to scratch_path() */
+    char path[600]; /* path of the last name given to scratch_path() */
 } scratch;
 
 static inline int scratch_open(scratch *s)

@@ -52,7 +52,7 @@ void wavelet_forward(int16_t *plane, uint32_t width, uint32_t height, uint32_t l
 
 /* ---- inverse: x has the lows, then the highs, and gets n samples; `line` has room for n ------------------- */
 
-/* t3r_mulr_q15() as its definition has it */
+/* Computes t3r_mulr_q15() by its definition. */
 static int32_t scaled(int16_t sample, int32_t factor_q15)
 {
     return (sample * factor_q15 + (1 << 14)) >> 15;
@@ -159,8 +159,8 @@ void wavelet_inverse(int16_t *plane, uint32_t width, uint32_t height, uint32_t l
 
 /* ---- images that wrap --------------------------------------------------------------------------------------- */
 
-/* The image is repeated around itself by 8 coefficients of the coarsest level. A border reaches at most 4
- * coefficients into any level: b of one level become (b + 3) / 2 + 1 of the next. So inside is as if it went on. */
+/* The image is repeated around itself by 8 coefficients of the coarsest level. A border reaches at most 4 coefficients
+ * into any level: b of one level become (b + 3) / 2 + 1 of the next. So it does not affect the inside. */
 void wavelet_texture_wrapped(const uint8_t *const colour[3], uint32_t width, uint32_t height, uint32_t levels,
                              t3r_wavelet kind, uint16_t *texture_q4)
 {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The runtime's wavelet as tests look at it: all coefficients in Mallat's layout, the way back, and images that wrap.
- */
+/* The runtime's wavelet in a form for tests: all coefficients in Mallat's layout, the inverse, and images that wrap. */
 #ifndef T3R_TESTS_WAVELET_PLANES_H
 #define T3R_TESTS_WAVELET_PLANES_H
 
@@ -8,14 +7,14 @@
 
 #include "trim3r.h"
 
-/* In place to [LL | H; V | D], H high in x, V high in y, the LL quarter split again for the next level. levels:
- * 0..T3R_MAX_LEVELS. The runtime lifts; only the order of the rows is made here. */
+/* Transforms in place to [LL | H; V | D], H high in x, V high in y, the LL quarter split again for the next level.
+ * levels: 0..T3R_MAX_LEVELS. The runtime lifts; this function only orders the rows. */
 void wavelet_forward(int16_t *plane, uint32_t width, uint32_t height, uint32_t levels, t3r_wavelet kind);
 
-/* The exact inverse, written from the SPEC a line at a time. */
+/* Computes the exact inverse, written from the SPEC line by line. */
 void wavelet_inverse(int16_t *plane, uint32_t width, uint32_t height, uint32_t levels, t3r_wavelet kind);
 
-/* t3r_wavelet_texture() of an image that repeats in both directions, as libraries with a periodic border have it.
+/* Computes t3r_wavelet_texture() of an image that repeats in both directions, like libraries with a periodic border.
  * Both sides are divisible by 2^levels. */
 void wavelet_texture_wrapped(const uint8_t *const colour[3], uint32_t width, uint32_t height, uint32_t levels,
                              t3r_wavelet kind, uint16_t *texture_q4);

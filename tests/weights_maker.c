@@ -9,7 +9,7 @@
 #define POINT T3R_LAYER_POINT
 #define NONE T3R_SOURCE_NONE
 
-/* An encoder of three levels, a decoder back to the first, two layers at points. */
+/* An encoder of three levels, a decoder back to the first, two point layers. */
 #define SHAPE(A, B, C)                                                                                                 \
     {                                                                                                                  \
         {CONV, 1, {0, NONE}, 6, 2, 1, A}, {CONV, 1, {1, NONE}, 3, 1, 1, A}, {CONV, 2, {2, NONE}, 3, 2, 1, B},          \
@@ -80,7 +80,7 @@ static uint32_t taps_of(const made_layer *layers, uint32_t n)
     return (uint32_t)layers[n].kernel * layers[n].kernel * inputs;
 }
 
-/* floor(log2 sqrt n) */
+/* Computes floor(log2 sqrt n). */
 static int32_t half_log(uint32_t n)
 {
     int32_t log = 0;
@@ -94,7 +94,7 @@ uint8_t *make_weights(const made_layer *layers, uint32_t count, uint32_t weight_
                       uint64_t seed, size_t *bytes)
 {
     size_t most = 64 + 32 * (size_t)count;
-    for (uint32_t n = 0; n < count; n++) { /* weights, biases, multipliers, shifts and what aligns them, at most */
+    for (uint32_t n = 0; n < count; n++) { /* most bytes of weights, biases, multipliers, shifts and alignment */
         size_t rows = (size_t)layers[n].phases * layers[n].outputs;
         most += rows * taps_of(layers, n) * 2 + rows * 16 + 64;
     }
@@ -112,7 +112,7 @@ uint8_t *make_weights(const made_layer *layers, uint32_t count, uint32_t weight_
         uint32_t rows = (uint32_t)l->phases * l->outputs;
         size_t weights = block(&m, (size_t)rows * taps * weight_bits / 8), bias = block(&m, (size_t)rows * bias_bytes);
         size_t multiplier = block(&m, (size_t)l->outputs * 4), shift = block(&m, l->outputs);
-        int64_t folded[4 * T3R_MAX_CHANNELS] = {0}; /* sum weight x zero point, a row */
+        int64_t folded[4 * T3R_MAX_CHANNELS] = {0}; /* sum of weight x zero point per row */
         for (size_t i = 0; i < (size_t)rows * taps; i++) {
             int64_t w = ((int64_t)(next(&m.random) % 129) - 64) * (weight_bits == 8 ? 1 : 100);
             bool second = l->source[1] != NONE && i % inputs >= channels_of(layers, l->source[0]);
@@ -123,9 +123,11 @@ uint8_t *make_weights(const made_layer *layers, uint32_t count, uint32_t weight_
         for (uint32_t o = 0; o < rows; o++) {
             put(m.file + bias + o * bias_bytes, next(&m.random) % 4001 - 2000 - (uint64_t)folded[o], bias_bytes);
         }
-        /* sums spread over about sqrt(taps) x 37 x 50; outputs over 2^5, in 16 bits 2^12 */
+        /* sums are about sqrt(taps) x 37 x 50; outputs about 2^5, with 16 bits 2^12 */
         bool last = n + 1 == count;
-        zero[n + 1] = last || l->kind == POINT ? 0 : activation_bits == 8 ? -128 : -32768; /* ReLU but at points */
+        zero[n + 1] = last || l->kind == POINT ? 0
+                      : activation_bits == 8   ? -128
+                                               : -32768; /* ReLU except for point layers */
         int32_t gain = (activation_bits == 8 && !last ? 6 : 13) - 11 - half_log(taps);
         gain -= (weight_bits == 16 ? 6 : 0) + (activation_bits == 16 && n > 0 ? 7 : 0);
         for (uint32_t o = 0; o < l->outputs; o++) {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where the firmware's frames come from. A firmware links one source: frames_recording.c reads a recording;
- * frames_planes.c reads planes as a camera's driver leaves them. A read error is reported and ends the firmware. */
+/* The source of the firmware's frames. A firmware links one: frames_recording.c reads a recording; frames_planes.c
+ * reads planes like a camera driver's. A read error is reported and ends the firmware. */
 #ifndef T3R_BAREMETAL_FRAMES_H
 #define T3R_BAREMETAL_FRAMES_H
 
 #include "trim3r.h"
 
-/* The memory of a strip: rows of R G B, and as many rows of depth. */
+/* The memory of a strip: rows of R G B, and equally many rows of depth. */
 typedef struct frames_strip {
     uint8_t *colour, *depth;
     uint32_t rows;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Frames as a driver leaves them in memory: a file with a head, and per frame a plane of R G B and one of depth. The
+/* Frames in the layout of a driver's memory: a file with a head, and per frame a plane of R G B and one of depth. The
  * source takes next to no flash, so flash sizes are the runtime's. tools/boards writes such files
  * (tools/study/boards/planes.c). */
 #include "frames.h"

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The firmware of every board: a recording in, by strips of rows; Gaussians, a view and every stage's hash out. Words
- * on the command line, each KEY=NUMBER, say what is built; the defaults are those of t3r_default_config().
+/* The firmware of every board: reads a recording by strips of rows; outputs Gaussians, a view and every stage's hash.
+ * Words on the command line, each KEY=NUMBER or a file, describe the build; the defaults are those of
+ * t3r_default_config().
  *
- *     frames=IN.mcap view=OUT.ppm scene=OUT.t3g width=64 height=64 views=2 gaussians=819 clusters=32
- *     refine=2 learned=1 hashes=1 plain=0 cpu=T3R_CPU_... arena=BYTES
+ *     frames=IN.mcap view=OUT.ppm scene=OUT.t3g width=64 height=64 views=2 gaussians=819 clusters=32 refine=2
+ *     learned=1 hashes=1 plain=0 cpu=T3R_CPU_... arena=BYTES
  *
  * The first `views` frames are the context; the next one's camera is drawn. */
 #include <stdbool.h>
@@ -82,7 +83,7 @@ static t3r_config configure(const options *o)
     config.clusters = o->clusters != 0 ? o->clusters : config.clusters;
     config.cluster_batches = o->cluster_batches != 0 ? o->cluster_batches : config.cluster_batches;
     config.refine = o->refine;
-    /* the same work and bits whatever features the library was built with */
+    /* the same work and bits for every set of features in the library */
     config.fit_passes = config.fit_widths = config.align = 0;
 #ifdef HEAD
     if (o->learned != 0) {
@@ -93,8 +94,8 @@ static t3r_config configure(const options *o)
     return config;
 }
 
-/* Chooses the kernels that the command line names, or those for this core as far as the compiler knows it. PLAIN_C
- * links none, for small firmware. */
+/* Chooses the kernels named on the command line, or those for this core as far as the compiler knows it. PLAIN_C links
+ * none, for small firmware. */
 static t3r_status choose_kernels(t3r_runtime *rt, uint32_t cpu)
 {
     (void)rt, (void)cpu;
@@ -121,7 +122,7 @@ static void write_file(const char *path, const char *head, const void *bytes, si
     semihost_close(file);
 }
 
-/* Adds a view as a camera delivers it: no more than a strip is in memory. */
+/* Adds a view in strips, as a camera delivers it: only one strip is in memory. */
 static void add_view(t3r_runtime *rt, uint32_t height)
 {
     t3r_frame frame;

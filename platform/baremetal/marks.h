@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Marks where a stage begins, visibly from outside: a function for each stage, at an address in the symbol table.
- * tools/boards counts instructions between the marks. A profiler or a pin may use them as well. */
+/* Marks the beginning of a stage, visibly from outside: a function for each stage, at an address in the symbol table.
+ * tools/boards counts instructions between the marks; a profiler or a pin may use them, too. */
 #ifndef T3R_BAREMETAL_MARKS_H
 #define T3R_BAREMETAL_MARKS_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The parts of RAM, as the linker placed them. */
+/* The parts of RAM, placed by the linker. */
 #ifndef T3R_BAREMETAL_RAM_H
 #define T3R_BAREMETAL_RAM_H
 

@@ -9,7 +9,6 @@
 void stack_paint(void);
 /* Returns the most bytes used so far; all bytes if no paint is left, which may be an overflow. */
 uint32_t stack_used_bytes(void);
-/* Returns the size of the stack in bytes. */
 uint32_t stack_bytes(void);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What all sources share: counting, events, defaults. */
+/* Shared by all sources: counting, events, defaults. */
 #include "capture.h"
 
 #include <inttypes.h>
@@ -70,8 +70,6 @@ void t3r_capture_close(t3r_capture *capture)
         capture->operations->close(capture);
     }
 }
-
-/* ---- for adapters ---- */
 
 void t3r_capture_remark(t3r_capture *capture, const char *format, ...)
 {
@@ -170,8 +168,6 @@ const char *t3r_capture_settings_fill(const t3r_capture_settings *settings, t3r_
     }
     return s.depth_unit_q40 >> 47 != 0 ? "the depth unit is not below 2^7" : NULL;
 }
-
-/* ---- events as text ---- */
 
 const char *t3r_capture_event_text(const t3r_capture_event *event, char text[T3R_CAPTURE_EVENT_BYTES])
 {

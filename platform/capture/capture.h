@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Capture: where frames come from. One interface over every source: recordings (`replay`), V4L2, libcamera, OpenCV.
+/* Capture: one interface over every source of frames: recordings (`replay`), V4L2, libcamera, OpenCV.
  *
- * An adapter opens a source; the caller asks for one frame after the other and closes it. A frame's memory, which is
- * the driver's own buffer where there is one, stays valid until the next call on the same source. Only the calls that
- * open may wait longer than the deadline (OpenCV's back ends have their own, at most 10 s). Nothing is allocated after
- * opening, except by MJPEG and OpenCV. */
+ * An adapter opens a source; the caller asks for frames one after the other and closes it. A frame's memory, the
+ * driver's own buffer if there is one, stays valid until the next call on the same source. Only the calls that open may
+ * wait longer than the deadline (OpenCV's back ends have their own, at most 10 s). Nothing is allocated after opening,
+ * except by MJPEG and OpenCV. */
 #ifndef T3R_PLATFORM_CAPTURE_H
 #define T3R_PLATFORM_CAPTURE_H
 
@@ -19,34 +19,34 @@ typedef struct t3r_capture t3r_capture;
  * and FAILED. */
 int t3r_capture_next(t3r_capture *capture, t3r_capture_frame *frame);
 /* Closes the device and opens it again with the same settings; memory of earlier frames becomes invalid. Returns
- * T3R_CAPTURE_FRAME: go on; T3R_CAPTURE_LOST: the device is not there (yet); T3R_CAPTURE_END: this source cannot be
+ * T3R_CAPTURE_FRAME: reopened; T3R_CAPTURE_LOST: the device is not there (yet); T3R_CAPTURE_END: this source cannot be
  * reopened. */
 int t3r_capture_reopen(t3r_capture *capture);
-/* Returns what went wrong and where, or "". Lives as long as the source. */
+/* Returns the error and its place, or "". Lives as long as the source. */
 const char *t3r_capture_error(const t3r_capture *capture);
 void t3r_capture_close(t3r_capture *capture);
 
-/* ---- what a source reports about itself ---- */
+/* ---- properties of a source ---- */
 
 /* Returns the name of the clock of the stamps: "monotonic" and "boottime" (the system's clocks of these names),
  * "arrival" (monotonic, taken when the frame was fetched, because the driver's stamps name no clock), "stream" (from
  * the start of a film), "synthetic" or "unknown". For a recording, the clock it was recorded with. */
 const char *t3r_capture_clock(const t3r_capture *capture);
-/* Whether frames come from a recording; then the clock, whatever its name, is that of the time of recording. */
+/* Whether frames come from a recording; stamps then belong to the time of recording, whatever the clock's name. */
 bool t3r_capture_recorded(const t3r_capture *capture);
 /* Returns the negotiated formats, sizes, rates and buffers, and other remarks for the user, as lines. Never NULL. */
 const char *t3r_capture_note(const t3r_capture *capture);
 /* Returns a step of depth in world units, Q40. */
 uint64_t t3r_capture_depth_unit_q40(const t3r_capture *capture);
 
-/* Every frame that does not arrive is counted once, under its cause. */
+/* Counts; every frame that does not arrive is counted once, under its cause. */
 typedef struct t3r_capture_counts {
     uint64_t frames;         /* delivered */
     uint64_t paired;         /* delivered with depth */
     uint64_t dropped_driver; /* gaps in the driver's sequence while it had buffers */
     uint64_t dropped_slow;   /* such gaps after the caller held a frame longer than the other buffers last */
     uint64_t corrupted;      /* flagged by the driver, too short, or not a JPEG */
-    uint64_t alone;          /* delivered without depth although depth is captured: none was near */
+    uint64_t alone;          /* delivered without depth although depth is captured, because none was near */
     uint64_t depth_dropped;  /* depth images with no colour image near, and gaps in their sequence */
     uint64_t faults;         /* refused calls that lost no frame: EIO, a buffer that could not be queued at once */
     uint64_t reopened;       /* successful t3r_capture_reopen() */
@@ -60,7 +60,7 @@ typedef enum t3r_capture_event_kind {
     T3R_EVENT_ALONE,          /* sequence; gap_ns to the nearest depth, INT64_MAX if there is none */
     T3R_EVENT_DEPTH_ALONE,    /* depth_sequence */
     T3R_EVENT_DROPPED_DRIVER, /* count frames before sequence */
-    T3R_EVENT_DROPPED_SLOW,   /* likewise */
+    T3R_EVENT_DROPPED_SLOW,   /* count frames before sequence */
     T3R_EVENT_DEPTH_DROPPED,  /* count images before depth_sequence */
     T3R_EVENT_CORRUPTED,      /* sequence; detail says why */
     T3R_EVENT_FAULT,          /* detail */
@@ -96,7 +96,7 @@ typedef struct t3r_capture_settings {
     uint64_t depth_unit_q40;            /* a step of the device's 16-bit depth; default 0.001 */
     uint32_t buffers;                   /* per stream, 2..32; default 4 */
     uint32_t deadline_ms;               /* longest wait of t3r_capture_next(), 1..60000; default 100 */
-    uint32_t stall_ms;                  /* LOST after so long without a frame; default 3000 */
+    uint32_t stall_ms;                  /* time without a frame after which the device counts as LOST; default 3000 */
     uint32_t pair_ms;                   /* largest gap between colour and depth of one instant; default 20 */
     uint32_t repeat;                    /* `replay`: passes over the recording, with a continuous clock; default 1 */
     const char *backend;                /* `opencv`: FFMPEG, V4L2, IMAGES, CV_MJPEG, GSTREAMER; default: its choice */

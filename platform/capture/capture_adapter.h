@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What an adapter implements. Its state starts with a t3r_capture whose operations point back to it. */
+/* The interface that an adapter implements. Its state starts with a t3r_capture whose operations point back to it. */
 #ifndef T3R_PLATFORM_CAPTURE_ADAPTER_H
 #define T3R_PLATFORM_CAPTURE_ADAPTER_H
 
@@ -8,9 +8,9 @@
 #define T3R_CAPTURE_NOTE_BYTES 512
 
 typedef struct t3r_capture_operations {
-    /* As t3r_capture_next(); the reason of a failure goes into capture->error. */
+    /* Implements t3r_capture_next(); the reason of a failure goes into capture->error. */
     int (*next)(t3r_capture *capture, t3r_capture_frame *frame);
-    /* As t3r_capture_reopen(); NULL: this source cannot be reopened. */
+    /* Implements t3r_capture_reopen(); NULL: this source cannot be reopened. */
     int (*reopen)(t3r_capture *capture);
     /* Frees everything, including the capture. */
     void (*close)(t3r_capture *capture);
@@ -46,12 +46,12 @@ const char *t3r_capture_settings_fill(const t3r_capture_settings *settings, t3r_
 /* A row of the table of sources (capture_sources.c). Each adapter defines its own, as t3r_source_NAME. */
 typedef struct t3r_capture_source {
     const char *name;     /* before the colon: "replay" */
-    const char *argument; /* after the colon, as messages name it: "FILE" */
+    const char *argument; /* after the colon, in messages: "FILE" */
     const char *module;   /* the module that it needs (host/module.h), or NULL */
     const char *says;     /* what it reads */
     /* Opens the source with filled settings. Returns NULL with a reason in error[] on failure. */
     t3r_capture *(*open)(const char *what, const t3r_capture_settings *settings, char *error, size_t error_bytes);
-    /* Says a line for each device; NULL: this source cannot list devices. */
+    /* Passes a line for each device to `say`; NULL: this source cannot list devices. */
     void (*devices)(void (*say)(void *user, const char *line), void *user);
 } t3r_capture_source;
 

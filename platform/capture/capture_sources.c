@@ -10,7 +10,7 @@
 
 extern const t3r_capture_source t3r_source_replay, t3r_source_v4l2, t3r_source_libcamera, t3r_source_opencv;
 
-/* An adapter that is not in this build cannot be opened, and says why. */
+/* An adapter that is not in this build fails to open, with the reason. */
 #ifndef T3R_V4L2
 const t3r_capture_source t3r_source_v4l2 = {
     .name = "v4l2",

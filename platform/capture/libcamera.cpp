@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-// libcamera as a table in C; exceptions and the library's threads stay in here.
+// Wraps libcamera as a table in C; exceptions and the library's threads stay inside.
 //
 // Written for and tested with libcamera 0.0.3 (Debian 12). Two changes of later versions matter here:
+//
 //   0.1   generateConfiguration() takes a Span of roles instead of a vector: the list in braces below fits both
 //   0.2   CameraConfiguration has `orientation` instead of `transform`: neither is used
 #include "libcamera_shim.h"
@@ -87,14 +88,14 @@ struct t3r_libcamera_stream {
     std::condition_variable more;
     std::array<t3r_libcamera_done, T3R_LIBCAMERA_MOST_BUFFERS> done{};
     size_t first = 0, count = 0; // a ring: holds a buffer at most once
-    bool gone = false;           // as udev reported to the library
+    bool gone = false;           // reported by udev to the library
     bool refused = false;        // the device took a buffer no longer
 
     void on_done(lc::Request *request)
     {
         const lc::FrameMetadata &m = request->buffers().at(stream)->metadata();
         std::lock_guard<std::mutex> held(lock);
-        // a cancelled buffer that is queued again would be cancelled again, without end
+        // a cancelled buffer that is queued again would be cancelled again, forever
         refused = refused || request->status() == lc::Request::RequestCancelled;
         if (count < done.size() && !refused) {
             t3r_libcamera_done &d = done[(first + count++) % done.size()];
@@ -273,10 +274,10 @@ bool heard_of_unplugging(t3r_libcamera_stream *s)
     return s->gone;
 }
 
-// Abandons a stream whose device is gone; returns whether it had to. Where udevd's messages do not arrive (in
+// Abandons a stream whose device is gone; returns whether that was necessary. Where udevd's messages do not arrive (in
 // containers), the library does not notice an unplugging, and its stop() on a missing device fails an assertion and
-// ends the process. So the manager and its thread are ended, what belongs to the camera is neither touched nor freed
-// again, and the devices are closed so that their names are free. A later manager looks for cameras anew.
+// ends the process. So the manager and its thread are ended, the camera's objects are neither touched nor freed, and
+// the devices are closed so that their names become available. A later manager searches for cameras again.
 bool abandon(t3r_libcamera_stream *s)
 {
     std::array<int, 16> devices;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Capture by libcamera over the table of its module, so that tests can stand in for the library. */
+/* Capture by libcamera through its module's table, so that tests can replace the library. */
 #ifndef T3R_PLATFORM_LIBCAMERA_H
 #define T3R_PLATFORM_LIBCAMERA_H
 

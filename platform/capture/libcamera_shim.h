@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the module of libcamera offers, in C. Its callbacks run on a thread of the library; they store the index,
- * sequence and time stamp of a finished buffer, nothing else. */
+/* The interface of libcamera's module, in C. Its callbacks run on a thread of the library; they only store the index,
+ * sequence and time stamp of a finished buffer. */
 #ifndef T3R_PLATFORM_LIBCAMERA_SHIM_H
 #define T3R_PLATFORM_LIBCAMERA_SHIM_H
 
@@ -24,7 +24,7 @@ typedef struct t3r_libcamera_request {
     uint32_t buffers;
 } t3r_libcamera_request;
 
-/* What was negotiated. format uses the request's names. */
+/* The negotiated format, in the request's names. */
 typedef struct t3r_libcamera_agreed {
     char id[128];
     char format[5];
@@ -54,7 +54,7 @@ typedef struct t3r_libcamera_shim {
     /* Queues a buffer again. Returns 0 or -1. */
     int (*queue)(t3r_libcamera_stream *stream, uint32_t index);
     void (*close)(t3r_libcamera_stream *stream);
-    /* Says a line for each camera. */
+    /* Passes a line for each camera to `say`. */
     void (*list)(void (*say)(void *user, const char *line), void *user);
 } t3r_libcamera_shim;
 

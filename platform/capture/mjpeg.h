@@ -13,7 +13,7 @@ typedef struct t3r_mjpeg t3r_mjpeg;
 t3r_mjpeg *t3r_mjpeg_open(void);
 void t3r_mjpeg_close(t3r_mjpeg *decoder);
 /* Decodes a JPEG of exactly width x height into rgb (3 bytes a pixel, rows without gaps). Returns NULL, or what is
- * wrong. What libjpeg only warns of is an error too, since pixels are missing then. */
+ * wrong. libjpeg's warnings are errors too, since pixels are missing then. */
 const char *t3r_mjpeg_decode(t3r_mjpeg *decoder, const uint8_t *jpeg, size_t bytes, uint32_t width, uint32_t height,
                              uint8_t *rgb);
 

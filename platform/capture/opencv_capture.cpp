@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-// VideoCapture as a table in C; exceptions stay in here.
+// Wraps VideoCapture as a table in C; exceptions stay inside.
 #include "opencv_shim.h"
 
 #include <cctype>

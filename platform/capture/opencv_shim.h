@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the module of OpenCV offers, in C. */
+/* The interface of OpenCV's module, in C. */
 #ifndef T3R_PLATFORM_OPENCV_SHIM_H
 #define T3R_PLATFORM_OPENCV_SHIM_H
 

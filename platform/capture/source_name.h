@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a source is called in messages and in recordings: credentials and folders stay private. */
+/* Names of sources in messages and recordings, without credentials and folders. */
 #ifndef T3R_PLATFORM_SOURCE_NAME_H
 #define T3R_PLATFORM_SOURCE_NAME_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The adapter `v4l2`: a colour node, and a depth node if one is named. Frames stay where the driver put them; a buffer
- * goes back to the driver with the call that asks for the next frame. */
+/* The adapter `v4l2`: a colour node, and a depth node if one is named. Frames stay in the driver's buffers; a buffer
+ * goes back to the driver with the call for the next frame. */
 #include "v4l2.h"
 
 #include <errno.h>
@@ -19,7 +19,7 @@
 #define NS_PER_MS INT64_C(1000000)
 #define PATIENCE_NS (100 * NS_PER_MS)             /* on top of the pairing distance */
 #define MOST_STAMP_NS ((int64_t)1000000000 << 31) /* recordings keep seconds in 31 bits */
-#define MOST_IDLE_ROUNDS 64u /* after so many "ready" reports in a row without an image the driver is faulty */
+#define MOST_IDLE_ROUNDS 64u /* consecutive "ready" reports without an image before the driver counts as faulty */
 
 enum { COLOUR, DEPTH, NODES };
 
@@ -139,7 +139,7 @@ static bool waits(const t3r_pairing_queue *queue, uint32_t buffer)
 }
 
 /* Gives back to the driver every buffer that it does not hold and that waits for no companion; a refused buffer stays
- * for the next call. Returns -1 when a node has no buffers left or is gone. */
+ * for the next call. Returns -1 if a node has no buffers left or is gone. */
 static int give_back(v4l2_capture *self)
 {
     for (uint32_t n = 0; n < self->nodes; n++) {
@@ -312,8 +312,8 @@ static int deliver(v4l2_capture *self, bool with_depth, int64_t gap_ns, t3r_capt
     return t3r_capture_deliver(&self->capture, frame);
 }
 
-/* Returns a frame made of what has arrived, or NOTHING. Each round takes an image off a queue, so there are at most 2 x
- * most + 1 rounds. */
+/* Returns a frame of the images that have arrived, or NOTHING. Each round takes an image off a queue, so there are at
+ * most 2 x most + 1 rounds. */
 static int decide(v4l2_capture *self, t3r_capture_frame *frame)
 {
     if (self->nodes == 1) {
@@ -369,7 +369,7 @@ static int await(v4l2_capture *self, int64_t until_ns, bool error_polled[NODES])
     return 1;
 }
 
-/* Takes all images that are ready, as far as there is room. */
+/* Takes all images that are ready while there is room. */
 static int take_images(v4l2_capture *self, const bool error_polled[NODES])
 {
     for (uint32_t i = 0; i < self->nodes; i++) {

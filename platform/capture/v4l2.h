@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* V4L2 capture over a table of system calls, so that tests can stand in for the kernel. */
+/* V4L2 capture over a table of system calls, so that tests can replace the kernel. */
 #ifndef T3R_PLATFORM_V4L2_H
 #define T3R_PLATFORM_V4L2_H
 
@@ -11,7 +11,7 @@
 t3r_capture *t3r_v4l2_open_on(const t3r_v4l2_system *system, const char *device, const t3r_capture_settings *settings,
                               char *error, size_t error_bytes);
 
-/* Says a line for each device of this machine. */
+/* Passes a line for each device of this machine to `say`. */
 void t3r_v4l2_devices(void (*say)(void *user, const char *line), void *user);
 
 #endif

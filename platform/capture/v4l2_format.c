@@ -58,8 +58,8 @@ static uint32_t snapped(uint32_t wish, uint32_t low, uint32_t high, uint32_t ste
     return step > 1 ? low + (inside - low) / step * step : inside;
 }
 
-/* Finds the nearest size of this format; the wish itself where the driver lists none. Returns the distance from the
- * wish. */
+/* Finds the nearest size of this format; the wish itself if the driver lists none. Returns the distance from the wish.
+ */
 static uint32_t nearest_size(const t3r_v4l2_system *system, int fd, uint32_t fourcc, const t3r_v4l2_wish *wish,
                              uint32_t *width, uint32_t *height)
 {
@@ -92,7 +92,7 @@ static uint32_t nearest_size(const t3r_v4l2_system *system, int fd, uint32_t fou
     return best;
 }
 
-/* Whether some interval is short enough for the rate, within 1 %. True where the driver lists none. */
+/* Whether some interval is short enough for the rate, within 1 %. True if the driver lists none. */
 static bool reaches_rate(const t3r_v4l2_system *system, int fd, uint32_t fourcc, uint32_t width, uint32_t height,
                          uint32_t rate_millihertz)
 {

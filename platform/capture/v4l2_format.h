@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Chooses which of a device's formats is captured: one that the runtime reads, at the wished size and rate if
- * possible. */
+/* Chooses a device's format for capture: one that the runtime reads, at the wished size and rate if possible. */
 #ifndef T3R_PLATFORM_V4L2_FORMAT_H
 #define T3R_PLATFORM_V4L2_FORMAT_H
 
@@ -23,7 +22,7 @@ typedef struct t3r_v4l2_format {
 extern const t3r_v4l2_format t3r_v4l2_formats[];
 extern const uint32_t t3r_v4l2_format_count;
 
-/* Makes an ioctl; one that a signal interrupts is repeated, at most 16 times. */
+/* Makes an ioctl; repeats it if a signal interrupts it, at most 16 times. */
 int t3r_v4l2_ioctl(const t3r_v4l2_system *system, int fd, unsigned long request, void *argument);
 
 typedef struct t3r_v4l2_wish {
@@ -37,8 +36,8 @@ typedef struct t3r_v4l2_choice {
     uint32_t width, height; /* as enumerated; the driver may still change it */
 } t3r_v4l2_choice;
 
-/* Chooses the format with the nearest size; among equals one that reaches the rate; among those the most preferred.
- * Returns NULL, or why there is none. */
+/* Chooses the format with the nearest size; among equals one that reaches the rate; then the most preferred. Returns
+ * NULL, or why there is none. */
 const char *t3r_v4l2_choose(const t3r_v4l2_system *system, int fd, const t3r_v4l2_wish *wish, t3r_v4l2_choice *choice);
 
 #endif

@@ -8,7 +8,7 @@
 #include "host/reason.h"
 #include "messages/pixel_layout.h"
 
-#define MOST_REFUSED 8u       /* so many EIO in a row are a failure */
+#define MOST_REFUSED 8u       /* consecutive EIO that count as a failure */
 #define FAR_AHEAD 0x80000000u /* a sequence "ahead" by more has gone backwards */
 
 static int control(const t3r_v4l2_node *node, unsigned long request, void *argument)
@@ -295,7 +295,7 @@ static const char *image_fault(const t3r_v4l2_node *node, const struct v4l2_buff
         return "the driver calls it corrupted";
     }
     if (buffer->bytesused > node->buffers[buffer->index].bytes) {
-        return "the driver tells more bytes than the buffer has";
+        return "the driver reports more bytes than the buffer has";
     }
     if (buffer->bytesused == 0 || buffer->bytesused < node->needed_bytes) {
         return "it is shorter than an image";

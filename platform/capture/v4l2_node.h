@@ -35,7 +35,7 @@ typedef struct t3r_v4l2_node {
     bool has_sequence;   /* next_sequence is known */
     uint32_t next_sequence;
     int64_t last_stamp_ns;
-    uint32_t slow;    /* gaps within so many next frames are due to the caller */
+    uint32_t slow;    /* number of next frames within which gaps are due to the caller */
     uint32_t refused; /* consecutive calls that failed with EIO */
 } t3r_v4l2_node;
 
@@ -52,7 +52,7 @@ typedef struct t3r_v4l2_image {
     uint32_t buffer, sequence, bytes;
     int64_t stamp_ns, arrived_ns;
     uint32_t missed; /* frames lost between the previous one and this one */
-    bool slow;       /* missed because the caller was */
+    bool slow;       /* missed because the caller was slow */
 } t3r_v4l2_image;
 
 /* Opens, negotiates, maps and starts a node. Returns 0, or -1 with a reason and the node closed. */
@@ -68,7 +68,7 @@ t3r_v4l2_fetched t3r_v4l2_node_fetch(t3r_v4l2_node *node, bool error_polled, t3r
 int t3r_v4l2_node_requeue(t3r_v4l2_node *node, uint32_t buffer);
 /* Returns the number of buffers that the driver holds. */
 uint32_t t3r_v4l2_node_queued(const t3r_v4l2_node *node);
-/* Notes how long the caller was away; the node knows after how long frames are lost for want of buffers. */
+/* Records how long the caller was away; from this the node decides whether frames were lost for want of buffers. */
 void t3r_v4l2_node_was_away(t3r_v4l2_node *node, int64_t away_ns);
 /* Whether the node reported that its format is no longer valid. */
 bool t3r_v4l2_node_changed(t3r_v4l2_node *node);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The system calls of V4L2 capture as a table, so that a test can play the kernel. They report failure as the system
- * does: -1 (map: NULL) and errno. */
+/* The system calls of V4L2 capture as a table, so that a test can play the kernel. Failures are reported like the
+ * system's: -1 (map: NULL) and errno. */
 #ifndef T3R_PLATFORM_V4L2_SYSTEM_H
 #define T3R_PLATFORM_V4L2_SYSTEM_H
 

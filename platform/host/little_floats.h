@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Floats of 32 and 64 bits in little-endian bytes: little_endian.h for machines that have them. */
+/* Floats of 32 and 64 bits in little-endian bytes, for hosts; the counterpart of little_endian.h. */
 #ifndef T3R_PLATFORM_LITTLE_FLOATS_H
 #define T3R_PLATFORM_LITTLE_FLOATS_H
 
@@ -23,7 +23,7 @@ static inline double t3r_load_double(const uint8_t *bytes)
     return value;
 }
 
-/* Rounded to nearest. */
+/* Stores a float, rounded to nearest. */
 static inline void t3r_store_float(uint8_t *bytes, double value)
 {
     const float narrow = (float)value;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The only way in which platform/ reports what went wrong. */
+/* All of platform/ reports errors through this function. */
 #ifndef T3R_PLATFORM_REASON_H
 #define T3R_PLATFORM_REASON_H
 

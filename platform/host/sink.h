@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where bytes go: a file, memory, a radio. */
+/* A destination of bytes: a file, memory, a radio. */
 #ifndef T3R_PLATFORM_SINK_H
 #define T3R_PLATFORM_SINK_H
 

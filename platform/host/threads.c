@@ -65,7 +65,7 @@ static bool is_done(const t3r_threads *threads, uint64_t unused)
     return atomic_load_explicit(&threads->busy, memory_order_acquire) == 0;
 }
 
-/* Spins for a while until is_so() holds; false says nothing. */
+/* Spins for a while until is_so() holds; false: not known. */
 static bool look(const t3r_threads *threads, bool (*is_so)(const t3r_threads *, uint64_t), uint64_t argument)
 {
     for (int64_t begun = now_ns(); threads->looks && now_ns() - begun < LOOK_NS;) {

@@ -36,8 +36,6 @@ static int reserve(chunk_packer *self, size_t more)
     return 0;
 }
 
-/* ---- zstd ---- */
-
 static int zstd_begin(void *user)
 {
     chunk_packer *self = user;
@@ -76,8 +74,6 @@ static int zstd_end(void *user, const uint8_t **bytes, size_t *count)
     *count = self->count;
     return status;
 }
-
-/* ---- LZ4 ---- */
 
 /* Counts the bytes that a call added, or reports its error. */
 static int lz4_add(chunk_packer *self, size_t added)
@@ -121,8 +117,6 @@ static int lz4_end(void *user, const uint8_t **bytes, size_t *count)
     *count = self->count;
     return status;
 }
-
-/* ---- both ---- */
 
 const t3r_chunk_packer *t3r_chunk_packer_open(t3r_compression compression)
 {

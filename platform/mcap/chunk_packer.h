@@ -17,7 +17,7 @@ extern const char *const t3r_compression_names[T3R_COMPRESSION_COUNT];
 
 /* Returns a packer; NULL for NONE, and when memory is out. The same library gives the same bytes for the same input. */
 const t3r_chunk_packer *t3r_chunk_packer_open(t3r_compression compression);
-/* NULL is allowed. */
+/* Closes a packer; NULL is allowed. */
 void t3r_chunk_packer_close(const t3r_chunk_packer *packer);
 
 #endif

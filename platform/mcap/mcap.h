@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What writer and reader of MCAP files share: the magic and the records' opcodes (mcap.dev/spec). */
+/* Shared by writer and reader of MCAP files: the magic and the records' opcodes (mcap.dev/spec). */
 #ifndef T3R_PLATFORM_MCAP_H
 #define T3R_PLATFORM_MCAP_H
 

@@ -57,7 +57,7 @@ static int read_back(const t3r_mcap_writer *writer, uint64_t offset, uint64_t en
     return writer->sink.read(writer->sink.user, offset, bytes, *count);
 }
 
-/* Reads back a chunk. Returns 0, or -1 if the file does not hold what was written. */
+/* Reads back a chunk. Returns 0, or -1 if the file differs from what was written. */
 static int read_chunk(const t3r_mcap_writer *writer, uint64_t start, uint64_t end, written_chunk *out)
 {
     uint8_t indexes[T3R_MCAP_CHUNK_CHANNELS * MESSAGE_INDEX_BYTES];

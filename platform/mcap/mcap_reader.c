@@ -138,7 +138,7 @@ static int walk_chunk(walk *w, const uint8_t *bytes, size_t count, uint64_t chun
             return cut ? kept : malformed(w, head.opcode, place, "it reaches past the chunk's end");
         }
         if (!t3r_mcap_in_chunk(head.opcode)) {
-            return malformed(w, head.opcode, place, "it may not stand in a chunk");
+            return malformed(w, head.opcode, place, "it may not be in a chunk");
         }
         at += T3R_MCAP_RECORD_HEAD_BYTES;
         t3r_mcap_fields in = {bytes + at, (size_t)head.bytes, 0, false};
@@ -167,7 +167,7 @@ static int reserve_chunk(walk *w)
     return grown != NULL ? 0 : -1;
 }
 
-/* Refuses chunks of that many bytes, before memory is allocated; 0 if they are allowed. */
+/* Refuses chunks of `bytes` bytes, before memory is allocated; 0 if they are allowed. */
 static int check_unpacked(walk *w, t3r_mcap_place place, uint64_t bytes)
 {
     const uint64_t most = w->chunks->spill != NULL ? t3r_limit_unpacked(w->limit) : t3r_limit_unpacked_whole(w->limit);
@@ -183,7 +183,7 @@ static int check_unpacked(walk *w, t3r_mcap_place place, uint64_t bytes)
     return malformed(w, T3R_MCAP_CHUNK, place, what);
 }
 
-/* A chunk, and as much of its content as is there. */
+/* A chunk, and the available part of its content. */
 typedef struct chunk {
     t3r_mcap_chunk_record record;
     const uint8_t *packed;
@@ -223,7 +223,7 @@ static void leave_room(walk *w, const unpacked *u, bool is_kept)
     }
 }
 
-/* Decompresses a chunk's records into memory of their own, which leave_room() releases also on failure; *count is their
+/* Decompresses a chunk's records into separate memory, which leave_room() releases also on failure; *count is their
  * size. Returns NULL, or what is wrong with the data, as happens in a cut chunk; other errors set *status to -1 with
  * the reason given. */
 static const char *unpack_chunk(walk *w, const chunk *c, t3r_mcap_place place, unpacked *out, size_t *count,
@@ -278,7 +278,7 @@ static int walk_packed(walk *w, const chunk *c, t3r_mcap_place place)
     return status < 0 ? -1 : 0;
 }
 
-/* `in` holds the record, or as much of its `bytes` as a cut file has left. */
+/* Reads a chunk; `in` holds the record, or the part of its `bytes` that a cut file has left. */
 static int read_chunk(walk *w, t3r_mcap_fields *in, t3r_mcap_place place, uint64_t bytes)
 {
     const bool cut = in->count < bytes;
@@ -335,7 +335,7 @@ static int read_footer(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
         return malformed(w, T3R_MCAP_FOOTER, place, "its length is not 20 bytes");
     }
     if (w->data_end == 0) {
-        return malformed(w, T3R_MCAP_FOOTER, place, "no DataEnd record stands in front of it");
+        return malformed(w, T3R_MCAP_FOOTER, place, "no DataEnd record precedes it");
     }
     if ((summary != 0 && (summary < w->data_end || summary > place.offset)) ||
         (summary_offset != 0 && (summary_offset < w->data_end || summary_offset > place.offset))) {
@@ -372,7 +372,7 @@ static int read_record(walk *w, uint8_t opcode, t3r_mcap_fields *in, t3r_mcap_pl
     case T3R_MCAP_METADATA:
     case T3R_MCAP_DATA_END:
         if (in_summary) {
-            return malformed(w, opcode, place, "it stands behind the DataEnd record");
+            return malformed(w, opcode, place, "it follows the DataEnd record");
         }
         return opcode == T3R_MCAP_MESSAGE      ? read_message(w, in, place)
                : opcode == T3R_MCAP_CHUNK      ? read_chunk(w, in, place, in->count)
@@ -386,7 +386,7 @@ static int read_record(walk *w, uint8_t opcode, t3r_mcap_fields *in, t3r_mcap_pl
     }
 }
 
-/* Checks what follows the footer: the end magic, or the part of it that a cut file has left. */
+/* Checks what follows the footer: the end magic, or its part in a cut file. */
 static int check_end(walk *w, uint64_t at, size_t count, t3r_mcap_end *end)
 {
     uint64_t rest = count - at;
@@ -396,7 +396,7 @@ static int check_end(walk *w, uint64_t at, size_t count, t3r_mcap_end *end)
                    : t3r_reason(w->error, w->error_bytes, "byte %" PRIu64 ": bytes between Footer and end magic", at);
     }
     if (rest >= T3R_MCAP_MAGIC_BYTES || memcmp(w->bytes + at, T3R_MCAP_MAGIC, (size_t)rest) != 0) {
-        return t3r_reason(w->error, w->error_bytes, "byte %" PRIu64 ": no end magic behind the Footer", at);
+        return t3r_reason(w->error, w->error_bytes, "byte %" PRIu64 ": no end magic after the Footer", at);
     }
     *end = (t3r_mcap_end){true, at};
     return 0;

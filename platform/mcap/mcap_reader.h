@@ -15,15 +15,15 @@
 #include "mcap_records.h"
 #include "spill.h"
 
-/* Where a record starts. */
+/* The start of a record. */
 typedef struct t3r_mcap_place {
     uint64_t offset; /* in the file, or in the chunk's decompressed data */
     bool in_chunk;
     uint64_t chunk_offset; /* of the chunk record in the file */
 } t3r_mcap_place;
 
-/* Each function returns 0 to go on, T3R_MCAP_KEPT if it keeps what the record points to, or -1 once it has written its
- * reason where t3r_mcap_read() writes its own. */
+/* Each function returns 0 to go on, T3R_MCAP_KEPT if it keeps what the record points to, or -1 with its reason in the
+ * error[] of t3r_mcap_read(). */
 #define T3R_MCAP_KEPT 1
 typedef struct t3r_mcap_visitor {
     void *user;

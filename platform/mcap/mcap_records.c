@@ -5,7 +5,7 @@
 
 #include "core/little_endian.h"
 
-/* Compared so that Frama-C, which follows no relation between `at` and `count`, sees that the bytes are there. */
+/* Written so that Frama-C, which tracks no relation between `at` and `count`, sees that the bytes are in range. */
 const uint8_t *t3r_mcap_take(t3r_mcap_fields *in, uint64_t count)
 {
     if (in->failed || count > in->count || in->at > in->count - count) {
@@ -39,7 +39,7 @@ t3r_text t3r_mcap_take_text(t3r_mcap_fields *in)
 {
     const uint32_t count = t3r_mcap_take_u32(in);
     const uint8_t *bytes = t3r_mcap_take(in, count);
-    /* a text that is not there is empty, and lies in the record as others do */
+    /* a missing text is empty, and points into the record like others */
     return bytes == NULL ? (t3r_text){(const char *)in->bytes, 0} : (t3r_text){(const char *)bytes, count};
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* MCAP records in memory (mcap.dev/spec), for the reader of whole files and for that of firmware: no heap, no files.
- * Of a record its first bytes may be there alone: fields that reach past them are empty or 0, and `failed` is set. */
+/* MCAP records in memory (mcap.dev/spec), for the reader of whole files and the firmware's: no heap, no files. A
+ * record may be given only by its first bytes: fields that reach past them are empty or 0, and `failed` is set. */
 #ifndef T3R_PLATFORM_MCAP_RECORDS_H
 #define T3R_PLATFORM_MCAP_RECORDS_H
 
@@ -16,10 +16,10 @@
 typedef struct t3r_mcap_fields {
     const uint8_t *bytes;
     size_t count, at;
-    bool failed; /* one reached past the end; those after it do, too */
+    bool failed; /* a field reached past the end; so do all later ones */
 } t3r_mcap_fields;
 
-/* NULL past the end. */
+/* Returns the bytes, or NULL past the end. */
 const uint8_t *t3r_mcap_take(t3r_mcap_fields *in, uint64_t count);
 uint16_t t3r_mcap_take_u16(t3r_mcap_fields *in);
 uint32_t t3r_mcap_take_u32(t3r_mcap_fields *in);
@@ -33,11 +33,11 @@ typedef struct t3r_mcap_head {
     uint64_t bytes; /* of the fields, which follow */
 } t3r_mcap_head;
 
-/* Reads the head of the record at `bytes`, `rest` bytes before the end of its chunk or file: at most
- * T3R_MCAP_RECORD_HEAD_BYTES of them are read. Returns whether the record ends by then. */
+/* Reads the head of the record at `bytes`, `rest` bytes before the end of its chunk or file; reads at most
+ * T3R_MCAP_RECORD_HEAD_BYTES. Returns whether the record ends within `rest`. */
 bool t3r_mcap_head_of(const uint8_t *bytes, uint64_t rest, t3r_mcap_head *head);
 
-/* Whether a record of that kind may stand in a chunk; extensions may. */
+/* Whether a record of that kind is allowed in a chunk; extensions are. */
 bool t3r_mcap_in_chunk(uint8_t opcode);
 
 typedef struct t3r_mcap_schema_record {
@@ -56,7 +56,7 @@ typedef struct t3r_mcap_message_record {
     uint16_t channel;
     uint32_t sequence;
     uint64_t log_ns, publish_ns;
-    const uint8_t *data; /* as much as is there */
+    const uint8_t *data; /* the available part */
     size_t bytes;
 } t3r_mcap_message_record;
 #define T3R_MCAP_MESSAGE_FIELDS 22u /* bytes before the data */
@@ -73,18 +73,18 @@ typedef struct t3r_mcap_chunk_record {
 /* The records follow. */
 t3r_mcap_chunk_record t3r_mcap_chunk_of(t3r_mcap_fields *in);
 
-/* The name; the pairs follow, as many bytes of them as are there. */
+/* The name; the available bytes of the pairs follow. */
 typedef struct t3r_mcap_metadata_record {
     t3r_text name;
     t3r_mcap_fields pairs;
 } t3r_mcap_metadata_record;
 t3r_mcap_metadata_record t3r_mcap_metadata_of(t3r_mcap_fields *in);
-/* Takes the next pair. Returns false at the end of the pairs, and with pairs->failed where one is cut off. */
+/* Takes the next pair. Returns false at the end of the pairs, with pairs->failed if one is cut off. */
 bool t3r_mcap_pair_of(t3r_mcap_fields *pairs, t3r_text *key, t3r_text *value);
 
 /* ---- files ---- */
 
-/* What is wrong with the first bytes of a file, 8 of them and more if there are, or NULL. */
+/* Returns an error in the first bytes of a file, 8 or more if available, or NULL. */
 const char *t3r_mcap_magic_error(const uint8_t *bytes, size_t count);
 
 #endif

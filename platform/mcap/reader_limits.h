@@ -56,8 +56,8 @@
 #define T3R_LIMIT_UNPACKED_HEAP (UINT64_C(128) << 20)
 #define T3R_LIMIT_INDEX_BYTES (UINT64_C(192) << 20)
 
-/* A compressed scene may hold this many Gaussians whatever its size, and beyond that one per so many bytes. Real ones
- * take ten bytes and more each. */
+/* A compressed scene of any size may hold this many Gaussians, and beyond that one per this many bytes. Real ones take
+ * ten bytes and more each. */
 #define T3R_LIMIT_GAUSSIANS_FREE 524288
 #define T3R_LIMIT_GAUSSIAN_BYTES 4
 
@@ -74,7 +74,7 @@ static inline uint64_t t3r_limit_unpacked(uint64_t packed_bytes)
                : T3R_LIMIT_UNPACKED_FREE + T3R_LIMIT_UNPACKED_RATIO * packed_bytes;
 }
 
-/* For a file that is held in memory as a whole, both compressed and decompressed. */
+/* Returns the limit for a file that is held in memory as a whole, both compressed and decompressed. */
 static inline uint64_t t3r_limit_unpacked_whole(uint64_t packed_bytes)
 {
     const uint64_t left = packed_bytes < T3R_LIMIT_UNPACKED_WHOLE ? T3R_LIMIT_UNPACKED_WHOLE - packed_bytes : 0;

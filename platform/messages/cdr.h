@@ -29,7 +29,7 @@ t3r_text t3r_cdr_get_string(t3r_cdr_reader *reader);
 /* Returns the bytes of a sequence<uint8>, inside the message. */
 const uint8_t *t3r_cdr_get_bytes(t3r_cdr_reader *reader, uint32_t *count);
 
-/* ---- writing: sink.write == NULL only counts, to get a message's size before it is written */
+/* ---- writing: with sink.write == NULL it only counts, for a message's size */
 
 typedef struct t3r_cdr_writer {
     t3r_sink sink;

@@ -10,7 +10,7 @@
 
 #include "trim3r.h"
 
-/* The camera as the file holds it: doubles, straight from the source. */
+/* A camera in doubles, unchanged from its source. */
 typedef struct t3r_recorded_camera {
     uint32_t width, height;
     double fx, fy, cx, cy; /* pixels; pixel (0, 0) is the centre of the top-left pixel */
@@ -29,7 +29,7 @@ bool t3r_fixed_rotation(uint64_t f64, int32_t *q30);
 bool t3r_fixed_coefficient(uint64_t f64, t3r_distortion distortion, uint32_t index, int32_t *q24);
 bool t3r_fixed_depth_unit(double unit, uint64_t *q40);
 
-/* Converts the whole camera as a reader of the recording will see it. Returns NULL, or what is wrong: "field: what is
+/* Converts the whole camera like a reader of the recording. Returns NULL, or what is wrong: "field: what is
  * supported". */
 const char *t3r_fixed_camera(const t3r_recorded_camera *in, t3r_camera *out);
 

@@ -6,8 +6,6 @@
 #include "fixed_double.h"
 #include "messages/pixel_layout.h"
 
-/* ---- images ---- */
-
 /* Checks that rows of row_bytes, image->step apart, lie inside the data. */
 static const char *rows_error(const t3r_ros_image *image, uint32_t row_bytes, uint32_t rows)
 {
@@ -122,8 +120,6 @@ void t3r_message_to_z16(const t3r_ros_image *image, uint64_t unit_q40, uint8_t *
         }
     }
 }
-
-/* ---- the camera ---- */
 
 static bool is_zero(uint64_t f64)
 {

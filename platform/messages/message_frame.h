@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Converts ROS 2 messages of one instant to a frame and its camera: checked, and their doubles turned into fixed point.
+/* Converts ROS 2 messages of one instant to a frame and its camera: checks them and converts doubles to fixed point.
  * No heap: a frame's planes lie in the messages' own bytes. Each check returns NULL, or what is wrong. */
 #ifndef T3R_PLATFORM_MESSAGE_FRAME_H
 #define T3R_PLATFORM_MESSAGE_FRAME_H
@@ -14,7 +14,7 @@ bool t3r_message_is_depth(const t3r_ros_image *image);
 const char *t3r_message_colour_shape(const t3r_ros_image *image, t3r_frame *frame);
 /* Does the same, and fills in the planes. */
 const char *t3r_message_colour(const t3r_ros_image *image, t3r_frame *frame);
-/* Whether the samples of a depth image are metres; and whether they are little-endian steps that need no conversion. */
+/* Whether the samples of a depth image are metres; whether they are little-endian steps that need no conversion. */
 bool t3r_message_is_metres(const t3r_ros_image *image);
 bool t3r_message_is_z16(const t3r_ros_image *image);
 /* Fills in the depth plane, without its unit. frame->depth is NULL if the samples need conversion: use

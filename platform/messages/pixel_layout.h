@@ -11,8 +11,7 @@
 
 /* Returns the name of the format in sensor_msgs, as trim3r writes it ("nv12" is our own: ROS has no name for it). */
 const char *t3r_pixel_encoding(t3r_pixel_format format);
-/* Finds the format of an encoding, also by V4L2's names. False for an encoding that is none of trim3r's colour
- * formats. */
+/* Finds the format of an encoding, also by V4L2's names. False if it is none of trim3r's colour formats. */
 bool t3r_pixel_format_of(t3r_text encoding, t3r_pixel_format *format);
 
 /* Returns the bytes of a row of plane 0 without padding. */

@@ -32,7 +32,6 @@ static const char *get_header(t3r_cdr_reader *in, t3r_ros_header *header)
     return nanoseconds < NS_PER_S ? NULL : "header.stamp.nanosec is over 999999999";
 }
 
-/* Opens a message that begins with a header. */
 static const char *open_message(t3r_cdr_reader *in, const uint8_t *bytes, size_t count, t3r_ros_header *header)
 {
     t3r_cdr_open(in, bytes, count);
@@ -123,8 +122,6 @@ const char *t3r_ros_read_compressed(const uint8_t *bytes, size_t count, t3r_ros_
     image->data = t3r_cdr_get_bytes(&in, &image->data_bytes);
     return in.failed ? "format or data is cut short" : NULL;
 }
-
-/* ---- poses ---- */
 
 /* The fields in order: h header, c child_frame_id, p position and rotation; the rest is not read. */
 static const char *const pose_fields[T3R_ROS_TYPE_COUNT] = {

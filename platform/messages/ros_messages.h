@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The ROS 2 messages of a recording, read from and written to CDR. Doubles stay the 64 bits of the file (names end in
- * _f64); recording_frame.c converts them to fixed point. */
+/* The ROS 2 messages of a recording, read from and written to CDR. Doubles are kept as the file's 64 bits (names end
+ * in _f64); recording_frame.c converts them to fixed point. */
 #ifndef T3R_PLATFORM_ROS_MESSAGES_H
 #define T3R_PLATFORM_ROS_MESSAGES_H
 
@@ -29,7 +29,7 @@ typedef enum t3r_ros_type {
 extern const char *const t3r_ros_names[T3R_ROS_TYPE_COUNT];
 /* Whether a schema name is that message's: "package/msg/Type", or "package/Type" from older writers. */
 bool t3r_ros_is_named(t3r_ros_type type, t3r_text name);
-/* Definitions of the messages that trim3r writes, with all that they refer to, in MCAP's schema encoding "ros2msg". */
+/* Definitions of the messages that trim3r writes, with all referenced types, in MCAP's schema encoding "ros2msg". */
 extern const char *const t3r_ros_schemas[T3R_ROS_TYPE_COUNT];
 
 /* Only the recorder writes these: lines of text. */
@@ -81,7 +81,7 @@ typedef struct t3r_ros_pose {
 
 /* Return NULL, or which field is malformed or cut short. Texts and data point into the message. */
 const char *t3r_ros_read_image(const uint8_t *bytes, size_t count, t3r_ros_image *image);
-/* Reads the first bytes of an image message: all but its data, which is NULL and begins at *data_at. */
+/* Reads the first bytes of an image message: everything except its data, which is NULL and begins at *data_at. */
 const char *t3r_ros_read_image_head(const uint8_t *bytes, size_t count, t3r_ros_image *image, size_t *data_at);
 const char *t3r_ros_read_camera_info(const uint8_t *bytes, size_t count, t3r_ros_camera_info *info);
 const char *t3r_ros_read_compressed(const uint8_t *bytes, size_t count, t3r_ros_compressed *image);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A frame as cameras and recordings give it, and the outcomes of asking for one. */
+/* A frame from a camera or a recording, and the outcomes of asking for one. */
 #ifndef T3R_PLATFORM_CAPTURED_FRAME_H
 #define T3R_PLATFORM_CAPTURED_FRAME_H
 
@@ -8,15 +8,15 @@
 
 #include "trim3r.h"
 
-/* One captured instant, ready for t3r_add_view() once pose and intrinsics are known. */
+/* One captured frame, ready for t3r_add_view() once pose and intrinsics are known. */
 typedef struct t3r_capture_frame {
     uint32_t index;         /* order among the colour images of the source, from 0 */
     uint32_t sequence;      /* the driver's count, with gaps; in recordings the index */
     int64_t stamp_ns;       /* time of the colour image, in the source's clock */
-    int64_t depth_stamp_ns; /* time of the depth image; stamp_ns where both are one */
+    int64_t depth_stamp_ns; /* time of the depth image; equal to stamp_ns if they are one image */
     bool has_pose;          /* camera's pose is known */
     bool has_intrinsics;    /* camera's intrinsics are known */
-    t3r_frame frame;        /* frame.depth is NULL when the instant has no depth */
+    t3r_frame frame;        /* frame.depth is NULL without depth */
     t3r_camera camera;
 } t3r_capture_frame;
 

@@ -46,7 +46,7 @@ t3r_pairing_verdict t3r_pairing_decide(const t3r_pairing *pairing, int64_t now_n
     }
     int64_t gap = depths->items[0].stamp_ns - colour->stamp_ns;
     if (gap < -pairing->near_ns) {
-        return T3R_PAIRING_NOT_DEPTH; /* too old for this colour image and for all after it */
+        return T3R_PAIRING_NOT_DEPTH; /* too old for this colour image and all later ones */
     }
     bool more = depths->count > 1;
     if (more && magnitude(depths->items[1].stamp_ns - colour->stamp_ns) < magnitude(gap)) {

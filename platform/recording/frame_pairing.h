@@ -36,11 +36,10 @@ typedef enum t3r_pairing_verdict {
 /* Adds at the end of a queue. Stamps ascend; the queue must hold fewer than `most` items. */
 void t3r_pairing_add_colour(t3r_pairing *pairing, t3r_pairing_item item);
 void t3r_pairing_add_depth(t3r_pairing *pairing, t3r_pairing_item item);
-/* Takes the oldest item. */
 t3r_pairing_item t3r_pairing_take(t3r_pairing_queue *queue);
 
-/* Returns what is certain at the time now_ns; a full queue forces a decision. *gap_ns: for BOTH depth's stamp minus
- * colour's; for COLOUR the gap to the nearest depth, INT64_MAX if there is none. */
+/* Returns the verdict at time now_ns; a full queue forces a decision. *gap_ns: for BOTH depth's stamp minus colour's;
+ * for COLOUR the gap to the nearest depth, INT64_MAX if there is none. */
 t3r_pairing_verdict t3r_pairing_decide(const t3r_pairing *pairing, int64_t now_ns, int64_t *gap_ns);
 
 #endif

@@ -59,7 +59,7 @@ static int read_record(t3r_frame_reader *reader, record *out)
     }
     *out = (record){head.opcode, reader->at + sizeof bytes, head.bytes};
     return reader->chunk_end != 0 && !t3r_mcap_in_chunk(head.opcode)
-               ? fail(reader, "a record stands in a chunk that may not")
+               ? fail(reader, "a chunk holds a record that may not be in one")
                : 1;
 }
 
@@ -97,7 +97,7 @@ static uint8_t type_of(const t3r_frame_reader_name *names, uint32_t count, uint1
     return T3R_ROS_TYPE_COUNT;
 }
 
-/* Keeps the first name of an id whose messages are read. There is room for all names of trim3r's own recordings. */
+/* Keeps the first name of an id if its messages are read. There is room for all names of trim3r's own recordings. */
 static void keep(t3r_frame_reader_name *names, uint32_t *count, uint16_t id, uint8_t type)
 {
     if (type < T3R_ROS_TYPE_COUNT && *count < T3R_FRAME_READER_NAMES &&
@@ -175,7 +175,7 @@ static int enter_chunk(t3r_frame_reader *reader, const record *r)
 
 /* ---- messages ---- */
 
-/* Whether an image message is of depth, by its first bytes. */
+/* Whether an image message is depth, by its first bytes. */
 static int is_depth_image(t3r_frame_reader *reader, const record *data, bool *depth)
 {
     const size_t count = data->bytes < sizeof reader->small ? (size_t)data->bytes : sizeof reader->small;
@@ -367,7 +367,7 @@ static int finish(t3r_frame_reader *reader, const instant *now, t3r_capture_fram
 {
     if (reader->has_intrinsics &&
         (reader->camera_width != now->frame.width || reader->camera_height != now->frame.height)) {
-        return fail(reader, "the size in a CameraInfo is not that of the image");
+        return fail(reader, "the size in a CameraInfo is not the image's");
     }
     *frame = (t3r_capture_frame){
         .index = reader->frames,
@@ -441,7 +441,7 @@ static int check_rows(t3r_frame_reader *reader, const t3r_frame_reader_image *fr
     return row <= height && rows <= height - row ? 0 : fail(reader, "these rows are not in the image");
 }
 
-/* Reads rows of the source from `row` on; the chroma rows of NV12 follow its others. */
+/* Reads rows of the source from `row` on; NV12's chroma rows follow the others. */
 static int read_rows(t3r_frame_reader *reader, const t3r_frame_reader_image *from, uint32_t row, uint32_t rows,
                      uint8_t *out)
 {

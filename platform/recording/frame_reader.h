@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Reads frames of a recording in order, without a heap: for firmware.
  *
- * It reads what trim3r records and imports: uncompressed chunks or none, and images as pixels. The messages of one
- * instant share a header.stamp and are consecutive. Depth and pose with another stamp than their colour image's are
- * skipped; `trim3r import` pairs them. CRCs are not checked, because most records are skipped. */
+ * It reads recordings by trim3r's recorder and import: uncompressed chunks or none, and images as pixels. The messages
+ * of one instant share a header.stamp and are consecutive. Depth and pose with another stamp than their colour image's
+ * are skipped; `trim3r import` pairs them. CRCs are not checked, because most records are skipped. */
 #ifndef T3R_PLATFORM_FRAME_READER_H
 #define T3R_PLATFORM_FRAME_READER_H
 
 #include "captured_frame.h"
 #include "messages/ros_messages.h"
 
-/* Where bytes come from: flash, a card, a debugger's host. */
+/* A source of bytes: flash, a card, a debugger's host. */
 typedef struct t3r_byte_source {
     /* Reads `count` bytes from `offset` on, which lie within the source. Returns 0 when done. */
     int (*read)(void *user, uint64_t offset, void *bytes, size_t count);
@@ -19,7 +19,7 @@ typedef struct t3r_byte_source {
 } t3r_byte_source;
 
 #define T3R_FRAME_READER_NAMES 16u        /* most schemas and most channels */
-#define T3R_FRAME_READER_SMALL_BYTES 1024 /* most bytes of a record that is no image; longer ones are skipped */
+#define T3R_FRAME_READER_SMALL_BYTES 1024 /* most bytes of a record that is not an image; longer ones are skipped */
 
 typedef struct t3r_frame_reader_name {
     uint16_t id;
@@ -32,12 +32,12 @@ typedef struct t3r_frame_reader_image {
     t3r_ros_image message;
 } t3r_frame_reader_image;
 
-/* The reader's state; the caller places it and does not use its fields. */
+/* The reader's state; the caller provides the memory and does not use its fields. */
 typedef struct t3r_frame_reader {
     t3r_byte_source source;
     uint8_t *colour, *depth;
     size_t colour_room, depth_room;
-    uint64_t at;        /* where the next record starts */
+    uint64_t at;        /* start of the next record */
     uint64_t chunk_end; /* end of the current chunk; 0: outside of chunks */
     t3r_frame_reader_name schemas[T3R_FRAME_READER_NAMES], channels[T3R_FRAME_READER_NAMES];
     uint32_t schema_count, channel_count;
@@ -53,9 +53,9 @@ typedef struct t3r_frame_reader {
     uint8_t small[T3R_FRAME_READER_SMALL_BYTES];
 } t3r_frame_reader;
 
-/* Opens a reader at the start of the source. `colour` and `depth` hold the rows of an image that are read at once, in
- * the source's layout; with `depth` NULL and no room, depth is skipped. Returns 0, or -1 with the reason in the
- * reader's `error`. */
+/* Opens a reader at the start of the source. `colour` and `depth` receive the rows of an image that are read in one
+ * call, in the source's layout; with `depth` NULL and no room, depth is skipped. Returns 0, or -1 with the reason in
+ * the reader's `error`. */
 int t3r_frame_reader_open(t3r_frame_reader *reader, const t3r_byte_source *source, uint8_t *colour, size_t colour_room,
                           uint8_t *depth, size_t depth_room);
 
@@ -64,12 +64,12 @@ int t3r_frame_reader_open(t3r_frame_reader *reader, const t3r_byte_source *sourc
  * there are no more. */
 int t3r_frame_reader_next(t3r_frame_reader *reader, t3r_capture_frame *frame);
 
-/* The same without rows: planes and depth are NULL, and depth_height is 0 if there is no depth. */
+/* Finds the next frame without rows: planes and depth are NULL, and depth_height is 0 if there is no depth. */
 int t3r_frame_reader_find(t3r_frame_reader *reader, t3r_capture_frame *frame);
 
 /* Reads rows row..row + rows - 1 of the colour image of the frame found last, and rows depth_row..depth_row +
- * depth_rows - 1 of its depth image, as t3r_add_rows() takes them. The two buffers receive them, and the planes of
- * `frame` begin with them. Returns 0, or -1 as above. */
+ * depth_rows - 1 of its depth image, for t3r_add_rows(). They go to the two buffers, and the planes of `frame` begin
+ * with them. Returns 0, or -1 with a reason. */
 int t3r_frame_reader_rows(t3r_frame_reader *reader, t3r_frame *frame, uint32_t row, uint32_t rows, uint32_t depth_row,
                           uint32_t depth_rows);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the files of the recorder share: its state, its channels, and messages inside and outside chunks. */
+/* Shared by the files of the recorder: its state, its channels, and messages inside and outside chunks. */
 #ifndef T3R_PLATFORM_RECORDER_H
 #define T3R_PLATFORM_RECORDER_H
 
@@ -24,7 +24,7 @@ enum {
     T3R_CHANNEL_COUNT
 };
 
-/* What the statistics count. */
+/* Counts for the statistics. */
 typedef struct t3r_recorder_counts {
     uint64_t first_ns, last_ns;
     uint32_t messages[T3R_CHANNEL_COUNT]; /* also the next sequence numbers */
@@ -61,8 +61,8 @@ static inline bool t3r_recorder_has_events(const t3r_recorder *recorder)
 void t3r_recorder_begin_message(t3r_recorder *recorder, uint32_t channel, int64_t stamp_ns, uint64_t data_bytes);
 /* Marks everything written so far as complete. */
 void t3r_recorder_end_message(t3r_recorder *recorder);
-/* Writes the messages that put() puts, as a chunk of their own, or plain where there are no chunks. put() is called
- * more than once, to measure before it writes, and must write the same each time. */
+/* Writes the messages of put(), as one chunk, or plain without chunks. put() is called more than once, to measure
+ * before it writes, and must write the same each time. */
 void t3r_recorder_put(t3r_recorder *recorder, void (*put)(t3r_recorder *recorder, const void *item), const void *item);
 
 /* ---- recorder_messages.c ---- */
@@ -71,7 +71,7 @@ void t3r_recorder_put(t3r_recorder *recorder, void (*put)(t3r_recorder *recorder
 void t3r_recorder_put_frame(t3r_recorder *recorder, const void *frame);
 void t3r_recorder_put_log(t3r_recorder *recorder, const void *log);
 
-/* ---- recorder_summary.c: what precedes and follows the messages ---- */
+/* ---- recorder_summary.c: before and after the messages ---- */
 
 void t3r_recorder_put_head(t3r_recorder *recorder, const t3r_recording_header *header, const char *depth_unit);
 void t3r_recorder_put_summary(t3r_recorder *recorder);

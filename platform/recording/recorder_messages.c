@@ -36,7 +36,7 @@ static void put_camera_info(t3r_recorder *recorder, int64_t stamp_ns, const t3r_
     t3r_recorder_end_message(recorder);
 }
 
-/* The coordinate frame that images, intrinsics and poses belong to. */
+/* Returns the pose of the coordinate frame of images and intrinsics. */
 static t3r_ros_pose pose_of(const t3r_recorder *recorder, int64_t stamp_ns, const t3r_recorded_camera *camera)
 {
     t3r_ros_pose pose = {.header = {stamp_ns, t3r_text_of(T3R_RECORDER_WORLD)},

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What precedes and follows the messages of a recording. */
+/* Writes the parts of a recording before and after the messages. */
 #include <string.h>
 
 #include "messages/ros_messages.h"

@@ -20,7 +20,7 @@ typedef struct t3r_triplet {
 
 /* ---- reading ------------------------------------------------------------------------------------- */
 
-/* What is read, whoever wrote the file:
+/* The contents that are read, whatever program wrote the file:
  *   colour  the first sensor_msgs/Image topic in rgb8, bgr8, yuv422_yuy2 (yuyv), yuv422 (uyvy) or nv12 (Y plane, then
  *           UV, rows of `step` bytes), else the first sensor_msgs/CompressedImage topic, else the first in mono8
  *   depth   16UC1 or mono16: steps of the unit in metadata "trim3r", else of 0.001; 32FC1 metres become steps of
@@ -51,10 +51,10 @@ t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *err
 /* Names of topics; NULL: chosen as above. */
 typedef struct t3r_recording_choice {
     const char *colour, *depth, *pose, *camera_info;
-    const char *depth_camera_info; /* NULL: the one below depth's prefix, if that is not colour's */
+    const char *depth_camera_info; /* NULL: the one below depth's prefix, if this is not colour's */
     int64_t pair_ns;               /* largest distance of depth and pose from colour; 0: 20 ms */
 } t3r_recording_choice;
-/* Fails also where a name is no topic of that kind. */
+/* Opens a recording by a choice; fails if a name is no topic of that kind. */
 t3r_recording *t3r_recording_open_chosen(const char *path, const t3r_recording_choice *choice, char *error,
                                          size_t error_bytes);
 
@@ -75,9 +75,9 @@ void t3r_recording_set_decoder(t3r_recording *recording, t3r_image_decoder decod
 void t3r_recording_close(t3r_recording *recording);
 
 uint32_t t3r_recording_frame_count(const t3r_recording *recording);
-/* Reads frame `index`; its memory lives as long as the recording. Returns T3R_CAPTURE_FRAME, or T3R_CAPTURE_FAILED with
- * a reason in error[]. Depth stored as floats or big-endian is converted once and kept, so two threads must not read at
- * the same time. */
+/* Reads frame `index`; its memory lives as long as the recording. Returns T3R_CAPTURE_FRAME, or T3R_CAPTURE_FAILED
+ * with a reason in error[]. Depth stored as floats or big-endian is converted once and kept, so two threads must not
+ * read at the same time. */
 int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capture_frame *frame, char *error,
                         size_t error_bytes);
 
@@ -91,20 +91,19 @@ int t3r_recording_set_pose(t3r_recording *recording, uint32_t index, const int64
 uint32_t t3r_recording_triplet_count(const t3r_recording *recording);
 t3r_triplet t3r_recording_triplet(const t3r_recording *recording, uint32_t index);
 
-/* Where a truncated file stops, and the messages before that place. */
+/* The place where a truncated file stops, and the messages before it. */
 typedef struct t3r_recording_cut {
     bool cut;
-    uint64_t offset, file_bytes; /* offset: what follows it is lost */
+    uint64_t offset, file_bytes; /* offset: everything after it is lost */
     uint64_t messages;
 } t3r_recording_cut;
 t3r_recording_cut t3r_recording_cut_of(const t3r_recording *recording);
-/* Returns why the frames of a bag from elsewhere cannot be used as they are, or "": its images are compressed, its
- * depth is from another camera, or its poses are transforms or belong to another frame, unless t3r_recording_set_pose()
- * set some. */
+/* Returns why the frames of a bag from elsewhere need import, or "": its images are compressed, its depth is from
+ * another camera, or its poses are transforms or belong to another frame, unless t3r_recording_set_pose() set some. */
 const char *t3r_recording_import_reason(const t3r_recording *recording);
 /* Returns "" or a remark such as "cut off after 12 of its messages". */
 const char *t3r_recording_note(const t3r_recording *recording);
-/* Returns the bits epoch that the recording was written in; 0 = not written by trim3r. */
+/* Returns the bits epoch of the recording; 0 = not written by trim3r. */
 uint32_t t3r_recording_bits_epoch(const t3r_recording *recording);
 
 /* The use of a stream. */
@@ -144,9 +143,9 @@ typedef struct t3r_recorded_message {
 } t3r_recorded_message;
 uint32_t t3r_recording_message_count(const t3r_recording *recording, size_t stream);
 t3r_recorded_message t3r_recording_message(const t3r_recording *recording, size_t stream, uint32_t index);
-/* Returns the message of that stream that frame `index` is read from, or NULL data. */
+/* Returns the message of that stream from which frame `index` is read, or NULL data. */
 t3r_recorded_message t3r_recording_frame_message(const t3r_recording *recording, uint32_t index, t3r_stream_use use);
-/* How depth, pose and camera_info were paired with the colour images, as counts. */
+/* Counts of the pairing of depth, pose and camera_info with the colour images. */
 typedef struct t3r_pairing_info {
     uint32_t frames, with_depth, with_pose, with_intrinsics;
     int64_t worst_depth_gap_ns, worst_pose_gap_ns;
@@ -157,7 +156,7 @@ const char *t3r_recording_clock(const t3r_recording *recording);
 /* Returns a step of its 16-bit depth in world units, Q40. */
 uint64_t t3r_recording_depth_unit_q40(const t3r_recording *recording);
 
-/* A pose message as the file holds it: camera (or whatever carries the frame) to world. */
+/* A pose message of the file: camera (or whatever carries the frame) to world. */
 typedef struct t3r_recorded_pose {
     int64_t stamp_ns;
     double position[3];
@@ -178,21 +177,21 @@ typedef struct t3r_recorded_frame {
     uint32_t stride_bytes[2];
     const uint16_t *depth; /* host order; NULL = none */
     const uint8_t
-        *depth_z16; /* where depth is NULL: little-endian samples, rows depth_stride_bytes apart; NULL = none */
+        *depth_z16; /* used if depth is NULL: little-endian samples, rows depth_stride_bytes apart; NULL = none */
     uint32_t depth_width, depth_height, depth_stride_bytes;
     bool unposed, uncalibrated; /* the camera's pose, or its intrinsics, are unknown and not written */
     t3r_recorded_camera camera;
 } t3r_recorded_frame;
 
-/* Allocated by the caller, aligned as uint64_t: t3r_recorder_bytes() bytes, or an array of T3R_RECORDER_BYTES, which is
- * enough on every target. */
+/* Allocated by the caller, aligned for uint64_t: t3r_recorder_bytes() bytes, or an array of T3R_RECORDER_BYTES, which
+ * is enough on every target. */
 typedef struct t3r_recorder t3r_recorder;
 #define T3R_RECORDER_BYTES 512
 size_t t3r_recorder_bytes(void);
 
 typedef struct t3r_recording_header {
     const char *camera; /* topic prefix, such as "camera": 1..47 of A-Z a-z 0-9 _ and, inside, / */
-    const char *source; /* free text: what was imported */
+    const char *source; /* free text: the imported source */
     const char *clock;  /* "synthetic", "monotonic", "boottime", ... */
     double depth_unit;  /* world units per step; stored in Q40; more than 2^-41, less than 128 */
     const t3r_triplet *triplets;
@@ -208,9 +207,8 @@ typedef struct t3r_recording_header {
 } t3r_recording_header;
 
 /* Return 0, or -1 once the sink has failed; also -1, with nothing written, for an argument outside its range: a frame's
- * stamp must lie in 0 .. 2^31 s, its sides in 2..T3R_MAX_SIDE and be even where the format requires it, its strides
- * must hold a row, and its camera must have the image's size. header and what it points to are read during the call
- * only.
+ * stamp must lie in 0 .. 2^31 s, its sides in 2..T3R_MAX_SIDE and be even if the format requires it, its strides must
+ * hold a row, and its camera must have the image's size. header and its texts are read during the call only.
  *
  * The image is the last message of its frame, so that a file cut off by power loss holds no image without its pose,
  * intrinsics and depth. */

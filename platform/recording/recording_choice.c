@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Chooses which streams make up the frames, and says why the others do not. */
+/* Chooses the streams that make up the frames, and gives reasons for the others. */
 #include <stdio.h>
 #include <string.h>
 
@@ -109,7 +109,7 @@ static size_t choose_depth(const t3r_recording *recording)
     return choose_companion(recording, T3R_STREAM_DEPTH, recording->colour);
 }
 
-/* Chooses the depth camera's own camera_info: the one below depth's prefix, if that is not colour's. */
+/* Chooses the depth camera's own camera_info: the one below depth's prefix, if this is not colour's. */
 static size_t choose_depth_info(const t3r_recording *recording)
 {
     if (recording->depth == NO_STREAM) {
@@ -177,7 +177,7 @@ static void say_why(t3r_recording *recording, t3r_stream *stream)
         return;
     }
     if (stream->role == T3R_STREAM_OTHER) {
-        const char *why = stream->type == T3R_ROS_TYPE_COUNT ? "its type is none that is read" : "it has no messages";
+        const char *why = stream->type == T3R_ROS_TYPE_COUNT ? "its type is not read" : "it has no messages";
         snprintf(stream->unused, sizeof stream->unused, "%s", why);
         return;
     }
@@ -224,7 +224,7 @@ static void remark_reason(t3r_recording *recording, const char **reason, const c
     t3r_recording_remark(recording, "%s: trim3r import %s", why, what);
 }
 
-/* Remarks what frames lack if they are read without import. */
+/* Adds remarks on what frames lack if they are read without import. */
 static void remark_import(t3r_recording *recording)
 {
     const t3r_stream *colour = &recording->streams[recording->colour];

@@ -25,8 +25,6 @@ static int fail(const reading *r, const t3r_stream *stream, const t3r_indexed_me
                       t3r_mcap_place_text(message->place, place), what);
 }
 
-/* ---- images ---- */
-
 /* Decodes a compressed image with the recording's decoder and checks its size. */
 static int decode(const reading *r, const t3r_stream *stream, const t3r_indexed_message *message, bool depth,
                   t3r_decoded_image *out)
@@ -106,8 +104,6 @@ static int read_depth(const reading *r, size_t link, t3r_frame *frame)
     frame->depth = *z16;
     return 0;
 }
-
-/* ---- the camera ---- */
 
 static int read_intrinsics(const reading *r, size_t link, const t3r_frame *frame, t3r_camera *camera)
 {

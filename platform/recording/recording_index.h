@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the files of the recording reader share: the messages of a recording by stream, and each frame's companions. */
+/* Shared by the files of the recording reader: the messages of a recording by stream, and each frame's companions. */
 #ifndef T3R_PLATFORM_RECORDING_INDEX_H
 #define T3R_PLATFORM_RECORDING_INDEX_H
 
@@ -17,7 +17,7 @@
 typedef struct t3r_indexed_message {
     const uint8_t *data;
     size_t bytes;
-    int64_t stamp_ns; /* header.stamp, or the log time where that is 0 ("unset"); |stamp_ns| <= 2^62 */
+    int64_t stamp_ns; /* header.stamp, or the log time if that is 0 ("unset"); |stamp_ns| <= 2^62 */
     size_t order;     /* in its stream */
     t3r_mcap_place place;
 } t3r_indexed_message;
@@ -75,8 +75,8 @@ struct t3r_recording {
     t3r_image_decoder decoder; /* decode NULL: none */
 
     t3r_frame_links *links; /* one per message of the colour stream */
-    uint8_t **depth_z16; /* one per message of the depth stream: its samples as Z16 after the first request, if the file
-                            holds another format */
+    uint8_t **depth_z16;    /* one per message of the depth stream: its samples as Z16 from the first request on, if the
+                               file holds another format */
     t3r_set_pose *set_poses; /* one per message of the colour stream; NULL until one is set */
     t3r_pairing_info pairing;
 
@@ -89,11 +89,10 @@ struct t3r_recording {
     const char *import_reason, *import_pose_reason; /* static texts; NULL: none */
 };
 
-/* Adds a remark to the note. */
 void t3r_recording_remark(t3r_recording *recording, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* recording_inspect.c: reads a message of a known type: its stamp, and what the first messages say of their stream
- * (role, frames). Returns NULL, or what is wrong. *usable: it may belong to a frame. */
+/* recording_inspect.c: reads a message of a known type: its stamp, and from the first messages the role and frames of
+ * their stream. Returns NULL, or what is wrong. *usable: it may belong to a frame. */
 const char *t3r_recording_inspect(t3r_recording *recording, t3r_stream *stream, const uint8_t *bytes, size_t count,
                                   int64_t *stamp_ns, bool *usable);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a recording reports about itself. */
+/* Properties of a recording. */
 #include <string.h>
 
 #include "recording_index.h"
@@ -111,8 +111,6 @@ t3r_recording_cut t3r_recording_cut_of(const t3r_recording *recording)
     }
     return out;
 }
-
-/* ---- messages ---- */
 
 size_t t3r_recording_stream_for(const t3r_recording *recording, t3r_stream_use use)
 {

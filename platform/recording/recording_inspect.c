@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a message says about itself and its stream. */
+/* Inspects messages for properties of their stream. */
 #include <string.h>
 
 #include "host/reason.h"

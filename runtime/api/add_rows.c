@@ -6,19 +6,19 @@
 #include "image/develop.h"
 #include "state/state.h"
 
-/* All that must not change from strip to strip: the frame but its planes, and the camera. */
+/* Everything that must stay the same from strip to strip: the frame except its planes, and the camera. */
 typedef struct shown_frame {
     t3r_camera camera;
     uint64_t depth_unit_q40;
     uint32_t format, width, height, depth_width, depth_height;
-    uint32_t zero; /* where there would be padding */
+    uint32_t zero; /* in place of padding */
 } shown_frame;
 
 _Static_assert(sizeof(t3r_camera) == 14 * sizeof(int32_t) + 3 * sizeof(int64_t) &&
                    sizeof(shown_frame) == sizeof(t3r_camera) + 4 * sizeof(uint64_t),
                "no padding, whose bytes may be any");
 
-/* It never leaves the runtime, so that bytes are hashed as they lie. */
+/* Hashes the bytes as stored: the digest never leaves the runtime. */
 static uint64_t digest_of(const t3r_frame *frame, const t3r_camera *camera)
 {
     const shown_frame shown = {*camera,       frame->depth_unit_q40, frame->format,       frame->width,
@@ -26,7 +26,7 @@ static uint64_t digest_of(const t3r_frame *frame, const t3r_camera *camera)
     return t3r_hash_bytes(T3R_HASH_START, (const uint8_t *)&shown, sizeof shown);
 }
 
-/* Whether the rows lie within `height`, and with NV12, whose chroma has a row for two, are pairs. */
+/* Whether the rows lie within `height`, and are even with NV12, whose chroma has one row for two. */
 static bool are_rows(uint32_t row, uint32_t rows, uint32_t height, uint32_t step)
 {
     return row <= height && rows <= height - row && (row | rows) % step == 0; /* a step is 1 or 2 */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Context views: frames to planes, and what stereo found of them. */
+/* Context views: converts frames to planes, and reports stereo's results. */
 #include "adding.h"
 #include "core/features.h"
 #include "core/memory.h"
@@ -41,7 +41,7 @@ static bool is_blind(const t3r_frame *frame)
 
 void t3r_begin_view(t3r_runtime *rt)
 {
-    rt->analysed = 0; /* the image stage works where later planes and the scene are */
+    rt->analysed = 0; /* the image stage uses the memory of later planes and the scene */
     rt->has_scene = 0;
     rt->strips = (t3r_strips){0};
 }
@@ -58,7 +58,7 @@ t3r_status t3r_end_view(t3r_runtime *rt, uint32_t slot, const t3r_camera *undist
     }
     rt->camera[slot] = *undistorted;
     t3r_note_placement(&rt->given[slot], undistorted);
-    rt->depth_unit_q40[slot] = stereo ? 1 : depth_unit_q40; /* stereo chooses its own */
+    rt->depth_unit_q40[slot] = stereo ? 1 : depth_unit_q40; /* stereo chooses its own unit */
     rt->stereo_pair[slot] = T3R_PAIR_OK;
     rt->stereo_partner[slot] = (uint8_t)slot;
     if (replaces) {

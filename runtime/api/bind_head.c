@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The weights of a learned head. */
+/* Binds the weights of a learned head. */
 #include "head/head.h"
 #include "head/weights.h"
 #include "layout/arena.h"

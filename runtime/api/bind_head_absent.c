@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Weights where learned heads are left out: none can be bound. */
+/* Stub for builds without learned heads: no weights can be bound. */
 #include "state/state.h"
 
 #if !T3R_FEATURE_LEARNED

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A scene of the views: what is asked for, and whether it can be had, is settled here. */
+/* Builds a scene of the views; decides here what is requested and whether it is possible. */
 #include "api/checks.h"
 #include "core/config.h"
 #include "core/features.h"
@@ -7,10 +7,10 @@
 #include "pipeline.h"
 #include "state/state.h"
 
-/* A request with the configuration's values where it has none of its own. */
+/* A request, completed with the configuration's values. */
 typedef struct build_order {
     t3r_build build;
-    uint32_t max_loss_q8;      /* 0 = exactly the budget */
+    uint32_t max_loss_q8;      /* 0: exactly the budget */
     t3r_importance importance; /* no planes unless the allocation is `given` */
 } build_order;
 
@@ -37,7 +37,7 @@ static build_order order_of(const t3r_runtime *rt, const t3r_request *request)
     return order;
 }
 
-/* Whether there is a readable plane for each view added. */
+/* Whether each added view has a readable plane. */
 static bool is_importance(const t3r_runtime *rt, const t3r_importance *importance)
 {
     if (importance->stride_bytes % 2 != 0 || importance->stride_bytes / 2 < rt->config.width) {
@@ -52,7 +52,7 @@ static bool is_importance(const t3r_runtime *rt, const t3r_importance *importanc
     return true;
 }
 
-/* Whether an importance comes with no other allocation than `given`. */
+/* Whether an importance comes only with the allocation `given`. */
 static bool agrees(const t3r_request *request)
 {
     return request == NULL || request->importance == NULL || request->allocate == T3R_ALLOCATE_CONFIGURED ||
@@ -65,14 +65,15 @@ static bool is_request(const t3r_runtime *rt, const t3r_request *request, const 
            (order->importance.planes == NULL || is_importance(rt, &order->importance));
 }
 
-/* Whether the library was built with what the order asks for. */
+/* Whether the library was built with everything the order needs. */
 static bool is_supported(const build_order *order)
 {
     return t3r_has(t3r_feature_of_head(order->build.head) | T3R_NEED(allocate, order->build.allocate) |
                    (order->max_loss_q8 != 0 ? T3R_HAS_LOSS : 0u));
 }
 
-/* Whether what the order needs besides the views is there. A loss is measured on trial scenes of one analysis. */
+/* Whether views, weights and planes that the order needs are there. A loss is measured on trial scenes of one
+ * analysis. */
 static bool can_be_built(const t3r_runtime *rt, const build_order *order)
 {
     return t3r_has_head(rt, order->build.head) &&
@@ -92,7 +93,7 @@ static t3r_status build(t3r_runtime *rt, build_order *order, t3r_scene *scene)
     t3r_status status = T3R_OK;
     if (order->max_loss_q8 != 0) {
         status = t3r_choose_budget(rt, views, order->max_loss_q8, &order->build, importance_of(order));
-        rt->has_scene = 0; /* the trial's */
+        rt->has_scene = 0; /* the scene is the trial's */
     }
     if (status == T3R_OK) {
         status = t3r_build_scene(rt, views, &order->build, importance_of(order));

@@ -20,35 +20,35 @@ enum {
     C34 = 24248206
 };
 
-/* (a b) / 2^24; |a| and |b| at most 2^27 */
+/* Returns (a b) / 2^24; |a| and |b| at most 2^27. */
 static int32_t multiply_q24(int32_t a, int32_t b)
 {
     return (int32_t)t3r_round_shift64((int64_t)a * b, UNIT_BITS);
 }
 
-/* The vector at unit length, each entry at most 2^24; all 0 for a vector without length. */
+/* Scales the vector to unit length, each entry at most 2^24; all 0 for a vector of length 0. */
 static void normalise_q24(const int32_t direction[3], int32_t unit_q24[3])
 {
     uint64_t square = 0;
     for (int i = 0; i < 3; i++) {
         const int64_t d = direction[i];
-        square += (uint64_t)(d * d); /* at most 2^62 each: three are below 2^64 */
+        square += (uint64_t)(d * d); /* at most 2^62 each: the sum of three is below 2^64 */
     }
     if (square == 0) {
         unit_q24[0] = unit_q24[1] = unit_q24[2] = 0;
         return;
     }
-    /* short vectors are lengthened, so that the root has 30 bits and more */
+    /* short vectors are lengthened, so that the root has at least 30 bits */
     const uint32_t shift = (63 - t3r_msb64(square)) / 2;
     const int64_t length = t3r_isqrt64(square << (2 * shift));
     for (int i = 0; i < 3; i++) {
-        /* below 2^32 before and 2^56 behind the shift */
+        /* below 2^32 before and 2^56 after the shift */
         const int64_t lengthened = (int64_t)((uint64_t)(int64_t)direction[i] << shift);
         unit_q24[i] = (int32_t)t3r_round_div64((int64_t)((uint64_t)lengthened << UNIT_BITS), length);
     }
 }
 
-/* The harmonics of degree 0 to 3, in the order and with the signs of SPEC; all below 2^25. */
+/* Computes the harmonics of degree 0 to 3, in the order and with the signs of SPEC; all below 2^25. */
 static void evaluate_q24(const int32_t unit_q24[3], uint32_t degree, int32_t values_q24[T3R_HARMONICS_MOST])
 {
     const int32_t x = unit_q24[0], y = unit_q24[1], z = unit_q24[2];
@@ -89,7 +89,7 @@ t3r_status t3r_harmonics_colour(const int16_t *coefficients_q12, uint32_t degree
     }
     int32_t unit_q24[3], values_q24[T3R_HARMONICS_MOST];
     normalise_q24(direction, unit_q24);
-    /* a vector without length shows the mean over all directions */
+    /* a vector of length 0 shows the mean over all directions */
     const uint32_t seen = unit_q24[0] == 0 && unit_q24[1] == 0 && unit_q24[2] == 0 ? 0 : degree;
     evaluate_q24(unit_q24, seen, values_q24);
     for (uint32_t channel = 0; channel < 3; channel++) {

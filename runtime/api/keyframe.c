@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Streams: a keyframe into the map, and how much the next one would show of it. */
+/* Streams: takes a keyframe into the map, and computes the overlap of the next picture. */
 #include "api/checks.h"
 #include "core/camera.h"
 #include "image/develop.h"
@@ -7,7 +7,7 @@
 #include "stream/stream.h"
 #include "stream/stream_overlap.h"
 
-static const t3r_stream_report nothing; /* a literal would lie on the stack, the deepest there is */
+static const t3r_stream_report nothing; /* a literal would take stack at its deepest point */
 
 t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                                t3r_stream_report *report)
@@ -22,10 +22,10 @@ t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3
     if (frame->depth == NULL) {
         return T3R_ERR_NO_DEPTH;
     }
-    rt->build = t3r_build_of(&rt->config); /* a restored arena may hold another, whose head is not bound */
+    rt->build = t3r_build_of(&rt->config); /* a restored arena may hold another build, whose head is not bound */
     t3r_stream_report outcome = {0};
     t3r_camera taken;
-    t3r_status status = t3r_frame_check(rt, frame, camera, &taken); /* before anything moves */
+    t3r_status status = t3r_frame_check(rt, frame, camera, &taken); /* before any change */
     if (status == T3R_OK) {
         status = t3r_stream_follow(rt, &taken);
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Streams where they are left out. */
+/* Stubs for builds without streams. */
 #include "state/state.h"
 
 #if !T3R_FEATURE_STREAMS

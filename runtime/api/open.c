@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The arena: laid out, or found again as it was left. */
+/* Lays out the arena, or attaches to a copied one. */
 #include "api/restored.h"
 #include "core/config.h"
 #include "core/hash.h"
@@ -8,7 +8,7 @@
 #include "layout/arena.h"
 #include "state/state.h"
 
-/* Changes with the layout: an arena laid out by another build is refused. */
+/* Returns a hash of the layout: an arena laid out by another build is refused. */
 static uint64_t layout_hash(const t3r_layout *layout)
 {
     uint64_t hash = t3r_hash_u32(T3R_HASH_START, T3R_BUFFER_COUNT);
@@ -109,7 +109,7 @@ t3r_status t3r_attach_as(uint64_t digest, t3r_runtime **rt, void *arena, size_t 
     }
     memset(&state->hooks, 0, sizeof state->hooks);
     state->weights = NULL;
-    state->strips = (t3r_strips){0}; /* nothing says that its sums are sound */
+    state->strips = (t3r_strips){0}; /* its sums may be damaged */
     state->kernels = t3r_kernels_c;
     *rt = state;
     return T3R_OK;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A view of the scene in the arena. */
+/* Renders a view of the scene in the arena. */
 #include "core/features.h"
 #include "core/fixed.h"
 #include "kernels/hash_writer.h"
 #include "raster/raster_list.h"
 #include "state/state.h"
 
-/* Whether rows of `row_bytes` can be written there: aligned for their type, all of them. NULL: not wanted. */
+/* Whether `row_bytes` of all rows can be written there, aligned for their type. NULL: not requested. */
 static bool is_plane(const void *plane, size_t element_bytes, uint32_t row_bytes, uint32_t stride_bytes)
 {
     return plane == NULL ||
@@ -61,7 +61,7 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
     if (!rt->config.keep_analysis && !t3r_is_stream(&rt->config)) {
         rt->analysed = 0; /* the raster's buffers lie where labels and clusters were */
         if (!t3r_is_warm(&rt->config)) {
-            rt->views = 0; /* and the planes, which `warm` keeps apart */
+            rt->views = 0; /* and the planes, which only `warm` keeps elsewhere */
         }
     }
 

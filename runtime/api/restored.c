@@ -10,7 +10,7 @@
 #include "pointmap/align.h"
 #include "superclusters/superclusters.h"
 
-/* Whether what counts as a depth is one: stages divide by it. Stereo makes its planes anew in every analysis. */
+/* Whether depths of valid pixels are above 0: stages divide by them. Stereo makes new planes in every analysis. */
 static bool is_depth(const t3r_runtime *rt, const t3r_view *view)
 {
     if (t3r_is_by_stereo(&rt->config) && !rt->analysed) {
@@ -25,7 +25,7 @@ static bool is_depth(const t3r_runtime *rt, const t3r_view *view)
     return true;
 }
 
-/* Whether every point has a SuperCluster's label; adds up what each label counts. */
+/* Whether every point has a SuperCluster's label; counts the points of each label. */
 static bool count_labels(const t3r_runtime *rt, const t3r_view *view, uint32_t points[T3R_MAX_CLUSTERS])
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
@@ -42,8 +42,8 @@ static bool count_labels(const t3r_runtime *rt, const t3r_view *view, uint32_t p
     return true;
 }
 
-/* Whether labels and SuperClusters say the same: the budget shares out what these count, and the head makes a Gaussian
- * of whatever has a share. */
+/* Whether labels agree with SuperClusters: the budget relies on the counts of these, and the head makes a Gaussian of
+ * every point with a share. */
 static bool is_analysis(const t3r_runtime *rt)
 {
     uint32_t points[T3R_MAX_CLUSTERS] = {0};
@@ -74,7 +74,7 @@ static bool is_scene(const t3r_runtime *rt)
     return true;
 }
 
-/* Whether the slots of a stream's keyframes are those that taking them one after the other fills. */
+/* Whether a stream's keyframes occupy the slots that consecutive keyframes fill. */
 static bool is_stream(const t3r_runtime *rt)
 {
     bool full = rt->views == rt->config.views;
@@ -85,7 +85,7 @@ static bool is_stream(const t3r_runtime *rt)
                           : rt->views == 0 && rt->keyframes == 0 && rt->gaussians == 0);
 }
 
-/* Whether what the next build takes over is in range. Kept textures may hold anything. */
+/* Whether everything that the next build reuses is in range. Kept textures may hold anything. */
 static bool is_reuse(const t3r_runtime *rt)
 {
     const t3r_reuse *reuse = &rt->reuse;
@@ -106,7 +106,7 @@ static bool is_reuse(const t3r_runtime *rt)
     return true;
 }
 
-/* Whether views take slots as adding them one after the other does. */
+/* Whether views occupy the slots that consecutive views fill. */
 static bool is_slot(const t3r_runtime *rt)
 {
     if (t3r_is_stream(&rt->config)) {
@@ -116,7 +116,7 @@ static bool is_slot(const t3r_runtime *rt)
            (t3r_is_warm(&rt->config) && rt->views == rt->config.views && rt->next_slot < rt->views);
 }
 
-/* Whether the pose given is one that t3r_add_view() takes. Nothing but alignment reads it. */
+/* Whether t3r_add_view() would take the given pose. Only alignment reads it. */
 static bool is_given(const t3r_runtime *rt, uint32_t v)
 {
     t3r_camera given = rt->camera[v];
@@ -139,13 +139,13 @@ static bool is_view(const t3r_runtime *rt, uint32_t v)
     return is_depth(rt, &view);
 }
 
-/* Whether the configuration is one that t3r_init() keeps: t3r_config_check() lets through what it would have chosen. */
+/* Whether t3r_init() would keep the configuration unchanged: t3r_config_check() also accepts settings left open. */
 static bool is_settled(const t3r_config *config)
 {
     return config->clusters == t3r_cluster_count(config) && config->cluster_batches == t3r_cluster_batch_count(config);
 }
 
-/* The numbers of the state, before anything that they lead to is read. */
+/* Checks the numbers of the state before anything that depends on them is read. */
 static bool is_state(const t3r_runtime *rt)
 {
     const size_t most_points = T3R_PIXELS_(rt->config.width, rt->config.height) * rt->config.views;

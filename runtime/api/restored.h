@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* An arena that was copied or restored from bytes is not trusted: what the stages rely on is looked at once. */
+/* Checks an arena that was copied or restored from bytes, once, for everything that the stages rely on. */
 #ifndef T3R_RESTORED_H
 #define T3R_RESTORED_H
 
@@ -8,8 +8,8 @@
 #include "state/state.h"
 
 /* Whether everything in the arena that a stage uses as an index, a count, a shift or a divisor is in range, and
- * whatever says the same twice agrees: every call that the interface allows is then safe. The configuration must be in
- * range and the layout bound. Reads each plane of depth, validity and labels once, and the scene. */
+ * redundant values agree: every call that the interface allows is then safe. The configuration must be in range and
+ * the layout bound. Reads each plane of depth, validity and labels once, and the scene. */
 bool t3r_is_restored(const t3r_runtime *rt);
 
 #endif

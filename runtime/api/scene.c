@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The scene in the arena: read, or written by whoever has one from a file. */
+/* Reads the scene in the arena, or writes one from a file. */
 #include "api/checks.h"
 #include "core/features.h"
 #include "layout/arena.h"

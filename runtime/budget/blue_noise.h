@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A blue-noise threshold map: the pixels whose rank is below any density are spread evenly (SPEC, "Budget"). */
+/* A blue-noise threshold map: for any density, the pixels with ranks below it are evenly spread (SPEC, "Budget"). */
 #ifndef T3R_BLUE_NOISE_H
 #define T3R_BLUE_NOISE_H
 

@@ -8,13 +8,13 @@
 #include "importance.h"
 #include "quotas.h"
 
-/* A step that counts the points of a view's rows by group. */
+/* A task that counts the points of a view's rows by group. */
 typedef struct count_job {
     const t3r_kernels *kernels;
     const t3r_view *view;
     const t3r_budget_settings *settings;
     t3r_cluster *clusters;
-    t3r_group_count *counts; /* one a group for each worker */
+    t3r_group_count *counts; /* one per group and worker */
     uint32_t shift;          /* of the key digit that is counted */
 } count_job;
 
@@ -24,8 +24,8 @@ typedef struct count_job {
  * the last SuperCluster; pixels without depth to none. */
 typedef struct grouping {
     uint32_t deferred; /* the group after the last SuperCluster */
-    uint32_t labels;   /* all bits set where labels count, else 0 */
-    uint8_t deferring; /* marks that defer */
+    uint32_t labels;   /* all bits set if labels count, else 0 */
+    uint8_t deferring; /* marks of deferred points */
 } grouping;
 
 static bool by_cluster(const t3r_budget_settings *settings)
@@ -81,8 +81,8 @@ static void count_digits(void *context, uint32_t begin, uint32_t end, uint32_t w
     }
 }
 
-/* Chooses the largest digit below which fewer points lie than the group still wants, and what it wants from that digit
- * on. */
+/* Chooses the largest digit below which fewer points lie than the group still needs, and the number needed from that
+ * digit on. */
 static void choose_digit(const count_job *job, uint32_t g, uint32_t workers)
 {
     t3r_cluster *group = &job->clusters[g];
@@ -255,7 +255,7 @@ int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget
     const grouping groups = grouping_of(settings);
     uint32_t g = group_of(view, pixel, &groups);
     if (g >= settings->clusters) {
-        return 0; /* it is retained only where all others are, so it has nothing else to cover */
+        return 0; /* it is retained only if all others are, so it covers nothing else */
     }
     if (t3r_allocates(settings, T3R_ALLOCATE_GIVEN)) {
         return t3r_log_share_q10(view, pixel, clusters);

@@ -41,11 +41,11 @@ typedef struct t3r_group_count {
 
 typedef struct t3r_budget_work {
     t3r_workers workers;
-    t3r_group_count *counts; /* one a group for each worker */
+    t3r_group_count *counts; /* one per group and worker */
     const t3r_kernels *kernels;
 } t3r_budget_work;
 
-/* Whether the settings use this allocation. It is a constant false for an allocation that is left out of the build. */
+/* Whether the settings use this allocation; a constant false for an allocation left out of the build. */
 static inline bool t3r_allocates(const t3r_budget_settings *settings, t3r_allocation allocation)
 {
     const bool is_by_density = allocation == T3R_ALLOCATE_DENSITY || allocation == T3R_ALLOCATE_PIXEL;
@@ -59,8 +59,8 @@ static inline uint8_t t3r_deferring_marks(const t3r_budget_settings *settings)
     return t3r_allocates(settings, T3R_ALLOCATE_GIVEN) ? 0 : (uint8_t)(T3R_MARK_DOUBTFUL | covered);
 }
 
-/* Whether a point is retained only after all others: doubtful ones, and with pass_over_covered those that another view
- * covers. Heads don't widen the splats of other points over them. Never with given importance. */
+/* Whether a point is retained only after all others: doubtful points, and with pass_over_covered points that another
+ * view covers. Heads don't widen other points' splats over them. Never with a given importance. */
 static inline bool t3r_is_deferred(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings)
 {
     return (view->validity[pixel] & t3r_deferring_marks(settings)) != 0;
@@ -70,7 +70,7 @@ static inline bool t3r_is_deferred(const t3r_view *view, size_t pixel, const t3r
 bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians);
 
 /* Computes quotas, thresholds and masks: exactly min(Z, valid points) bits are set, at most Z even if the cluster
- * counts are wrong. For `given` the key planes hold the keys already (importance.h). */
+ * counts are wrong. For `given` the key planes already hold the keys (importance.h). */
 void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters,
                   const t3r_budget_work *work);
 

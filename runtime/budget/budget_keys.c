@@ -6,7 +6,7 @@
 #include "core/logarithm.h"
 #include "core/memory.h"
 
-/* Rows of a view that get their keys. */
+/* Rows of a view whose keys are computed. */
 typedef struct key_job {
     const t3r_kernels *kernels;
     const t3r_view *view;
@@ -49,7 +49,7 @@ static void find_ranks(uint32_t view, uint32_t y, uint16_t rank[T3R_BLUE_NOISE_S
     }
 }
 
-/* Changes the keys of deferred points. Doubtful ones get the upper half, so that they come last of all. */
+/* Raises the keys of deferred points. Doubtful ones get the upper half, so that they come last. */
 static void defer_row(const key_job *job, size_t at, uint32_t count)
 {
     const uint8_t deferring = t3r_deferring_marks(job->settings);

@@ -5,8 +5,8 @@
 
 #include "budget.h"
 
-/* Computes the keys of all pixels, the smallest of which t3r_allocate() retains: T3R_KEY_ZERO + log2 of the threshold -
- * wanted, except for sure and deferred points. */
+/* Computes the keys of all pixels, of which t3r_allocate() retains the smallest: T3R_KEY_ZERO + log2 of the threshold
+ * - wanted, except for sure and deferred points. */
 void t3r_budget_keys(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings,
                      const t3r_budget_work *work);
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Texture in the forms that the budget uses: blurred, as the mean of a SuperCluster, and as an order of
- * SuperClusters. */
+/* Texture for the budget: blurred, as the mean of a SuperCluster, and as an order of SuperClusters. */
 #ifndef T3R_CLUSTER_TEXTURE_H
 #define T3R_CLUSTER_TEXTURE_H
 
@@ -18,7 +17,7 @@ void t3r_cluster_texture(const t3r_view *views, uint32_t count, t3r_cluster *clu
 /* Permutes the textures of the clusters that have points, each permutation with the same probability. */
 void t3r_shuffle_texture(t3r_cluster *clusters, uint32_t cluster_count, uint32_t seed);
 
-/* Orders clusters from the lowest texture up. t3r_are_ranked(): whether they are in that order, for any entries. */
+/* Orders clusters by rising texture. t3r_are_ranked(): whether they are in that order, for any entries. */
 void t3r_rank_clusters(t3r_cluster *clusters, uint32_t cluster_count);
 bool t3r_are_ranked(const t3r_cluster *clusters, uint32_t cluster_count);
 

@@ -5,8 +5,8 @@
 #include "core/fixed.h"
 
 #define HALF 4 /* half the size of the window in which retained points are counted: 9 x 9 pixels */
-/* Excess of a window's density over its SuperCluster's, in log2: up to half an octave the window counts, from a whole
- * octave on the SuperCluster. Points in a clump have to cover the area around it. */
+/* Excess of a window's density over its SuperCluster's, log2, beyond which only the SuperCluster counts; up to half of
+ * it only the window counts. Points in a clump have to cover the area around it. */
 #define TRUSTED_Q10 1024
 
 void t3r_importance_keys(const t3r_view *views, uint32_t count, const t3r_importance *importance)
@@ -23,7 +23,7 @@ void t3r_importance_keys(const t3r_view *views, uint32_t count, const t3r_import
     }
 }
 
-/* Returns bits first..first + count - 1 of the mask, fewer than 32: they lie in one word or two. */
+/* Returns bits first..first + count - 1 of the mask, count < 32: they lie in one word or two. */
 static uint32_t mask_bits(const uint32_t *mask, size_t first, uint32_t count)
 {
     uint32_t shift = (uint32_t)(first % 32), bits = mask[first / 32] >> shift;
@@ -36,7 +36,7 @@ static uint32_t mask_bits(const uint32_t *mask, size_t first, uint32_t count)
 /* Returns log2(retained / valid), Q10; both below 2^28. */
 static int32_t log_share_q10(uint32_t retained, uint32_t valid)
 {
-    if (retained >= valid) { /* a restored arena's planes may retain more points than there are, or some of none */
+    if (retained >= valid) { /* a restored arena's planes may retain more points than valid, or none */
         return 0;
     }
     if (retained == 0) {

@@ -10,6 +10,6 @@
 #define T3R_ALPHA_C2 15598
 #define T3R_ALPHA_C3 4735
 #define T3R_ALPHA_C4 1892
-#define T3R_ALPHA_RANGE 49152 /* 0.75: exp(-6) x 1 is below 1/255 already */
+#define T3R_ALPHA_RANGE 49152 /* 0.75: exp(-6) x 1 is already below 1/255 */
 
 #endif

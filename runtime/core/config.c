@@ -15,7 +15,7 @@ t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_by
         return T3R_ERR_ARGUMENT;
     }
     if (digest != t3r_header_interface() || config_bytes != sizeof(t3r_config)) {
-        memset(config, 0, config_bytes); /* the caller's, of whatever size */
+        memset(config, 0, config_bytes); /* the caller's, of any size */
         return T3R_ERR_INTERFACE;
     }
     *(t3r_config *)config = (t3r_config){T3R_SETTINGS(DEFAULT)};
@@ -76,7 +76,7 @@ typedef struct range {
 static const range ranges[] = {T3R_SETTINGS(RANGE)};
 _Static_assert(sizeof(t3r_config) == sizeof ranges / sizeof ranges[0] * sizeof(uint32_t), "settings are words");
 
-/* X(text, value, low, high), a row a range that depends on other settings, all of which are in theirs. */
+/* X(text, value, low, high), one row for each range that depends on other settings; these are checked before. */
 #define RELATIONS(X)                                                                                                   \
     X("gaussians must be 1..max_gaussians", c->gaussians, 1, c->max_gaussians)                                         \
     X("width and height must be 32 and more with depth by stereo", T3R_MIN(c->width, c->height),                       \
@@ -98,7 +98,7 @@ _Static_assert(sizeof(t3r_config) == sizeof ranges / sizeof ranges[0] * sizeof(u
 #define RANGE_TEXT(name, kind, low, high, ...) TEXT_##kind(name, low, high),
 #define WITHOUT_TEXT(FEATURE, name) "this library was built without " #name,
 
-/* The texts lie apart, so that a firmware links them only when it asks for them. */
+/* The texts are separate, so that a firmware links them only if it uses them. */
 static const char *const texts[] = {"no configuration",
                                     T3R_SETTINGS(RANGE_TEXT)
                                         RELATIONS(TEXT) "the arena would be larger than this machine can address",
@@ -115,7 +115,7 @@ enum {
 uint64_t t3r_most_arena_bytes(const t3r_config *c)
 {
     const uint64_t pixels = (uint64_t)c->width * c->height, gaussians = c->max_gaussians, workers = c->workers;
-    /* a worker's part of the wavelet's, the head's, K-means', the budget's and refinement's work */
+    /* each worker's part of the work of wavelet, head, K-means, budget and refinement */
     const uint64_t worker = pixels * 4 + (uint64_t)(c->width + 15) * (c->head_column_bytes + 32) +
                             T3R_HEAD_KERNEL_BYTES + T3R_CLUSTER_SUMS_BYTES(T3R_MAX_CLUSTERS) +
                             (T3R_MAX_CLUSTERS + 1) * T3R_GROUP_COUNT_BYTES + T3R_WANTED_BYTES + gaussians * 27 + 512;
@@ -124,7 +124,7 @@ uint64_t t3r_most_arena_bytes(const t3r_config *c)
                            3 * T3R_RATIO_BINS * 4 + T3R_BUFFER_COUNT * T3R_ARENA_ALIGN * (uint64_t)4;
     uint64_t bytes = fixed + pixels * (c->views * (uint64_t)26 + 38) +
                      (uint64_t)c->render_width * c->render_height * 8 + gaussians * 332 + workers * worker;
-    /* planes of a quarter more on a side, the right one wider; 64 rows of sums and costs, and as many path states */
+    /* planes a quarter larger on each side, the right one wider; 64 rows of sums and costs, and as many path states */
     const uint64_t wide = (uint64_t)T3R_MAX_(c->width, c->height) * 5 / 4 + 8 + T3R_STEREO_DISPARITIES;
     bytes +=
         c->depth == T3R_DEPTH_STEREO && c->views > 0 ? wide * wide * 16 + wide * (T3R_STEREO_DISPARITIES + 2) * 300 : 0;
@@ -138,8 +138,7 @@ static uint32_t value_of(const t3r_config *c, size_t setting)
     return value;
 }
 
-/* Returns the place of the text of a feature that the settings need and the library lacks, FAULTS where there is none.
- */
+/* Returns the index of the text of a feature that the settings need and the library lacks, or FAULTS. */
 static size_t first_need(const t3r_config *c)
 {
     uint32_t lacking = 0;
@@ -153,7 +152,7 @@ static size_t first_need(const t3r_config *c)
     return lacking == 0 ? FAULTS : at;
 }
 
-/* Returns the place of the text, FAULTS when nothing is wrong. */
+/* Returns the index of the text, or FAULTS if nothing is wrong. */
 static size_t first_fault(const t3r_config *c)
 {
     if (c == NULL) {

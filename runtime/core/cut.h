@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Cuts memory into consecutive parts. Each part takes T3R_UP_(bytes). The formula of a whole is the sum of these over
- * its parts, so a cut ends exactly where the plan says. */
+/* Cuts memory into consecutive parts. Each part takes T3R_UP_(bytes), and the plan's formula sums the same parts, so a
+ * cut ends exactly where the plan says. */
 #ifndef T3R_CUT_H
 #define T3R_CUT_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Division of many numbers by one through its reciprocal, with the exact quotient. */
+/* Divides many numbers by one divisor through its reciprocal, with the exact quotient. */
 #ifndef T3R_DIVISOR_H
 #define T3R_DIVISOR_H
 
@@ -28,8 +28,8 @@ static inline int32_t t3r_divide_q24(const t3r_divisor *by, int64_t x, uint32_t 
     if (size >= (uint64_t)limit * by->d) {
         return (x < 0 ? -1 : 1) * (int32_t)(limit << 24);
     }
-    /* The quotient is at most 1 too small: by 2^-3 through the reciprocal, by less than 1 through rounding down; and
-     * half a d (of d - 1 where x is negative) is still added for rounding. The rest is below 2 d. */
+    /* The quotient is at most 1 too small: by 2^-3 through the reciprocal, by less than 1 through rounding down; half
+     * of d (of d - 1 where x is negative) is then added for rounding. The remainder is below 2 d. */
     uint32_t q = (uint32_t)((size * by->reciprocal) >> by->shift);
     const uint32_t rest = ((uint32_t)size << 24) + ((by->d - (x < 0)) >> 1) - q * by->d;
     q += rest >= by->d;

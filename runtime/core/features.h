@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Features of this build (trim3r_features.h), and which of them settings need. */
+/* Features of this build (trim3r_features.h), and the features that settings need. */
 #ifndef T3R_CORE_FEATURES_H
 #define T3R_CORE_FEATURES_H
 
@@ -13,15 +13,15 @@ static inline bool t3r_has(uint32_t features)
     return (features & ~T3R_FEATURES_BUILT) == 0;
 }
 
-/* The feature that a setting needs, and from which value. */
+/* The feature that a setting needs, and the value from which it needs it. */
 #define T3R_NEED_(name, kind, low, high, usual, feature, from, ...)                                                    \
     T3R_FEATURE_OF_##name = T3R_HAS_##feature, T3R_FROM_##name = (from),
 enum { T3R_SETTINGS(T3R_NEED_) T3R_NEEDS_COUNT };
 
-/* What a value of a setting needs of the library, T3R_HAS_... */
+/* The feature, T3R_HAS_..., that a value of a setting needs. */
 #define T3R_NEED(name, value) ((value) >= T3R_FROM_##name ? (uint32_t)T3R_FEATURE_OF_##name : 0u)
 
-/* Returns the feature that a head needs, 0 for a head that every library has. */
+/* Returns the feature that a head needs; 0: none. */
 static inline uint32_t t3r_feature_of_head(t3r_head head)
 {
     return T3R_NEED(head, head);

@@ -48,9 +48,9 @@ uint32_t t3r_exp2_q16(int32_t x_q16)
     return (uint32_t)t3r_scale64(mantissa_q20, exponent - 4);
 }
 
-/* Newton's iteration from above, which squares the relative error. The start, 2^(log2(x) / 2) plus more than its error,
- * is at most 2^-11 and 1 too large. A step leaves an error of 2^-23 of the root and less than 3/4: the floor or one
- * more where the root is below 2^21. A second step does so for any root. */
+/* Newton's iteration from above, which squares the relative error. The start, 2^(log2(x) / 2) plus an error bound, is
+ * too large by at most 2^-11 and 1. One step leaves an error of 2^-23 of the root and less than 3/4: the floor, or one
+ * more, if the root is below 2^21. A second step suffices for any root. */
 uint32_t t3r_isqrt64(uint64_t x)
 {
     if (x == 0) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Fixed-point arithmetic: the one place where rounding is defined (SPEC.md, "Rounding").
+/* Fixed-point arithmetic; all rounding is defined here (SPEC.md, "Rounding").
  *
- * Every rounding in the runtime is round-half-up: add half, shift arithmetically. Right shifts of negative
- * numbers are arithmetic with all compilers that build trim3r; the assertion below refuses others. */
+ * Every rounding in the runtime is round-half-up: add half, shift arithmetically. Right shifts of negative numbers are
+ * arithmetic with all compilers that build trim3r; the assertion below refuses others. */
 #ifndef T3R_FIXED_H
 #define T3R_FIXED_H
 
@@ -12,7 +12,7 @@
 
 _Static_assert((-3 >> 1) == -2, "right shift of negative numbers must be arithmetic");
 
-/* For functions too long to be inlined everywhere in builds for size. */
+/* For functions that are too long to be inlined everywhere in builds for size. */
 #ifdef __OPTIMIZE_SIZE__
 #define T3R_SHARED static __attribute__((noinline, unused))
 #else
@@ -47,7 +47,8 @@ static inline int64_t t3r_scale64(int64_t x, int32_t shift)
     return shift <= -63 ? 0 : t3r_round_shift64(x, (uint32_t)-shift);
 }
 
-/* As t3r_scale64() in 32 bits, modulo 2^32. The last bit shifted out is added after the shift, so nothing overflows. */
+/* Returns t3r_scale64() in 32 bits, modulo 2^32. The last bit shifted out is added after the shift, so nothing
+ * overflows. */
 static inline int32_t t3r_scale32(int32_t x, int32_t shift)
 {
     if (shift >= 0) {
@@ -77,7 +78,7 @@ T3R_SHARED int64_t t3r_round_div64(int64_t n, int64_t d)
     return quotient - (doubled % (2 * d) < 0);
 }
 
-/* As t3r_round_div64() in 32 bits; d > 0, |n| and d below 2^29. */
+/* Returns t3r_round_div64() in 32 bits; d > 0, |n| and d below 2^29. */
 static inline int32_t t3r_round_div32(int32_t n, int32_t d)
 {
     T3R_BOUND(d > 0 && d < 1 << 29 && n > -(1 << 29) && n < 1 << 29);
@@ -143,7 +144,7 @@ static inline uint32_t t3r_msb64(uint64_t x)
 uint32_t t3r_isqrt64(uint64_t x);
 /* Returns log2(x) in Q16, error below 2^-14; x > 0. */
 int32_t t3r_log2_q16(uint32_t x);
-/* As t3r_log2_q16() for 64 bits. */
+/* Returns t3r_log2_q16() of a 64-bit number. */
 static inline int32_t t3r_log2_wide_q16(uint64_t x)
 {
     uint32_t msb = t3r_msb64(x), excess = msb > 31 ? msb - 31 : 0;

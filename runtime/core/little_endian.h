@@ -38,7 +38,7 @@ static inline void t3r_store_le64(uint8_t *p, uint64_t x)
     t3r_store_le32(p + 4, (uint32_t)(x >> 32));
 }
 
-/* Two bytes of an aligned table, read as one value so that a loop over them becomes vector loads. */
+/* Two bytes of an aligned table, read as one value, so that compilers vectorize loops over them. */
 typedef int16_t __attribute__((may_alias)) t3r_le16;
 
 static inline int16_t t3r_from_le16(t3r_le16 x)

@@ -7,7 +7,7 @@
 
 #define T3R_FITTED_MOST 4
 
-/* One record a Gaussian of the map, in the map's order. Any values are safe. */
+/* One record for each Gaussian of the map, in the map's order. Any values are safe. */
 typedef struct t3r_map_record {
     uint16_t key;        /* of its pixel (budget/budget.h): smaller keys stay longer; at least T3R_MAP_KEY_LEAST */
     uint16_t faded_q10;  /* added to the key; grows while no keyframe sees the Gaussian */
@@ -15,7 +15,7 @@ typedef struct t3r_map_record {
     int16_t density_q10; /* log2 of the share of its keyframe's pixels retained around it, which its width matches */
     int16_t grain_q8;    /* log2 of a pixel's width z / f on the surface, in its keyframe */
     uint8_t idle;        /* keyframes since the last one that saw it about as finely as its own, at most 255 */
-    uint8_t fitted;      /* keyframes after its own that saw it so, at most T3R_FITTED_MOST */
+    uint8_t fitted;      /* keyframes after its own that saw it about as finely, at most T3R_FITTED_MOST */
 } t3r_map_record;
 
 #endif

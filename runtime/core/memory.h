@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The four functions that the runtime calls and does not define: a C library's, or a firmware's own. They are declared
- * here, so no header of a C library is needed. */
+/* The four functions that the runtime calls and does not define: from a C library, or the firmware's own. Declared
+ * here, so that no C library's header is needed. */
 #ifndef T3R_CORE_MEMORY_H
 #define T3R_CORE_MEMORY_H
 
 #include <stddef.h>
 
 #ifdef __GNUC__
-#pragma GCC visibility push(default) /* they are external, even where everything else is hidden */
+#pragma GCC visibility push(default) /* external even if everything else is hidden */
 #endif
 void *memcpy(void *restrict to, const void *restrict from, size_t count);
 void *memmove(void *to, const void *from, size_t count);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Names and sentences, as the command line and tables print them. */
+/* Names and sentences for the command line and tables. */
 #include "features.h"
 #include "trim3r.h"
 

@@ -30,7 +30,7 @@ t3r_depth_scale t3r_depth_scale_of(uint64_t depth_unit_q40, int32_t exponent)
 {
     int32_t msb = (int32_t)t3r_msb64(depth_unit_q40);
     uint32_t mantissa = (uint32_t)(msb >= 31 ? depth_unit_q40 >> (msb - 31) : depth_unit_q40 << (31 - msb));
-    /* unit = mantissa 2^(msb - 31) in Q40; Q20 scene units: 2^(-20 - exponent) of that. With a left shift every product
-     * but 0 would be clamped anyway, and from a right shift of 62 on all round to 0. */
+    /* unit = mantissa 2^(msb - 31) in Q40; in Q20 scene units 2^(-20 - exponent) of that. A left shift would clamp
+     * every product but 0 anyway, and a right shift of 62 or more rounds all to 0. */
     return (t3r_depth_scale){mantissa, (uint32_t)t3r_clamp32(20 + exponent - (msb - 31), 0, 62)};
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The scene's fixed-point frame: the first context camera's centre is the origin, and a power of two brings the median
- * depth into [1, 2) scene units. So a scene 0.07 units wide and one at map coordinates have the same relative
+ * depth into [1, 2) scene units. So a scene 0.07 units wide and one in map coordinates have the same relative
  * precision. */
 #ifndef T3R_SCENE_FRAME_H
 #define T3R_SCENE_FRAME_H
@@ -24,7 +24,7 @@ typedef struct t3r_pose {
  * the origin along an axis. */
 t3r_status t3r_pose_in_scene(const t3r_camera *camera, const t3r_scene_frame *frame, t3r_pose *pose);
 
-/* A depth step of a view in scene units: depth_q20 = (raw x mantissa) / 2^shift, rounded. */
+/* Converts a view's depth steps to scene units: depth_q20 = (raw x mantissa) / 2^shift, rounded. */
 typedef struct t3r_depth_scale {
     uint32_t mantissa; /* 2^31..2^32 - 1 */
     uint32_t shift;    /* 0..62 */

@@ -3,7 +3,7 @@
 
 #include "fixed.h"
 
-#define BANDS_A_WORKER 2 /* more than one, so that a worker that finishes early takes another */
+#define BANDS_A_WORKER 2 /* more than one, so that a worker that finishes early gets another */
 
 void t3r_run_tasks(const t3r_workers *workers, uint32_t count, t3r_task *task, void *context)
 {

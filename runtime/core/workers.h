@@ -14,7 +14,7 @@
 typedef void t3r_task(void *context, uint32_t index, uint32_t worker);
 
 typedef struct t3r_workers {
-    const t3r_hooks *hooks; /* NULL, or without parallel_for: worker 0 runs one task after the other */
+    const t3r_hooks *hooks; /* NULL or without parallel_for: worker 0 runs the tasks one after the other */
     uint32_t count;         /* 1..T3R_MAX_WORKERS */
 } t3r_workers;
 
@@ -27,8 +27,8 @@ static inline bool t3r_is_parallel(const t3r_workers *workers)
 /* Runs task(context, 0..count-1, worker) and returns when all are done. */
 void t3r_run_tasks(const t3r_workers *workers, uint32_t count, t3r_task *task, void *context);
 
-/* A task's part of `total` items: begin..end - 1. Task `index` of `tasks` gets the next part, in order and without
- * gaps. Parts differ by at most one item. total < 2^26, tasks <= 2 T3R_MAX_WORKERS. */
+/* A task's part of `total` items, begin..end - 1: tasks 0..tasks - 1 get consecutive parts without gaps, which differ
+ * by at most one item. total < 2^26, tasks <= 2 T3R_MAX_WORKERS. */
 typedef struct t3r_share {
     uint32_t begin, end;
 } t3r_share;

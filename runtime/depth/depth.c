@@ -21,8 +21,8 @@ typedef struct bracket {
     uint32_t gap;           /* before + after */
 } bracket;
 
-/* Finds the bracket of a pixel. at: its index; step: to its next neighbour on the axis; back, ahead: number of pixels
- * on either side. */
+/* Finds the bracket of a pixel. at: its index; step: distance of the next pixel on the axis; back, ahead: number of
+ * pixels on either side. */
 static bracket find_bracket(const uint8_t *validity, size_t at, size_t step, uint32_t back, uint32_t ahead,
                             uint32_t radius)
 {

@@ -19,8 +19,8 @@ static inline bool t3r_same_surface(uint16_t a, uint16_t b)
 void t3r_depth_validity(t3r_view *view);
 
 /* Fills pixels without depth that have measured ones within `radius` (0..8; 0 fills nothing) on both sides, in their
- * row or their column. Filled pixels become T3R_FILLED and are never a source for others. Returns their number. Two
- * sides that agree are interpolated; across an edge the side of the more similar colour is taken. Reads view->colour,
+ * row or their column. Filled pixels become T3R_FILLED and are never a source for others. Returns their number.
+ * Interpolates if both sides agree; across an edge takes the side of the more similar colour. Reads view->colour,
  * depth and validity. At most 4 x radius steps a pixel. */
 uint32_t t3r_depth_fill(t3r_view *view, uint32_t radius);
 

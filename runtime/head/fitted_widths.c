@@ -4,18 +4,18 @@
 #include "core/fixed.h"
 #include "pointmap/reproject.h"
 
-#define LOG_GAIN_Q16 13214             /* log2 of 1.15, where no other view counts */
+#define LOG_GAIN_Q16 13214             /* log2 of 1.15, the gain where no other view counts */
 #define POWER_Q10 614                  /* 0.6 */
-#define LOG_RATIO_MOST_Q16 (8 * 65536) /* of another view's density: far beyond what changes a width visibly */
+#define LOG_RATIO_MOST_Q16 (8 * 65536) /* bound of another view's density, far beyond any visible effect */
 
-/* log2 of the area that a pixel covers, (z / f)^2, Q16 and up to a constant. z >= 1; twice f in Q8 is below 2^23. */
+/* Returns log2 of the area of a pixel, (z / f)^2, Q16, up to a constant. z >= 1; twice f in Q8 is below 2^23. */
 static int32_t log_area_q16(const t3r_view *view, int32_t z_q20)
 {
     const int64_t twice_f_q8 = ((int64_t)view->fx_q16 + view->fy_q16) >> 8;
     return 2 * (t3r_log2_q16((uint32_t)z_q20) - t3r_log2_q16((uint32_t)twice_f_q8));
 }
 
-/* Whether a view has the surface of a point at a pixel, for others to see. */
+/* Whether a view shows the surface of a point at a pixel. */
 static bool covers(const t3r_head_input *input, const t3r_view *other, const t3r_projected_pixel *projected)
 {
     const size_t pixel = projected->pixel;
@@ -27,8 +27,8 @@ static bool covers(const t3r_head_input *input, const t3r_view *other, const t3r
     return t3r_is_one_surface(projected->z_q20, there_q20, 8);
 }
 
-/* The density of the retained points of all views about a pixel, over that of its own: Q16, at most 2^16 + 15 x 2^24.
- */
+/* Returns the density of the retained points of all views about a pixel over that of its own view: Q16, at most 2^16 +
+ * 15 x 2^24. */
 static uint32_t density_ratio_q16(const t3r_head_input *input, uint32_t u, uint32_t v)
 {
     const t3r_view *own = input->map.view;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Fitted widths where views are not compared: no configuration is allowed to ask for them (core/config.c). */
+/* Stub for builds that do not compare views: core/config.c refuses configurations that ask for fitted widths. */
 #include "fitted_widths.h"
 
 #if !T3R_FEATURE_COMPARISON

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A head without weights: a disc on the surface, sigma 0.6 of the spacing of its kept neighbours, coloured by the mean
- * of the pixels it stands for. */
+ * of the pixels it represents. */
 #include "core/fixed.h"
 #include "depth/depth.h"
 #include "fitted_widths.h"
@@ -9,7 +9,7 @@
 #define SIGMA_SQUARE_Q12 1475 /* 0.6^2, tuned on the training scenes */
 #define WINDOW_MOST 7
 
-/* Mean colour over the window of +-half pixels, of those on the same surface; Q7. At most 225 x 255 a sum. */
+/* Computes the mean colour of the pixels on the same surface within +-half pixels; Q7. At most 225 x 255 a sum. */
 static void local_mean(const t3r_view *view, uint32_t u, uint32_t v, uint32_t half, uint16_t colour_q7[3])
 {
     uint32_t x0 = u > half ? u - half : 0, x1 = T3R_MIN(u + half, view->width - 1);

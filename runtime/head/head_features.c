@@ -15,7 +15,7 @@ static int8_t held(int32_t x)
     return (int8_t)t3r_clamp32(x, -127, 127);
 }
 
-/* (after - before) / (2 here) x SLOPE_GAIN. A border pixel takes itself for the neighbour it lacks. */
+/* Returns (after - before) / (2 here) x SLOPE_GAIN. At the border the pixel replaces the missing neighbour. */
 static int8_t slope(uint16_t before, uint16_t here, uint16_t after)
 {
     if (before == 0 || here == 0 || after == 0) {
@@ -40,7 +40,7 @@ void t3r_head_features_at(const t3r_head_input *input, uint32_t x, uint32_t y, i
     features[5] = LOG_DENSITY_NONE;
     features[6] = features[7] = features[8] = 0;
     if (!has_depth || (!retained && t3r_is_deferred(view, i, input->settings))) {
-        return; /* a deferred point is not to be covered */
+        return; /* a deferred point need not be covered */
     }
     features[4] = t3r_is_measured(view->validity[i]) ? MEASURED : FILLED;
     const uint16_t *depth = view->depth + i;

@@ -20,7 +20,7 @@
 #include "head.h"
 #include "weights.h"
 
-/* The features of one pixel, and of one row of the view: width x T3R_FEATURES. */
+/* Compute the features of one pixel, and of one row of the view: width x T3R_FEATURES. */
 void t3r_head_features_at(const t3r_head_input *input, uint32_t x, uint32_t y, int8_t features[T3R_FEATURES]);
 void t3r_head_features(const t3r_head_input *input, uint32_t y, int8_t *row);
 

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A network's outputs at the retained pixels to footprints (SPEC.md, "Learned head"). */
+/* Converts a network's outputs at the retained pixels to footprints (SPEC.md, "Learned head"). */
 #include "core/cut.h"
 #include "core/fixed.h"
 #include "head.h"
 #include "head_features.h"
 #include "network.h"
 
-#define L_LEAST_Q12 580        /* of the Cholesky factor's diagonal: variance 0.02 px^2 */
-#define L_MOST_Q12 (64 << 12)  /* of all its entries */
+#define L_LEAST_Q12 580        /* least diagonal entry of the Cholesky factor: variance 0.02 px^2 */
+#define L_MOST_Q12 (64 << 12)  /* bound of all its entries */
 #define OPACITY_MOST_Q15 32440 /* 0.99 */
 #define COLOUR_MOST_Q7 (255 << 7)
 
-/* The work: the outputs of a row, then the network's. */
+/* Returns the bytes of a row's outputs, the first part of the work; the network's follows. */
 static size_t outputs_bytes(uint32_t width)
 {
     return (size_t)width * T3R_HEAD_OUTPUTS * sizeof(int16_t);
@@ -33,7 +33,7 @@ size_t t3r_head_learned_packed_bytes(const void *weights, uint32_t width)
     return with_outputs(t3r_network_packed_work_bytes(weights, width), width);
 }
 
-/* x in units of 2^-shift spacings, to pixels: |x| < 2^20 and spacing < 2^17 */
+/* Converts x in units of 2^-shift spacings to pixels: |x| < 2^20 and spacing < 2^17. */
 static int32_t in_pixels_q12(int32_t x, uint32_t spacing_q12, uint32_t shift)
 {
     return (int32_t)t3r_round_shift64((int64_t)x * spacing_q12, shift);
@@ -66,8 +66,8 @@ static t3r_footprint footprint_of(const int16_t out[T3R_HEAD_OUTPUTS], uint32_t 
     return f;
 }
 
-/* The outputs of row y's retained pixels, those of even columns in blocks, then those of odd ones: a block shares its
- * phase of a point layer's weights. */
+/* Predicts the outputs of row y's retained pixels: first even columns in blocks, then odd ones, because a block shares
+ * one phase of a point layer's weights. */
 static void predict_row(const t3r_head_input *input, const t3r_network *network, uint32_t y,
                         int16_t (*outputs)[T3R_HEAD_OUTPUTS])
 {

@@ -3,8 +3,8 @@
 #include "head.h"
 #include "raster/raster_splat.h"
 
-#define DILATION_Q12 ((T3R_DILATION_Q24 + 2048) >> 12) /* what the rasterizer will add */
-/* Thickness along the normal, of the narrower in-plane deviation, as a power of two: 1/8 */
+#define DILATION_Q12 ((T3R_DILATION_Q24 + 2048) >> 12) /* variance that the rasterizer adds */
+/* Thickness along the normal relative to the narrower in-plane deviation, as a power of two: 1/8 */
 #define THICKNESS_SHIFT 3
 
 uint32_t t3r_spacing_q12(const t3r_head_input *input, size_t pixel)
@@ -16,7 +16,7 @@ uint32_t t3r_spacing_q12(const t3r_head_input *input, size_t pixel)
     return t3r_exp2_q16(-density_q10 * 32) >> 4; /* 2^(-density / 2), Q12 */
 }
 
-/* The lower Cholesky factor of S - 0.3 I, Q12 pixels, both pivots at least `least`. */
+/* Computes the lower Cholesky factor of S - 0.3 I, Q12 pixels, both pivots at least `least`. */
 static void narrowed_factor(const t3r_footprint *f, int64_t least_q12, int64_t lower_q12[3])
 {
     int64_t xx = T3R_MAX(f->xx_q12 - DILATION_Q12, least_q12);
@@ -58,7 +58,7 @@ void t3r_lift(const t3r_head_input *input, uint32_t u, uint32_t v, const t3r_foo
         entry[3 * i] = t3r_round_shift64(tu[i] * lower[0] + tv[i] * lower[1], 12);
         entry[3 * i + 1] = t3r_round_shift64(tv[i] * lower[2], 12);
     }
-    /* The normal, from mantissas of 15 bits: cross products below 2^31. */
+    /* normal from mantissas of 15 bits: cross products below 2^31 */
     uint64_t most = 1;
     for (int i = 0; i < 3; i++) {
         most = T3R_MAX(most, (uint64_t)T3R_MAX(t3r_abs64(entry[3 * i]), t3r_abs64(entry[3 * i + 1])));

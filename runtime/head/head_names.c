@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Heads as the command line and the tables spell them. */
+/* Names of heads for the command line and the tables. */
 #include "head.h"
 
 #define NAME_OF(HEAD, name, function) [HEAD] = (name),

@@ -11,7 +11,7 @@
 static t3r_head_rows *const heads[] = {T3R_HEADS(FUNCTION_OF)};
 _Static_assert(sizeof heads / sizeof heads[0] == T3R_HEAD_COUNT, "a row in T3R_HEADS for each head");
 
-/* A band is a view's rows `begin`..`end` - 1, whose Gaussians begin at `place`. The stack holds many. */
+/* A band is a view's rows `begin`..`end` - 1, whose Gaussians begin at `place`. Small, because the stack holds many. */
 typedef struct band {
     uint16_t view, begin, end;
     uint32_t place;
@@ -25,13 +25,13 @@ typedef struct band_job {
     t3r_gaussian *out;
     uint32_t first, end; /* views of the call, for the progress hook */
     t3r_covering_views covering;
-    bool asks;      /* this thread may ask the hook from within a band: there is no other */
-    bool stopped;   /* the hook wants no more */
-    uint32_t count; /* of the bands of one round: at most as many views as workers, cut between workers */
+    bool asks;      /* this thread may call the hook within a band, as it is the only one */
+    bool stopped;   /* the hook has cancelled */
+    uint32_t count; /* bands in one round: at most one view per worker, cut between the workers */
     band bands[2 * T3R_MAX_WORKERS];
 } band_job;
 
-/* A worker's share of what lies between here and the scene: at least what the plan gives it. */
+/* Returns a worker's share of the memory up to the scene: at least the planned size. */
 static size_t work_bytes(const t3r_runtime *rt)
 {
     const size_t room = rt->offset[T3R_BUFFER_SCENE] - rt->offset[T3R_BUFFER_HEAD_WORK];
@@ -61,7 +61,7 @@ t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, u
     };
 }
 
-/* Colours brought to the mean exposure. */
+/* Scales colours to the mean exposure. */
 static void level(t3r_gaussian *gaussians, uint32_t count, const uint16_t gain_q14[3])
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -77,8 +77,8 @@ static bool goes_on(void *context)
     return t3r_progress(job->rt, T3R_STAGE_HEAD, job->first, job->end);
 }
 
-/* Refinement finds widths by itself, better than from fitted ones (docs/study/tuning.md). A stream's keyframes see what
- * is not in the map any more, and a head that nothing adapts takes no spacing. */
+/* Whether widths are fitted. Refinement finds better widths itself (docs/study/tuning.md). In a stream, retained
+ * points of earlier keyframes may have left the map, and a head without adaptation has no spacing. */
 static bool fits_widths(const t3r_runtime *rt)
 {
     return T3R_FEATURE_COMPARISON && rt->config.fit_widths != 0 && rt->build.refine == 0 &&
@@ -120,14 +120,14 @@ static uint32_t count_retained(const t3r_view *view, uint32_t row)
     return count;
 }
 
-/* What a row takes beside its retained points, in their time: a network looks at every pixel. */
+/* Returns the fixed cost of a row in units of a retained point: a network computes every pixel. */
 static uint32_t row_cost(const t3r_runtime *rt)
 {
     return rt->build.head == T3R_HEAD_LEARNED ? rt->config.width / 6 : 1;
 }
 
-/* Cuts the views first..end - 1 into bands: each view for itself, and where one more of `parts` equal parts of the work
- * is full. `made`: Gaussians before them; returns how many there are with theirs. */
+/* Cuts the views first..end - 1 into bands: at each view's end, and whenever another of `parts` equal parts of the
+ * work is complete. `made`: number of earlier Gaussians; returns it with those of the bands. */
 static uint32_t cut_bands(band_job *job, uint32_t first, uint32_t end, uint32_t parts, uint32_t made)
 {
     const uint32_t cost = row_cost(job->rt);
@@ -158,7 +158,7 @@ static uint32_t cut_bands(band_job *job, uint32_t first, uint32_t end, uint32_t 
     return made;
 }
 
-/* The views first..end - 1; progress is reported when `asks`, by one worker before each row. */
+/* Makes the Gaussians of the views first..end - 1; if `asks`, one worker reports progress before each row. */
 static t3r_status make_views(band_job *job, uint32_t first, uint32_t end, bool asks, uint32_t *made)
 {
     const t3r_runtime *rt = job->rt;

@@ -32,7 +32,7 @@ int32_t t3r_network_first(const t3r_network *net)
     int32_t need[T3R_MAX_LAYERS + 1];
     int32_t first = (int32_t)(net->begin / T3R_NETWORK_PERIOD * T3R_NETWORK_PERIOD);
     bool ahead = true;
-    while (ahead) { /* each layer looks at most 6 x 16 rows ahead of its reader and behind: at most 24 x 12 turns */
+    while (ahead) { /* each layer reads at most 6 x 16 rows before or after its reader's: at most 24 x 12 turns */
         t3r_rows_needed(net, first - 1, need);
         ahead = false;
         for (uint32_t n = 0; n <= net->planes; n++) {
@@ -56,7 +56,7 @@ int8_t *t3r_network_feature_row(t3r_network *net, uint32_t *y)
     return (int8_t *)t3r_node_row(&net->nodes[0], *y);
 }
 
-/* The next row of plane layer n, counted from 1. */
+/* Makes the next row of plane layer n, counted from 1. */
 static void make_row(t3r_network *net, uint32_t n)
 {
     t3r_node *node = &net->nodes[n];
@@ -89,7 +89,7 @@ typedef union point_outputs {
     int16_t wide[T3R_BLOCK_PIXELS * T3R_MAX_CHANNELS];
 } point_outputs;
 
-/* All point layers at `count` pixels, as many as a block has; the first of them is `x`, `features`, `out`. */
+/* Runs all point layers at `count` pixels, at most a block; `x`, `features` and `out` begin with the first of them. */
 static void run_points(const t3r_network *net, uint32_t y, uint32_t count, const uint32_t *x,
                        const int8_t (*features)[T3R_FEATURES], int16_t (*out)[T3R_HEAD_OUTPUTS])
 {

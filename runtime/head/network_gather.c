@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Activations from the rings to where the kernels read them: columns, or strips of the rows under a kernel. */
+/* Gathers activations from the rings for the kernels: in columns, or in strips of the rows under a kernel. */
 #include "network_parts.h"
 
 #include "core/fixed.h"
 
-/* --- what a kernel wants of activations --------------------------------------------------------------------------- */
+/* --- activations in the kernel's format --------------------------------------------------------------------------- */
 
-/* `count` activations from place `first` of a node's row. */
+/* Loads `count` activations from place `first` of a node's row. */
 static void load_wide(const t3r_node *node, const uint8_t *row, size_t first, uint32_t count, int16_t *to)
 {
     if (node->bytes == 1) {
@@ -48,7 +48,7 @@ t3r_window t3r_window_at(const t3r_network *net, const t3r_layer *layer, uint32_
     return w;
 }
 
-/* Whether the activations under a row of the kernel lie one behind the other. */
+/* Whether the activations under a row of the kernel are contiguous. */
 static bool is_plain(const t3r_window *w)
 {
     return t3r_sources_of(w->layer) == 1 && w->source[0].coarser == 0;
@@ -56,7 +56,7 @@ static bool is_plain(const t3r_window *w)
 
 /* --- columns ------------------------------------------------------------------------------------------------------ */
 
-/* One source's channels under kernel column x of kernel row ky. */
+/* Gathers one source's channels under kernel column x of kernel row ky. */
 static void gather_tap(const t3r_window *w, uint32_t source, int64_t x, int32_t ky, int16_t *to)
 {
     const t3r_node *node = w->source[source].node;
@@ -68,13 +68,13 @@ static void gather_tap(const t3r_window *w, uint32_t source, int64_t x, int32_t 
     }
 }
 
-/* Zeros behind `count` taps. */
+/* Writes zeros after `count` taps. */
 static void pad_column(int16_t *column, uint32_t count)
 {
     fill_wide(column + count, (T3R_COLUMN_TAPS - count % T3R_COLUMN_TAPS) % T3R_COLUMN_TAPS, 0);
 }
 
-/* The activations under the kernel of output column x: [kernel][kernel][inputs]. */
+/* Gathers the activations under the kernel of output column x: [kernel][kernel][inputs]. */
 static void gather_column(const t3r_window *w, uint32_t x, int16_t *column)
 {
     const t3r_layer *layer = w->layer;
@@ -98,7 +98,7 @@ static void gather_column(const t3r_window *w, uint32_t x, int16_t *column)
     pad_column(column, at);
 }
 
-/* `pixels` columns of so many taps. */
+/* Returns `pixels` columns of `taps` activations. */
 static t3r_block columns_of(const t3r_network *net, uint32_t taps, uint32_t pixels)
 {
     return (t3r_block){.x = net->columns, .rows = 1, .run = taps, .step = net->column_pitch, .pixels = pixels};
@@ -120,7 +120,7 @@ t3r_block t3r_gather_columns(const t3r_network *net, const t3r_window *w, uint32
 
 /* --- strips ------------------------------------------------------------------------------------------------------- */
 
-/* Activations of 8 bits to place `at` of a strip: bytes + 128, or int16. */
+/* Stores activations of 8 bits at place `at` of a strip: bytes + 128, or int16. */
 static void load_strip(const t3r_network *net, const uint8_t *from, uint32_t count, size_t at)
 {
     if (net->kernels->strip_bytes == 1) {
@@ -148,8 +148,8 @@ static void fill_strip(const t3r_network *net, uint32_t count, int16_t value, si
     }
 }
 
-/* One source's channels at the grid's columns left..end - 1 under kernel row ky, to every `inputs`-th place from `at`
- * on. */
+/* Gathers one source's channels at the grid's columns left..end - 1 under kernel row ky, to every `inputs`-th place
+ * from `at` on. */
 static void gather_source(const t3r_network *net, const t3r_window *w, uint32_t source, int32_t ky, int64_t left,
                           int64_t end, size_t at)
 {
@@ -194,7 +194,7 @@ t3r_block t3r_gather_strips(const t3r_network *net, const t3r_window *w, uint32_
 
 /* --- points ------------------------------------------------------------------------------------------------------- */
 
-/* Where a point layer's source has its channels at pixel i. */
+/* The place of a point layer's source channels at pixel i. */
 typedef struct point_source {
     const t3r_node *node;
     const uint8_t *at;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Layers as the kernels take them: as the file has them, or packed. */
+/* Prepares layers for the kernels: as in the file, or packed. */
 #include "network_parts.h"
 
 #include "core/fixed.h"
 
-#define STRIP_BYTES_MOST 2u /* of an activation in a strip, by any kernel */
+#define STRIP_BYTES_MOST 2u /* most bytes of an activation in a strip, for any kernel */
 
 t3r_convolution t3r_convolution_of(const t3r_network *net, uint32_t n, uint32_t phase)
 {
@@ -31,7 +31,7 @@ static size_t packed_bytes(const t3r_layer *layer)
     return t3r_packed_bytes(layer->kernel, layer->kernel * layer->inputs, layer->outputs);
 }
 
-/* Activations of the largest strips that are gathered. */
+/* Returns the number of activations of the largest gathered strip. */
 static size_t strip_places(const t3r_network *net)
 {
     size_t most = 0;
@@ -43,7 +43,7 @@ static size_t strip_places(const t3r_network *net)
     return most + T3R_STRIP_BEHIND;
 }
 
-/* Layers of 8 bits, none of them depthwise. */
+/* Whether all layers have 8 bits and none is depthwise. */
 static bool is_packable(const t3r_network *net)
 {
     bool fits = net->header.weight_bits == 8 && net->header.activation_bits == 8;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which rows of which layer are made when, and how many of them are kept. */
+/* Schedules the rows of each layer, and computes how many of them are kept. */
 #include "network_parts.h"
 
 #include "core/fixed.h"
@@ -19,7 +19,7 @@ void t3r_rows_needed(const t3r_network *net, int32_t y, int32_t need[T3R_MAX_LAY
             }
         }
     }
-    for (uint32_t n = net->planes; n > 0; n--) { /* every plane layer has readers, all of them behind it */
+    for (uint32_t n = net->planes; n > 0; n--) { /* every plane layer has readers, all of them later layers */
         const t3r_layer *layer = &net->layers[n - 1];
         int32_t bottom = layer->stride * (need[n] - 1) - t3r_padding(layer) + layer->kernel - 1;
         for (uint32_t i = 0; i < t3r_sources_of(layer); i++) {
@@ -35,8 +35,8 @@ uint32_t t3r_rows_due(const t3r_node *node, int32_t need)
     return need <= 0 ? 0 : T3R_MIN((uint32_t)need, node->height);
 }
 
-/* The rows a ring must keep: in each step, from the first row that a reader's next row reads to the last that is made.
- * All nodes move by 16 >> level rows in 16 image rows, so one period shows every case. */
+/* Sets the rows that a ring must keep: in each step, from the first row that a reader's next row reads to the last one
+ * made. All nodes move by 16 >> level rows in 16 image rows, so one period shows every case. */
 static void choose_rings(t3r_network *net)
 {
     int32_t before[T3R_MAX_LAYERS + 1], now[T3R_MAX_LAYERS + 1];
@@ -65,8 +65,8 @@ static void choose_rings(t3r_network *net)
     }
 }
 
-/* 64 bits suffice:
- * 25 nodes of 2^12 x 2^8 bytes a row and, as a layer looks at most 6 x 16 rows ahead, below 2^12 rows. */
+/* 64 bits suffice: 25 nodes of 2^12 x 2^8 bytes a row, and fewer than 2^12 rows, since a layer looks at most 6 x 16
+ * rows ahead. */
 uint64_t t3r_network_lay_out(t3r_network *net, const void *weights, uint32_t width, uint32_t height, uint8_t *work)
 {
     net->file = weights;
@@ -110,14 +110,14 @@ uint64_t t3r_network_lay_out(t3r_network *net, const void *weights, uint32_t wid
     return at;
 }
 
-/* Each node starts at the first row that the band's points read, by way of all layers between, or a row above it. No
- * row of the band reads what lies further up. */
+/* Each node starts at the first row that the band's points read through all layers between, or one row above it. No
+ * row of the band reads anything further up. */
 void t3r_skip_rows(t3r_network *net)
 {
     for (uint32_t n = 0; n <= net->planes; n++) {
         net->nodes[n].made = net->begin >> net->nodes[n].level;
     }
-    for (uint32_t n = net->planes; n > 0; n--) { /* every plane layer's readers are behind it */
+    for (uint32_t n = net->planes; n > 0; n--) { /* every plane layer's readers are later layers */
         const t3r_layer *layer = &net->layers[n - 1];
         int32_t top = T3R_MAX((int32_t)(layer->stride * net->nodes[n].made) - t3r_padding(layer), 0);
         for (uint32_t i = 0; i < t3r_sources_of(layer); i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The weight file checked: afterwards every offset, index, shift and sum of it is what the network counts on. */
+/* Checks a weight file: afterwards every offset, index, shift and sum is as the network requires. */
 #include "weights.h"
 
 #include <stdbool.h>
@@ -11,7 +11,7 @@
 #define SHIFT_LEAST (-30)
 #define SHIFT_MOST 15
 
-/* CRC-32 of IEEE 802.3, four bits a step. */
+/* Computes the CRC-32 of IEEE 802.3, four bits a step. */
 static uint32_t crc_of(const uint8_t *bytes, size_t count)
 {
     static const uint32_t step[16] = {
@@ -117,7 +117,7 @@ static t3r_weights_fault header_fault(const uint8_t *p, size_t bytes)
     return T3R_FAULT_NONE;
 }
 
-/* Shape: what of a layer is said without looking at another. */
+/* Checks the properties of a layer that do not depend on others. */
 static t3r_weights_fault shape_fault(const uint8_t *row, const t3r_layer *layer)
 {
     if (row[0] >= T3R_LAYER_KINDS || row[11] != 0 || row[14] != 0 || row[15] != 0) {
@@ -190,8 +190,8 @@ static uint64_t magnitude(int64_t x)
     return x < 0 ? 0 - (uint64_t)x : (uint64_t)x;
 }
 
-/* Whether no order of an output's sum can leave its accumulator. At most 36 x 128 weights of at most 2^15 are summed,
- * times 2^15: below 2^43, and with any bias below 2^64. */
+/* Whether an output's sum stays within its accumulator in any order. At most 36 x 128 weights of at most 2^15 are
+ * summed, times 2^15: below 2^43, and with any bias below 2^64. */
 static bool sum_fits(const uint8_t *file, const t3r_weights_header *header, const t3r_layer *layer, uint32_t phase,
                      uint32_t output)
 {
@@ -247,8 +247,8 @@ static t3r_weights_fault layer_fault(const uint8_t *file, const t3r_weights_head
     return fault != T3R_FAULT_NONE ? fault : block_fault(file, header, &layer);
 }
 
-/* What holds of the layers together: the last layer, the counts in the header, and that every output is read. At most
- * 24 layers of 36 x 128 x 128 multiply-accumulates in Q8: below 2^32. */
+/* Checks the layers together: the last layer, the counts in the header, and that every output is read. At most 24
+ * layers of 36 x 128 x 128 multiply-accumulates in Q8: below 2^32. */
 static t3r_weights_fault graph_fault(const uint8_t *file, const t3r_weights_header *header)
 {
     uint32_t macs_q8 = 0, parameters = 0, unread = 0;

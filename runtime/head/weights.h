@@ -29,15 +29,15 @@
  *              [outputs] in every kind. Level 0, kernel and stride 1. No other layer reads a point layer, and a point
  *              layer none but the one directly before it. Phases are 1 in the other kinds.
  *
- * Point layers stand behind all others, and every layer but the last is read by a later one. The blocks may lie in any
- * order behind the table, and may share bytes.
+ * Point layers follow all others, and every layer but the last is read by a later one. The blocks follow the table in
+ * any order and may share bytes.
  *
  * Arithmetic: acc = bias + sum weight x (activation - zero point of its source). Zero points are folded into the bias
- * (bias' = bias - sum weight x zero), so that padding reads the zero point itself; bias' is what the file holds, and
- * acc = bias' + sum weight x activation. In no order of the sum can it overflow: for every output (and phase)
+ * (bias' = bias - sum weight x zero), so that padding reads the zero point itself; the file holds bias', and
+ * acc = bias' + sum weight x activation. No order of the sum can overflow: for every output (and phase)
  * |bias'| + 2^7 sum |weight| < 2^31 with int8 activations, |bias'| + 2^15 sum |weight| < 2^47 with int16 ones, so that
- * the product with the multiplier stays within 2^62. With int16 activations features are the int8 numbers times 2^8: of
- * the size of the activations beside them, so that weights of 8 bits resolve both.
+ * the product with the multiplier stays within 2^62. With int16 activations features are the int8 numbers times 2^8,
+ * about as large as the activations beside them, so that weights of 8 bits resolve both.
  *
  * int8 activations: int32 accumulators, output = clamp(output zero + round_half_up(acc x multiplier / 2^(31 - shift))),
  * multiplier an int32 in [2^30, 2^31), shift an int8 in [-30, 15], the quotient 64 bits wide until it is clamped:
@@ -64,7 +64,7 @@
 #define T3R_FEATURES 9 /* channels of the feature planes, head_features.h */
 #define T3R_MAX_LAYERS 24
 #define T3R_MAX_LEVEL 4
-#define T3R_MAX_CHANNELS 128 /* of a layer's inputs, and of its outputs */
+#define T3R_MAX_CHANNELS 128 /* of a layer's inputs and of its outputs */
 #define T3R_MAX_KERNEL 6
 #define T3R_MAX_WEIGHTS_BYTES (1u << 24)
 #define T3R_MAX_HEAD_MACS 65536u /* multiply-accumulates a pixel at 100 % kept */
@@ -97,7 +97,7 @@ typedef struct t3r_weights_header {
     uint32_t crc;
 } t3r_weights_header;
 
-/* A layer of it; the last four are offsets from the start of the file. */
+/* A layer; the last four are offsets from the start of the file. */
 typedef struct t3r_layer {
     t3r_layer_kind kind;
     uint8_t level, source[2], kernel, stride, phases;
@@ -106,8 +106,7 @@ typedef struct t3r_layer {
     uint32_t weights, bias, multiplier, shift;
 } t3r_layer;
 
-/* What t3r_weights_check() found wrong. The texts lie apart, so that a firmware links them only when it asks for them.
- */
+/* Faults that t3r_weights_check() finds. The texts are separate, so that a firmware links them only if it uses them. */
 #define T3R_WEIGHTS_FAULTS(X)                                                                                          \
     X(FOREIGN, "not a weight file")                                                                                    \
     X(FORMAT, "a weight file of another format")                                                                       \
@@ -142,14 +141,16 @@ typedef enum t3r_weights_fault { T3R_FAULT_NONE, T3R_WEIGHTS_FAULTS(T3R_WEIGHTS_
 
 t3r_weights_fault t3r_weights_fault_of(const void *weights, size_t bytes);
 
-/* T3R_ERR_ARGUMENT: null or not aligned to T3R_WEIGHTS_ALIGN; T3R_ERR_WEIGHTS: t3r_weights_error() says why. */
+/* Checks a weight file. T3R_ERR_ARGUMENT: null or not aligned to T3R_WEIGHTS_ALIGN; T3R_ERR_WEIGHTS:
+ * t3r_weights_error() has the reason. */
 t3r_status t3r_weights_check(const void *weights, size_t bytes);
 
-/* Both of weights that were checked; index counts from 0. */
+/* Return the header, and layer `index` from 0, of checked weights. */
 t3r_weights_header t3r_weights_header_of(const void *weights);
 t3r_layer t3r_weights_layer(const void *weights, uint32_t index);
 
-/* Weights a layer reads for one output of one pixel, next to each other but in a depthwise layer. */
+/* Returns the number of weights that a layer reads for one output of one pixel; contiguous except in a depthwise
+ * layer. */
 static inline uint32_t t3r_layer_taps(const t3r_layer *layer)
 {
     return (uint32_t)layer->kernel * layer->kernel * (layer->kind == T3R_LAYER_DEPTHWISE ? 1u : layer->inputs);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What is wrong with a weight file, in words. */
+/* Texts of the faults of weight files. */
 #include "trim3r.h"
 #include "weights.h"
 

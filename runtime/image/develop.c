@@ -17,7 +17,7 @@ typedef struct develop_job {
     int32_t *grid;      /* NULL: no undistortion */
     uint8_t *colour[3]; /* resized planes: the view's own, or the input of undistortion */
     uint16_t *depth;
-    uint8_t *work; /* T3R_IMAGE_ROW_BYTES_ a worker */
+    uint8_t *work; /* T3R_IMAGE_ROW_BYTES_ for each worker */
 } develop_job;
 
 static void resize_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
@@ -54,7 +54,7 @@ t3r_status t3r_frame_check(const t3r_runtime *rt, const t3r_frame *frame, const 
     return status;
 }
 
-/* Cuts the work. */
+/* Assigns the parts of the work memory. */
 static develop_job job_of(const t3r_runtime *rt, const t3r_frame *frame, t3r_view *view, const t3r_camera *resized)
 {
     const uint32_t width = rt->config.width, height = rt->config.height;
@@ -82,7 +82,7 @@ static t3r_status make_grid(const develop_job *job, const t3r_camera *resized)
     return job->grid == NULL ? T3R_OK : t3r_undistort_grid(resized, job->view->width, job->view->height, job->grid);
 }
 
-/* Ends a view when all rows are resized; *camera loses its lens. */
+/* Completes a view after the last resized row; *camera loses its lens. */
 static void finish(const t3r_runtime *rt, develop_job *job, t3r_camera *camera)
 {
     const t3r_workers workers = t3r_workers_of(rt);

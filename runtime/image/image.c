@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Conversion of frames to planes of the working size. Widths and heights: source W x H, destination w x h. */
+/* Converts frames to planes of the working size. Widths and heights: source W x H, destination w x h. */
 #include "image.h"
 
 #include <stdbool.h>
@@ -120,8 +120,8 @@ static void sum_row(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t
     }
 }
 
-/* Averaging of source rows into destination rows. Totals are at most 255 W H, with W H at most 2^24. In units in which
- * a source row is h high and a destination row H, destination row r begins at r H: at most 2^24. */
+/* Averages source rows into destination rows. Totals are at most 255 W H, with W H at most 2^24. In units in which a
+ * source row is h high and a destination row H, destination row r begins at r H: at most 2^24. */
 typedef struct averaging {
     const t3r_kernels *kernels;
     uint32_t width, height, area;
@@ -233,7 +233,7 @@ void t3r_image_depth_strip(const t3r_frame *frame, uint32_t width, uint32_t heig
 {
     for (uint32_t y = 0; y < height; y++) {
         const uint32_t from_y = (2 * y + 1) * frame->depth_height / (2 * height);
-        if (from_y - first < count) { /* unsigned: a row before the strip wraps and fails */
+        if (from_y - first < count) { /* unsigned: a row before the strip wraps to a large number */
             pick_row(frame, frame->depth + (size_t)(from_y - first) * frame->depth_stride_bytes, width,
                      depth + (size_t)y * width);
         }

@@ -34,8 +34,8 @@ void t3r_image_colour(const t3r_kernels *kernels, const t3r_frame *frame, uint32
 void t3r_image_depth(const t3r_frame *frame, uint32_t width, uint32_t height, uint32_t begin, uint32_t end,
                      uint16_t *depth);
 
-/* As the two above, by strips in order from the first row on: rows first..first + count - 1 of a checked frame, whose
- * planes begin with the first of them. With NV12 both numbers are even. `work` must be kept from strip to strip. */
+/* Do the same by strips in order from the first row on: rows first..first + count - 1 of a checked frame, whose planes
+ * begin with the first of them. With NV12 both numbers are even. `work` must be kept from strip to strip. */
 void t3r_image_colour_strip(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t width, uint32_t height,
                             uint32_t first, uint32_t count, uint8_t *const planes[3], void *work);
 void t3r_image_depth_strip(const t3r_frame *frame, uint32_t width, uint32_t height, uint32_t first, uint32_t count,

@@ -49,14 +49,14 @@ extern "C" {
 #pragma GCC visibility push(default) /* what a shared library exports */
 #endif
 
-/* The version of this header; t3r_version() returns that of the library. */
+/* Version of this header; t3r_version() returns the library's. */
 #define T3R_VERSION_MAJOR 0
 #define T3R_VERSION_MINOR 2
 #define T3R_VERSION_PATCH 0
 #define T3R_VERSION T3R_TEXT_(T3R_VERSION_MAJOR) "." T3R_TEXT_(T3R_VERSION_MINOR) "." T3R_TEXT_(T3R_VERSION_PATCH)
 #define T3R_TEXT_(number) T3R_QUOTE_(number)
 #define T3R_QUOTE_(number) #number
-/* Raised by every change of any output bit; recordings and scenes carry the epoch they were made in. */
+/* Raised by every change of any output bit; recordings and scenes carry the epoch that made them. */
 #define T3R_BITS_EPOCH 10
 
 #define T3R_MAX_SIDE 4096         /* largest width or height of working size, frame or target, in pixels */
@@ -69,13 +69,14 @@ extern "C" {
 #define T3R_HARMONICS_DEGREE_MOST 3u
 #define T3R_HARMONICS_MOST 16u /* of each colour, degree 0 included */
 #define T3R_MAX_REFINE 32
-#define T3R_STREAM_REFINE 4u /* of a keyframe at most, where they are fitted */
+#define T3R_STREAM_REFINE 4u /* most passes for a keyframe whose number of passes is fitted */
 #define T3R_MAX_LEVELS 5     /* most wavelet levels */
 #define T3R_MAX_HEAD_COLUMN_BYTES 65536
 #define T3R_MAX_LOSS_Q8 2560u /* 10 dB */
 #define T3R_MAX_WORKERS 16
 
-/* What enumerates has 32 bits, here and below: how wide an enum type is depends on the compiler and its options. */
+/* Enumerations have 32 bits, here and below, because the width of an enum type depends on the compiler and its
+ * options. */
 typedef int32_t t3r_status;
 enum {
     T3R_OK = 0,
@@ -91,7 +92,7 @@ enum {
     T3R_ERR_FULL = -10,     /* no room for another Gaussian in the scene */
     T3R_ERR_WEIGHTS = -11,  /* weights that are foreign, damaged, of another epoch, or too large a head for the arena */
     T3R_ERR_STEREO = -12,   /* no depth can be made of the views: t3r_stereo_pair() has the reason */
-    T3R_ERR_UNSUPPORTED = -13, /* the library was built without what is asked for: t3r_features() */
+    T3R_ERR_UNSUPPORTED = -13, /* the library was built without a requested feature: t3r_features() */
     T3R_ERR_INTERFACE = -14    /* the program was compiled with another trim3r.h, other features or another layout of
                                 * structs than the library */
 };
@@ -122,13 +123,13 @@ enum {
     T3R_PIXEL_FORMAT_COUNT
 };
 
-/* One captured instant. The memory stays the caller's and is read only during the call that takes the frame. */
+/* One captured frame. Its memory belongs to the caller and is read only during the call that takes the frame. */
 typedef struct t3r_frame {
     /* The format of the colour planes. */
     t3r_pixel_format format;
     /* The size of the colour image in pixels, 2..T3R_MAX_SIDE each. */
     uint32_t width, height;
-    /* The colour planes. planes[1] is read with T3R_PIXEL_NV12 alone. */
+    /* The colour planes. planes[1] is read only with T3R_PIXEL_NV12. */
     const uint8_t *planes[2];
     /* The bytes from row to row of each plane, at least those of a row and below 2^19. */
     uint32_t stride_bytes[2];
@@ -151,7 +152,7 @@ enum {
     T3R_DISTORTION_COUNT
 };
 
-/* A calibrated, posed pinhole camera, for the pixel grid of the frame or target it comes with. */
+/* A calibrated, posed pinhole camera, for the pixel grid of its frame or target. */
 typedef struct t3r_camera {
     /* The focal lengths in pixels, from 8 up to, but not including, 16384. */
     int32_t fx_q16, fy_q16;
@@ -159,8 +160,7 @@ typedef struct t3r_camera {
     int32_t cx_q16, cy_q16;
     /* The model of the lens. */
     t3r_distortion distortion;
-    /* The coefficients of that model, in its order; p1 and p2 are between -16 and 16. Those that it lacks are ignored.
-     */
+    /* The coefficients of that model, in its order; p1 and p2 are between -16 and 16. The others are ignored. */
     int32_t distortion_q24[5];
     /* The camera's centre in world units, each coordinate between -2^62 and 2^62 (in 1/2^32 units). */
     int64_t position_q32[3];
@@ -172,23 +172,23 @@ typedef uint32_t t3r_wavelet;
 #define T3R_WAVELET_ROW_(NAME, name) T3R_WAVELET_##NAME,
 enum { T3R_WAVELETS(T3R_WAVELET_ROW_) T3R_WAVELET_COUNT };
 
-/* How the budget Z is spread over the valid points (runtime/SPEC.md, "Budget"): T3R_ALLOCATIONS. */
+/* The allocation of the budget Z over the valid points (runtime/SPEC.md, "Budget"): T3R_ALLOCATIONS. */
 typedef uint32_t t3r_allocation;
 #define T3R_ALLOCATE_ROW_(NAME, name) T3R_ALLOCATE_##NAME,
 enum {
-    T3R_ALLOCATE_CONFIGURED, /* in a request: that of the configuration; in a configuration: refused */
+    T3R_ALLOCATE_CONFIGURED, /* in a request: the configuration's; in a configuration: refused */
     T3R_ALLOCATIONS(T3R_ALLOCATE_ROW_) T3R_ALLOCATE_COUNT
 };
 
 typedef uint32_t t3r_head;
 enum {
-    T3R_HEAD_CONFIGURED, /* in a request: that of the configuration; in a configuration: refused */
-    T3R_HEAD_ANALYTIC,   /* a disc on the surface, as wide as its retained neighbours are apart */
-    T3R_HEAD_LEARNED,    /* a network sees image, mask and density: t3r_bind_head() */
+    T3R_HEAD_CONFIGURED, /* in a request: the configuration's; in a configuration: refused */
+    T3R_HEAD_ANALYTIC,   /* a disc on the surface, as wide as the spacing of its retained neighbours */
+    T3R_HEAD_LEARNED,    /* a network that reads image, mask and density: t3r_bind_head() */
     T3R_HEAD_COUNT
 };
 
-/* Where depth comes from: T3R_DEPTHS. */
+/* The source of depth: T3R_DEPTHS. */
 typedef uint32_t t3r_depth;
 #define T3R_DEPTH_ROW_(NAME, name) T3R_DEPTH_##NAME,
 enum { T3R_DEPTHS(T3R_DEPTH_ROW_) T3R_DEPTH_COUNT };
@@ -197,20 +197,20 @@ enum { T3R_DEPTHS(T3R_DEPTH_ROW_) T3R_DEPTH_COUNT };
 typedef uint32_t t3r_pair;
 enum {
     T3R_PAIR_OK,
-    T3R_PAIR_NO_BASELINE, /* both cameras stand in one place and look the same way */
-    T3R_PAIR_ROTATION,    /* both cameras stand in one place, but look different ways */
+    T3R_PAIR_NO_BASELINE, /* both cameras have the same position and direction */
+    T3R_PAIR_ROTATION,    /* both cameras have the same position, but different directions */
     T3R_PAIR_OVERLAP,     /* too little is visible in both pictures */
-    T3R_PAIR_PARALLAX,    /* what is visible in both pictures hardly moves between them */
+    T3R_PAIR_PARALLAX,    /* the visible surface hardly moves between both pictures */
     T3R_PAIR_SCALE,       /* the baseline in world units leaves no depth unit */
     T3R_PAIR_COUNT
 };
 
-/* How much work a build is worth: t3r_set_preset(). */
+/* Amounts of work for a build: t3r_set_preset(). */
 typedef uint32_t t3r_preset;
 enum {
     T3R_PRESET_FAST,     /* little work, for new views that may be less sharp */
     T3R_PRESET_BALANCED, /* most of the quality for a part of the work */
-    T3R_PRESET_BEST,     /* the best new views, whatever they take */
+    T3R_PRESET_BEST,     /* the best new views, for any amount of work */
     T3R_PRESET_COUNT
 };
 
@@ -221,29 +221,29 @@ typedef struct t3r_config {
     T3R_SETTINGS(T3R_SETTING_)
 } t3r_config;
 
-/* What one build shall be. A field that is 0 leaves the configuration's value, so {0} is the same as NULL. A request
- * holds for its call alone: the next one begins from the configuration again. */
+/* The request for one build. A field that is 0 leaves the configuration's value, so {0} is the same as NULL. A request
+ * applies to its call only: the next one begins from the configuration again. */
 typedef struct t3r_request {
     /* The budget of this scene, 1..max_gaussians; 0 = the configuration's. */
     uint32_t gaussians;
-    /* The most that the scene may lose against one of all points, in 1/256 dB of PSNR, 1..T3R_MAX_LOSS_Q8. As few
-     * Gaussians are made as are predicted to stay below it, and at most the budget. 0 = the budget is used up. */
+    /* The most that the scene may lose against one of all points, in 1/256 dB of PSNR, 1..T3R_MAX_LOSS_Q8. The build
+     * makes the fewest Gaussians predicted to stay below it, and at most the budget. 0 = the budget is used up. */
     uint32_t max_loss_q8;
     /* The allocation of the budget. T3R_ALLOCATE_CONFIGURED (0) = the configuration's, or T3R_ALLOCATE_GIVEN with an
-     * importance. An importance goes with no other allocation. */
+     * importance. No other allocation takes an importance. */
     t3r_allocation allocate;
     /* The head. T3R_HEAD_CONFIGURED (0) = the configuration's. */
     t3r_head head;
     /* The importance of each pixel, 0..65535. importance[v] is a plane of the working size for context view v, aligned
-     * for its type and read during the call only. NULL = there is none. */
+     * for its type and read during the call only. NULL = none. */
     const uint16_t *const *importance;
     /* The bytes from row to row of every importance plane, even and at least 2 x width. Ignored without planes. */
     uint32_t importance_stride_bytes;
 } t3r_request;
 
-/* Where the scene's fixed-point frame stands in the world: world = origin + scene x 2^exponent. */
+/* The scene's fixed-point frame in the world: world = origin + scene x 2^exponent. */
 typedef struct t3r_scene_frame {
-    /* The origin in world units: the first context camera's centre, with `warm` that of the build that began anew. */
+    /* The origin in world units: the first context camera's centre; with `warm`, of the last build from scratch. */
     int64_t origin_q32[3];
     /* The exponent of the scene unit, -24..24, with which the median depth is in [1, 2) scene units. */
     int32_t exponent;
@@ -258,7 +258,7 @@ typedef struct t3r_gaussian {
     int16_t factor[9];
     /* The exponent of F, -60..15. */
     int8_t factor_exponent;
-    /* The index of the context view that it came from; of a stream, its keyframe's number modulo `views`. */
+    /* The index of its context view; in a stream, its keyframe's number modulo `views`. */
     uint8_t view;
     /* The colour r g b in 8-bit levels, 0..32640, in 1/128. */
     uint16_t colour_q7[3];
@@ -272,7 +272,7 @@ typedef struct t3r_gaussian {
 
 /* The scene in the arena, valid until the next call that builds or edits it. */
 typedef struct t3r_scene {
-    /* The frame in which its Gaussians are. */
+    /* The frame of its Gaussians. */
     t3r_scene_frame frame;
     /* The Gaussians, in the arena. */
     const t3r_gaussian *gaussians;
@@ -283,8 +283,7 @@ typedef struct t3r_scene {
     uint32_t valid_points;
 } t3r_scene;
 
-/* The memory that a render writes. Any of the three pictures may be NULL, which leaves it out. The background is black.
- */
+/* The memory that a render writes. Any of the three pictures may be NULL, which omits it. The background is black. */
 typedef struct t3r_target {
     /* The size in pixels, 1..render_width and 1..render_height. */
     uint32_t width, height;
@@ -292,7 +291,7 @@ typedef struct t3r_target {
     uint8_t *rgb;
     /* The bytes from row to row of the colour picture, at least 3 x width. */
     uint32_t rgb_stride_bytes;
-    /* The depth along z in scene units, that of the splat at which transmittance falls below 1/2; 0 = there is none. */
+    /* The depth along z in scene units of the splat at which transmittance falls below 1/2; 0 = there is none. */
     uint32_t *depth_q20;
     /* The bytes from row to row of the depth picture, a multiple of 4 and at least 4 x width. */
     uint32_t depth_stride_bytes;
@@ -304,24 +303,25 @@ typedef struct t3r_target {
 
 /* Optional callbacks, bound again after t3r_attach(). NULL = not called. */
 typedef struct t3r_hooks {
-    /* The caller's own, handed to each callback. */
+    /* The caller's own, passed to each callback. */
     void *user;
     /* Called between bounded pieces of long work: a view, a row of a head, a batch, 8 first centres of SuperClusters,
-     * 64 tiles, 65,536 splats blended into tiles. Of refinement a piece is 256 splats blended into tiles. With several
-     * workers it is 256 tiles, and of a head the views that they share. A return other than 0 cancels the work. */
+     * 64 tiles, 65,536 splats blended into tiles. In refinement a piece is 256 splats blended into tiles. With several
+     * workers it is 256 tiles, and for a head the views that they share. A return value other than 0 cancels the work.
+     */
     int (*progress)(void *user, t3r_stage stage, uint32_t done, uint32_t total);
     /* Called with the hash of every stage of t3r_reconstruct(), t3r_rebuild() and t3r_render() (SPEC, "Hash"). */
     void (*stage_hash)(void *user, t3r_stage stage, uint64_t hash);
     /* Runs task(context, index, worker) for each index in 0..count-1, in any order, on any threads, and returns when
-     * all are done. `worker` is below t3r_config.workers, and no two tasks that run at the same time have the same one:
-     * it is the number of the thread. The runtime never calls the hook from within a task. */
+     * all are done. `worker` is a thread's number below t3r_config.workers: no two tasks that run at the same time
+     * have the same one. The runtime never calls the hook from within a task. */
     void (*parallel_for)(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
                          void *context);
 } t3r_hooks;
 
 /* One buffer of the arena. */
 typedef struct t3r_plan_buffer {
-    /* Its name, as tables spell it. */
+    /* Its name in tables. */
     const char *name;
     /* Its place and size in an arena of t3r_plan_info.bytes, in bytes. */
     size_t offset, bytes;
@@ -329,7 +329,7 @@ typedef struct t3r_plan_buffer {
     t3r_stage first, last;
 } t3r_plan_buffer;
 
-/* What an arena needs. */
+/* The size of an arena. */
 typedef struct t3r_plan_info {
     /* The least bytes of an arena: one byte less is refused. */
     size_t min_bytes;
@@ -346,7 +346,7 @@ typedef struct t3r_plan_info {
 
 /* What a keyframe did to the map of a stream. */
 typedef struct t3r_stream_report {
-    /* The number of keyframes taken so far, this one too. */
+    /* The number of keyframes so far, including this one. */
     uint32_t keyframes;
     /* The number of Gaussians in the map, at most the configuration's. */
     uint32_t gaussians;
@@ -356,9 +356,9 @@ typedef struct t3r_stream_report {
     uint32_t removed;
     /* The number of earlier Gaussians discarded for lack of room. */
     uint32_t crowded;
-    /* The number of the keyframe's pixels with a depth, filled ones too. */
+    /* The number of the keyframe's pixels with a depth, including filled ones. */
     uint32_t points;
-    /* The number of these that the map showed already. */
+    /* The number of these that the map already showed. */
     uint32_t shown;
 } t3r_stream_report;
 
@@ -369,8 +369,8 @@ typedef struct t3r_runtime t3r_runtime;
  *
  * A program starts with one of the inline calls below. Each passes the program's digest to the call of the same name
  * with the suffix _as. If the digest differs from the library's, that call touches nothing and returns
- * T3R_ERR_INTERFACE. A language that cannot use this header calls the _as calls itself, with what t3r_interface()
- * returns. */
+ * T3R_ERR_INTERFACE. A language that cannot use this header calls the _as calls itself, with the digest from
+ * t3r_interface(). */
 static inline uint64_t t3r_header_interface(void)
 {
     uint64_t digest = T3R_FEATURES_BUILT;
@@ -381,8 +381,8 @@ static inline uint64_t t3r_header_interface(void)
 }
 uint64_t t3r_interface(void);
 
-/* Returns defaults for a working size, number of views and budget. With another interface than the library's, or
- * another number of bytes, all fields are 0, which every other call refuses. */
+/* Returns defaults for a working size, number of views and budget. If the digest or the number of bytes differs from
+ * the library's, all fields are 0, which every other call refuses. */
 t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_bytes, uint32_t width, uint32_t height,
                                  uint32_t views, uint32_t gaussians);
 static inline t3r_config t3r_default_config(uint32_t width, uint32_t height, uint32_t views, uint32_t gaussians)
@@ -392,18 +392,18 @@ static inline t3r_config t3r_default_config(uint32_t width, uint32_t height, uin
     return config;
 }
 
-/* The SuperClusters that the configuration asks for: 1 for a stream. Where `clusters` is 0, its allocation chooses: 300
- * for T3R_ALLOCATE_PAPER (GaussianTrim3R, section 4) and T3R_ALLOCATE_GIVEN, T3R_CLUSTERS_OF_POINTS of all views'
- * pixels for T3R_ALLOCATE_DENSITY, and 1 for the others, which know no SuperClusters. A request's own allocation finds
- * what the configuration's chose. 0 without a configuration. */
+/* Returns the number of SuperClusters for the configuration: 1 for a stream. If `clusters` is 0, its allocation
+ * decides: 300 for T3R_ALLOCATE_PAPER (GaussianTrim3R, section 4) and T3R_ALLOCATE_GIVEN, T3R_CLUSTERS_OF_POINTS of
+ * all views' pixels for T3R_ALLOCATE_DENSITY, and 1 for the others, which use no SuperClusters. A request's own
+ * allocation uses the same number. 0 without a configuration. */
 uint32_t t3r_cluster_count(const t3r_config *config);
 
-/* The mini-batches of the K-means. Where `cluster_batches` is 0, one for 8 SuperClusters, 1..24. 0 without a
- * configuration. */
+/* Returns the number of mini-batches of the K-means. If `cluster_batches` is 0, one for 8 SuperClusters, 1..24. 0
+ * without a configuration. */
 uint32_t t3r_cluster_batch_count(const t3r_config *config);
 
-/* Computes what an arena for this configuration needs. After T3R_ERR_CONFIG t3r_config_error() names the field.
- * T3R_ERR_UNSUPPORTED: the configuration is in range, but this library was built without what it asks for.
+/* Computes the arena of this configuration. After T3R_ERR_CONFIG t3r_config_error() names the field.
+ * T3R_ERR_UNSUPPORTED: the configuration is in range, but this library was built without a feature that it needs.
  * T3R_ERR_INTERFACE. */
 t3r_status t3r_plan_as(uint64_t digest, const t3r_config *config, t3r_plan_info *plan);
 static inline t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan)
@@ -412,7 +412,7 @@ static inline t3r_status t3r_plan(const t3r_config *config, t3r_plan_info *plan)
 }
 
 /* Computes only the two sums of t3r_plan(), so that a firmware that sizes its arena at run time links no names of
- * buffers. Errors are those of t3r_plan(). */
+ * buffers. Returns the errors of t3r_plan(). */
 t3r_status t3r_plan_bytes_as(uint64_t digest, const t3r_config *config, size_t *min_bytes, size_t *bytes);
 static inline t3r_status t3r_plan_bytes(const t3r_config *config, size_t *min_bytes, size_t *bytes)
 {
@@ -420,8 +420,8 @@ static inline t3r_status t3r_plan_bytes(const t3r_config *config, size_t *min_by
 }
 
 /* Inverts t3r_plan(): lowers config->max_gaussians to the most with which t3r_init() accepts an arena of `bytes`, and
- * the budget `gaussians` along with it. It never raises them: begin with the most that you could use, which is width x
- * height x views. Takes 24 plans. T3R_ERR_ARENA: not even one Gaussian fits. T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: as
+ * the budget `gaussians` along with it. It never raises them: begin with the most that you could use, width x height x
+ * views. Takes 24 plans. T3R_ERR_ARENA: not even one Gaussian fits. T3R_ERR_CONFIG, T3R_ERR_UNSUPPORTED: see
  * t3r_plan(). After an error the configuration is unchanged. */
 t3r_status t3r_plan_within_as(uint64_t digest, size_t bytes, t3r_config *config);
 static inline t3r_status t3r_plan_within(size_t bytes, t3r_config *config)
@@ -429,20 +429,20 @@ static inline t3r_status t3r_plan_within(size_t bytes, t3r_config *config)
     return t3r_plan_within_as(t3r_header_interface(), bytes, config);
 }
 
-/* The settings that make the most of so much work, whatever the size and the budget: head, refine, fit_passes and
- * structural of `config`, which keeps its other fields. They were chosen on training scenes (docs/budgets.md, "How much
- * work"). *weights gets the name of the head's weights in quant/heads, for t3r_bind_head(); `weights` may be NULL.
+/* Sets the best head, refine, fit_passes and structural for an amount of work, at any size and budget; the other fields
+ * of `config` are kept. The settings were chosen on training scenes (docs/budgets.md, "How much work"). *weights gets
+ * the name of the head's weights in quant/heads, for t3r_bind_head(); `weights` may be NULL.
  *
- * T3R_ERR_ARGUMENT: config is NULL, or preset is none of t3r_preset. T3R_ERR_UNSUPPORTED: this library was built
- * without what the row asks for. T3R_ERR_INTERFACE. After an error both are as before. */
+ * T3R_ERR_ARGUMENT: config is NULL, or preset is out of range. T3R_ERR_UNSUPPORTED: this library was built without a
+ * feature that the row needs. T3R_ERR_INTERFACE. After an error both are unchanged. */
 t3r_status t3r_set_preset_as(uint64_t digest, t3r_preset preset, t3r_config *config, const char **weights);
 static inline t3r_status t3r_set_preset(t3r_preset preset, t3r_config *config, const char **weights)
 {
     return t3r_set_preset_as(t3r_header_interface(), preset, config, weights);
 }
 
-/* Returns the first field of the configuration that is out of range, or asks for what this library was built without,
- * as text; NULL when there is none. */
+/* Returns the first field of the configuration that is out of range, or needs a missing feature of this library, as
+ * text; NULL if there is none. */
 const char *t3r_config_error(const t3r_config *config);
 
 /* Lays the arena out. On any error *rt is NULL and the arena is untouched. */
@@ -467,36 +467,36 @@ t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
 #define T3R_CPU_AVX2 (1u << 0)     /* x86-64 */
 #define T3R_CPU_AVX512 (1u << 1)   /* F, BW, CD, DQ and VL of AVX-512 */
 #define T3R_CPU_VNNI (1u << 2)     /* AVX512_VNNI, with T3R_CPU_AVX512 */
-#define T3R_CPU_SSE41 (1u << 3)    /* x86-64: SSE4.1, and what comes before it */
+#define T3R_CPU_SSE41 (1u << 3)    /* x86-64: SSE4.1 and earlier */
 #define T3R_CPU_NEON (1u << 8)     /* 64-bit Arm */
-#define T3R_CPU_DOTPROD (1u << 9)  /* its dot products of 8 bits */
-#define T3R_CPU_MVE (1u << 10)     /* Arm Cortex-M with vectors (Helium), as the M55 */
-#define T3R_CPU_DSP (1u << 11)     /* Arm Cortex-M with sums of two products, as the M4 and the M7 */
+#define T3R_CPU_DOTPROD (1u << 9)  /* dot products of 8 bits on it */
+#define T3R_CPU_MVE (1u << 10)     /* Arm Cortex-M with vectors (Helium), such as the M55 */
+#define T3R_CPU_DSP (1u << 11)     /* Arm Cortex-M with sums of two products, such as the M4 and the M7 */
 #define T3R_CPU_SIMD128 (1u << 16) /* WebAssembly */
 
-/* Chooses the inner loops for a processor that has these T3R_CPU_... features; 0 = plain C, as after t3r_init() and
- * t3r_attach(). The processor and its operating system must have them. No bit of any output changes. A firmware that
- * does not call it links none of the variants. */
+/* Chooses the inner loops for a processor with these T3R_CPU_... features; 0 = plain C, the default after t3r_init()
+ * and t3r_attach(). The processor and its operating system must have them. No bit of any output changes. A firmware
+ * that does not call it links none of the variants. */
 t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features);
 
 /* Binds the weights of the head T3R_HEAD_LEARNED, a whole .t3w file in memory aligned to 16 (NULL: none). Only the
- * pointer is kept: the memory stays the caller's, is read in place, and must not change or go while it is bound. Bind
- * after t3r_init() and again after t3r_attach(). The analysis does not depend on the head, so another may be bound to
- * one that was kept. T3R_ERR_ARGUMENT: misaligned. T3R_ERR_WEIGHTS: t3r_weights_error() has the reason. T3R_ERR_STATE:
- * the arena has no room for views. T3R_ERR_UNSUPPORTED: this library has no learned heads. After an error what was
- * bound stays. */
+ * pointer is kept: the file is read in place, and must stay unchanged while it is bound. Bind after t3r_init() and
+ * again after t3r_attach(). The analysis does not depend on the head, so another head may be bound to a kept analysis.
+ * T3R_ERR_ARGUMENT: misaligned. T3R_ERR_WEIGHTS: t3r_weights_error() has the reason. T3R_ERR_STATE: the arena has no
+ * room for views. T3R_ERR_UNSUPPORTED: this library has no learned heads. After an error the previous weights stay
+ * bound. */
 t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes);
 
-/* Returns the reason for which t3r_bind_head() refuses a weight file, as text. NULL when the file is sound: a head that
- * is refused all the same is too large for the arena (t3r_head_column_bytes()). */
+/* Returns the reason why t3r_bind_head() refuses a weight file, as text. NULL if the file is valid: if it is still
+ * refused, the head is too large for the arena (t3r_head_column_bytes()). */
 const char *t3r_weights_error(const void *weights, size_t bytes);
 
-/* The head_column_bytes with which this head works on views of this width, whatever their height, at least 1. 0 =
- * t3r_weights_error() refuses the file, or the width is not 1..T3R_MAX_SIDE. The default holds tiny and small
+/* Returns the head_column_bytes that this head needs on views of this width and any height, at least 1. 0 =
+ * t3r_weights_error() refuses the file, or the width is not 1..T3R_MAX_SIDE. The default is enough for tiny and small
  * with 8-bit activations. */
 uint32_t t3r_head_column_bytes(const void *weights, size_t bytes, uint32_t width);
 
-/* Returns the CRC-32 of the head bound last, 0 when none was. A copied arena keeps it, which shows the file to bind
+/* Returns the CRC-32 of the head bound last, 0 if none was. A copied arena keeps it, to identify the file to bind
  * again. */
 uint32_t t3r_head_crc(const t3r_runtime *rt);
 
@@ -505,97 +505,97 @@ uint32_t t3r_head_crc(const t3r_runtime *rt);
  * and pixels with r = g = b = 0 count as empty.
  *
  * T3R_ERR_FRAME. T3R_ERR_CAMERA: out of range, or more than half of the picture lies beyond what the lens can show.
- * T3R_ERR_UNSUPPORTED: a lens that distorts, and this library has none. T3R_ERR_NO_DEPTH: no depth plane, or not one
- * measurement in it. T3R_ERR_STATE: there is no room for another view, or there is a scene already (t3r_reset()).
- * After an error no view is added. A lens that shows too little, and a depth plane without a measurement, also discard
- * scene and analysis; after all other errors everything is as before.
+ * T3R_ERR_UNSUPPORTED: the lens distorts, and this library has no lenses. T3R_ERR_NO_DEPTH: no depth plane, or no
+ * measurement in it. T3R_ERR_STATE: there is no room for another view, or there is a scene already (t3r_reset()). After
+ * an error no view is added. A lens that shows too little, and a depth plane without a measurement, also discard scene
+ * and analysis; all other errors change nothing.
  *
- * With `warm` a view may follow a scene, which it discards, and there is always room: the oldest view is replaced, and
- * the new one takes its number. Then a depth plane without a measurement discards nothing, but if its measurements are
- * lost in resizing it discards all. */
+ * With `warm` a view may follow a scene, which it discards. There is always room: a further view replaces the oldest
+ * one. Then a depth plane without a measurement discards nothing, but measurements that are lost in resizing discard
+ * everything. */
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera);
 
-/* The same by strips of rows, as a camera delivers them, so that no frame need be whole in memory: rows row..row + rows
- * - 1 of the colour image, which frame->planes begin with, and depth_row..depth_row + depth_rows - 1 of the depth
- * image, which frame->depth begins with. Sizes and all else of the frame and the camera are those of the whole frame,
- * and the same in every strip. Strips come in order, colour and depth each from row 0 on, and need not keep step; a
- * number of 0 rows is none. The strip that completes both adds the view, with the bits of t3r_add_view().
+/* Adds a view by strips of rows, as a camera delivers them, so that no whole frame need be in memory. A strip has rows
+ * row..row + rows - 1 of the colour image, which frame->planes begin with, and depth_row..depth_row + depth_rows - 1 of
+ * the depth image, which frame->depth begins with. Everything else of the frame and the camera describes the whole
+ * frame, and is the same in every strip. Colour and depth each come in order from row 0 on, independently of each
+ * other, and 0 rows are allowed. The strip that completes both adds the view, with the bits of t3r_add_view().
  *
- * A strip from row 0 of both begins a view, and discards one that came in part; so do t3r_add_view(), t3r_develop(),
- * t3r_reconstruct(), t3r_reset() and t3r_attach(). T3R_ERR_FRAME: also rows beyond the image, and with T3R_PIXEL_NV12
- * an odd number. T3R_ERR_STATE: also a strip out of order, another frame or camera than before, and with `warm` no room
- * without replacing a view. After these two what came stays, and also after T3R_ERR_NO_DEPTH of a strip without a depth
- * plane. T3R_ERR_CAMERA, and T3R_ERR_NO_DEPTH of a view without a measurement, discard it. With T3R_DEPTH_STEREO the
- * rows of depth are ignored. */
+ * A strip from row 0 of both begins a view, and discards an incomplete one; so do t3r_add_view(), t3r_develop(),
+ * t3r_reconstruct(), t3r_reset() and t3r_attach(). T3R_ERR_FRAME: also rows beyond the image, or with T3R_PIXEL_NV12 an
+ * odd number. T3R_ERR_STATE: also a strip out of order, another frame or camera than before, or with `warm` no room
+ * without replacing a view. These two, and T3R_ERR_NO_DEPTH of a strip without a depth plane, keep the earlier strips.
+ * T3R_ERR_CAMERA, and T3R_ERR_NO_DEPTH of a view without a measurement, discard them. With T3R_DEPTH_STEREO the rows of
+ * depth are ignored. */
 t3r_status t3r_add_rows(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint32_t row, uint32_t rows,
                         uint32_t depth_row, uint32_t depth_rows);
 
 /* Discards views, analysis and scene; the configuration stays. Needed before t3r_add_view() once there is a scene. */
 t3r_status t3r_reset(t3r_runtime *rt);
 
-/* Analyses the views added so far and builds a scene of them by the request (NULL: by the configuration alone). It has
- * exactly the budget, or all valid points where they are fewer.
+/* Analyses the views added so far and builds a scene of them by the request (NULL: by the configuration). It has
+ * exactly the budget, or all valid points if they are fewer.
  *
- * With an importance, the points of the highest one are retained; of equal ones the first in the order of views and
- * rows. Doubtful points and surfaces seen twice then count as any others. Heads see the share of points
- * retained about each pixel.
+ * With an importance, the points of the highest importance are retained, with ties in the order of views and rows.
+ * Doubtful points and surfaces seen twice then get no special treatment. Heads see the share of points retained about
+ * each pixel.
  *
- * With a bounded loss, as few Gaussians are made as the bound is predicted to allow, at least 1/400 of the points. The
- * prediction is for views between the context's (SPEC.md, "Budget within a loss"). It goes by what two trial scenes, of
- * 1/100 and 1/50 of the points, miss in the context views, and by how far these disagree among themselves. That takes
- * the time of two builds and more, and the trials' stages are hashed too.
+ * With a bounded loss, the build makes the fewest Gaussians predicted to stay within it, at least 1/400 of the points.
+ * The prediction is for views between the context's (SPEC.md, "Budget within a loss"). It uses the errors of two trial
+ * scenes, of 1/100 and 1/50 of the points, in the context views, and the disagreement of these views. That takes the
+ * time of more than two builds; the trials' stages are hashed, too.
  *
  * T3R_ERR_ARGUMENT: a field of the request is out of its range. T3R_ERR_UNSUPPORTED: this library was built without the
- * head, without the allocation, or without bounded losses. T3R_ERR_STATE: there are no views (by stereo, fewer
- * than two); the learned head has no weights; the allocation is `given` and no importance came; or a bounded loss
- * without keep_analysis and refine above 0. After these three everything is as it was. T3R_ERR_CAMERA: a view stands
- * more than 1,024 scene units from the first. T3R_ERR_STEREO: no two views can be matched, and t3r_stereo_pair() has
- * the reason. T3R_ERR_CANCELLED. After these three there is no scene, and the views stay. */
+ * head, without the allocation, or without bounded losses. T3R_ERR_STATE: there are no views (by stereo, fewer than
+ * two); the learned head has no weights; the allocation is `given` and no importance came; or a bounded loss without
+ * keep_analysis and refine above 0. These three change nothing. T3R_ERR_CAMERA: a view is more than 1,024 scene units
+ * from the first. T3R_ERR_STEREO: no two views can be matched, and t3r_stereo_pair() has the reason. T3R_ERR_CANCELLED.
+ * After these three there is no scene, and the views stay. */
 t3r_status t3r_reconstruct(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene);
 
-/* Builds another scene of the views analysed last, without analysing them again. Needs keep_analysis; otherwise as
- * t3r_reconstruct(). T3R_ERR_STATE also when there is no analysis. T3R_ERR_CANCELLED: there is no scene, and the
+/* Builds another scene of the views analysed last, without analysing them again. Needs keep_analysis; otherwise like
+ * t3r_reconstruct(). T3R_ERR_STATE also if there is no analysis. T3R_ERR_CANCELLED: there is no scene, and the
  * analysis stays. */
 t3r_status t3r_rebuild(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene);
 
-/* Returns how context view `view` got its depth with T3R_DEPTH_STEREO, also after T3R_ERR_STEREO. T3R_PAIR_OK: *partner
- * is the view that most of it came from. Any other: the view has no depth and adds no points, and the value is the
- * reason for which the pair with the best prospects was refused. *partner is `view` where there is none: by sensor, out
- * of range, before an analysis. */
+/* Returns how context view `view` got its depth with T3R_DEPTH_STEREO, also after T3R_ERR_STEREO. T3R_PAIR_OK:
+ * *partner is the view that most of it came from. Any other: the view has no depth and adds no points, and the value
+ * is the reason why the most promising pair was refused. *partner is `view` if there is none: by sensor, out of range,
+ * before an analysis. */
 t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner);
 
 /* Streams (t3r_config.stream): takes the next keyframe of a moving camera into the map, which is the scene in the
  * arena. The map holds at most the configuration's `gaussians` over any number of keyframes, and a call takes bounded
  * time. The caller chooses which frames are keyframes. t3r_render() and t3r_get_scene() work in between, and
- * t3r_reset() begins anew. `report` may be NULL; it is all 0 unless the keyframe was taken.
+ * t3r_reset() empties the map. `report` may be NULL; it is all 0 unless the keyframe was taken.
  *
- * Pixels that the map shows already add nothing. The others compete with the Gaussians of the map by one score, texture
+ * Pixels that the map already shows add nothing. The others compete with the Gaussians of the map by one score, texture
  * density against blue noise. Allocations by SuperClusters count as `pixel`, so that the score means the same in every
- * keyframe. Gaussians that stay grow over the gaps. Refinement on the last `views` keyframes then corrects those that
- * these see as finely as the Gaussian's own keyframe.
+ * keyframe. The remaining Gaussians grow over the gaps. Refinement on the last `views` keyframes then corrects the
+ * Gaussians that these see as finely as the Gaussian's own keyframe.
  *
- * The map's scale is the first keyframe's. Its origin follows the camera by whole scene units, and what is more than
- * 1,024 scene units behind is discarded. A Gaussian's `view` is its keyframe's number modulo `views`.
+ * The map has the scale of the first keyframe. Its origin follows the camera by whole scene units, and Gaussians more
+ * than 1,024 scene units away are discarded. A Gaussian's `view` is its keyframe's number modulo `views`.
  *
  * T3R_ERR_STATE: the arena is not one for streams, the learned head has no weights, or the allocation is `given`.
  * T3R_ERR_UNSUPPORTED: this library has no streams, or no lenses and the camera's distorts. T3R_ERR_FRAME.
- * T3R_ERR_CAMERA: out of range, or more than 1,024 scene units from the origin. After these four everything is as
- * before. T3R_ERR_NO_DEPTH, T3R_ERR_CAMERA of a lens that shows too little, and T3R_ERR_CANCELLED: the keyframe adds
- * nothing. Refinement then uses neither it nor the one of `views` keyframes ago, and Gaussians that it contradicts may
- * be gone. T3R_ERR_CANCELLED during refinement: the keyframe is taken, and passes are missing. The map stays valid and
- * within its cap after any error. */
+ * T3R_ERR_CAMERA: out of range, or more than 1,024 scene units from the origin. These four change nothing.
+ * T3R_ERR_NO_DEPTH, T3R_ERR_CAMERA of a lens that shows too little, and T3R_ERR_CANCELLED: the keyframe adds nothing.
+ * Refinement then uses neither it nor the one of `views` keyframes ago, and Gaussians that it contradicts may be gone.
+ * T3R_ERR_CANCELLED during refinement: the keyframe is taken, and passes are missing. The map stays valid and within
+ * its cap after any error. */
 t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                                t3r_stream_report *report);
 
 /* Computes the overlap of a picture of width x height by this camera with the newest keyframe, 0..256, in 1/256. It is
- * the lesser of two shares. One is the share of the keyframe's points that the picture would show. The other is the
- * number of cells of an 8 x 8 grid that these points fall on in the picture, over the number in their own picture. The
- * camera's distortion is ignored. Use it to choose keyframes: below some 70 % the next one is due. T3R_ERR_STATE: there
- * is no keyframe yet. T3R_ERR_CAMERA, T3R_ERR_UNSUPPORTED: as t3r_stream_keyframe(). */
+ * the lesser of two shares: the share of the keyframe's points that the picture would show; and the number of cells of
+ * an 8 x 8 grid that these points fall on in the picture, over the number in their own picture. The camera's
+ * distortion is ignored. Use it to choose keyframes: below about 70 % the next one is due. T3R_ERR_STATE: there is no
+ * keyframe yet. T3R_ERR_CAMERA, T3R_ERR_UNSUPPORTED: see t3r_stream_keyframe(). */
 t3r_status t3r_stream_overlap(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
                               uint32_t *overlap_q8);
 
-/* Returns the scene in the arena, for instance after t3r_attach(). T3R_ERR_STATE when there is none. */
+/* Returns the scene in the arena, for instance after t3r_attach(). T3R_ERR_STATE if there is none. */
 t3r_status t3r_get_scene(const t3r_runtime *rt, t3r_scene *scene);
 
 /* Build a scene from a file: the first starts an empty scene in the given frame (exponent -24..24, |origin| < 2^62) and
@@ -620,21 +620,21 @@ t3r_status t3r_harmonics_colour(const int16_t *coefficients_q12, uint32_t degree
  * partly drawn. */
 t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target);
 
-/* Returns the number of passes over the scene that the last t3r_render() took: 1 when the arena had room for all
- * splats. */
+/* Returns the number of passes over the scene that the last t3r_render() took: 1 if the arena had room for all splats.
+ */
 uint32_t t3r_render_passes(const t3r_runtime *rt);
 
-/* The number of refinement passes that the last build took, 0..`refine`. 0 without a runtime, before a build, and
- * of a stream. */
+/* Returns the number of refinement passes that the last build took, 0..`refine`. 0 without a runtime, before a build,
+ * and with a stream. */
 uint32_t t3r_refinement_passes(const t3r_runtime *rt);
 
 /* Returns the camera of context view `view`, at the working size and without distortion, as the last analysis placed
- * it: with `align` its pose may be a corrected one. T3R_ERR_ARGUMENT: NULL, or a view that was not added. */
+ * it: with `align` its pose may be corrected. T3R_ERR_ARGUMENT: NULL, or a view that was not added. */
 t3r_status t3r_view_camera(const t3r_runtime *rt, uint32_t view, t3r_camera *camera);
 
-/* Runs the image stage alone, as t3r_add_view() applies it: converts any frame to 8-bit RGB and 16-bit depth of the
- * working size, undistorted, in the caller's memory. depth_out may be NULL, and so may the frame's depth. *undistorted
- * becomes the camera of the result. T3R_ERR_STATE unless the runtime is empty. */
+/* Runs the image stage of t3r_add_view() only: converts any frame to 8-bit RGB and 16-bit depth of the working size,
+ * undistorted, in the caller's memory. depth_out may be NULL, and so may the frame's depth. *undistorted becomes the
+ * camera of the result. T3R_ERR_STATE unless the runtime is empty. */
 t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint8_t *rgb_out,
                        uint16_t *depth_out, t3r_camera *undistorted);
 
@@ -646,7 +646,7 @@ uint32_t t3r_features(void);
 
 /* Returns a short English sentence for a status. Never NULL. */
 const char *t3r_error_text(t3r_status status);
-/* Return stable lower-case names, as the command line and the tables print them. NULL = out of range, or one of the
+/* Return stable lower-case names, as printed by the command line and the tables. NULL = out of range, or one of the
  * values ..._CONFIGURED. */
 const char *t3r_stage_name(t3r_stage stage);
 const char *t3r_allocation_name(t3r_allocation allocation);
@@ -655,7 +655,7 @@ const char *t3r_depth_name(t3r_depth depth);
 const char *t3r_preset_name(t3r_preset preset);
 const char *t3r_wavelet_name(t3r_wavelet wavelet);
 const char *t3r_pixel_format_name(t3r_pixel_format format);
-/* Returns whether two views can be matched, and if not the reason, as text for people. Never NULL. */
+/* Returns whether two views can be matched, or the reason why not, as text for people. Never NULL. */
 const char *t3r_pair_text(t3r_pair pair);
 
 #ifdef __GNUC__

@@ -26,9 +26,9 @@
 #define T3R_AT_COUNT 9
 
 /* Defaults of t3r_default_config() that an arena's bytes depend on. */
-/* t3r_config.clusters is chosen: one for 256 points of all views, at most 32. */
+/* Default of t3r_config.clusters: one for 256 points of all views, at most 32. */
 #define T3R_CLUSTERS_OF_POINTS(points) ((points) < 512 ? 1 : (points) < 32 * 256 ? (points) / 256 : 32)
-/* At most so many passes of refinement, where their number is fitted (t3r_config.fit_passes). */
+/* Most passes of refinement where their number is fitted (t3r_config.fit_passes). */
 #define T3R_DEFAULT_REFINE (!T3R_FEATURE_REFINEMENT ? 0 : T3R_FEATURE_LOSS ? 8 : 4)
 
 #define T3R_UP_(bytes) (((size_t)(bytes) + (T3R_ARENA_ALIGN - 1)) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN)
@@ -55,8 +55,8 @@
 #define T3R_TILE_SIDE 16
 #define T3R_GRID_STEP 8 /* undistortion grid, pixels */
 
-/* The K-means' work, whatever the number of points: centres in whole groups, and in the same bytes first the sample, 16
- * points a centre, then of each centre twelve neighbours, sums and a weight. A single SuperCluster needs none. */
+/* The K-means' work for any number of points: the centres in whole groups; then, in the same bytes, first the sample,
+ * 16 points a centre, later each centre's twelve neighbours, sums and weight. A single SuperCluster needs none. */
 #define T3R_CENTRE_ROOM_(clusters) (((size_t)(clusters) + 15) / 16 * 16)
 #define T3R_SAMPLE_ROOM_(clusters) ((clusters) < 160 ? (size_t)(clusters)*16 : (size_t)2560)
 #define T3R_CLUSTER_SUMS_(clusters) (T3R_UP_((size_t)(clusters)*48) + T3R_UP_((size_t)(clusters)*4))
@@ -68,7 +68,7 @@
     ((clusters) > 1 ? T3R_UP_(T3R_CENTRE_ROOM_(clusters) * 12) + T3R_UP_(T3R_CENTRE_ROOM_(clusters) * 4) +             \
                           T3R_MAX_(T3R_CLUSTER_SAMPLE_BYTES_(clusters), T3R_CLUSTER_MEANS_BYTES_(clusters))            \
                     : (size_t)0)
-/* Sums of each worker but the first. */
+/* Sums of each worker except the first. */
 #define T3R_CLUSTER_SUMS_BYTES(clusters) ((clusters) > 1 ? T3R_CLUSTER_SUMS_(clusters) : (size_t)0)
 
 #define T3R_PIXELS_(width, height) ((size_t)(width) * (height))
@@ -82,22 +82,22 @@
 #define T3R_IMAGE_WORK_BYTES_(width, height, workers)                                                                  \
     (T3R_UP_(T3R_GRID_NODES_(width, height) * 8) + (workers)*T3R_IMAGE_ROW_BYTES_(width) +                             \
      T3R_UP_(T3R_PIXELS_(width, height) * 2) + T3R_UP_(T3R_PIXELS_(width, height) * 3))
-/* The columns of a picture whose coarsest level, 16 pixels wide, is whole. */
+/* The columns of a picture rounded up to 16, a whole pixel of the coarsest level. */
 #define T3R_HEAD_COLUMNS_(width) (((size_t)(width) + 15) / 16 * 16)
 #define T3R_HEAD_WORK_(width, column_bytes)                                                                            \
     ((column_bytes) > 0 ? T3R_HEAD_COLUMNS_(width) * (column_bytes) + T3R_HEAD_KERNEL_BYTES : (size_t)0)
-/* What lifting needs beside its plane: the two halves of a row. Each has T3R_WAVELET_PAD samples before and behind it,
- * and its length is rounded up to as many. The texture rows of all levels, width + 5 samples, take less. */
+/* Work of lifting beside its plane: the two halves of a row. Each has T3R_WAVELET_PAD samples before and after it, and
+ * its length is rounded up to a multiple of that. The texture rows of all levels, width + 5 samples, take less. */
 #define T3R_WAVELET_PAD 8u /* samples: 16 bytes, so that halves stay aligned */
 #define T3R_WAVELET_ROW_BYTES(width) (((size_t)(width) + 5 * T3R_WAVELET_PAD) * 2)
 #define T3R_WAVELET_WORK_BYTES_(width, height)                                                                         \
     (T3R_UP_(T3R_PIXELS_(width, height) * 2) + T3R_UP_(T3R_WAVELET_ROW_BYTES(width)))
 
-/* Gaussians that may reach into one worker's tiles from those of another: where there are more, fewer workers draw. */
+/* Most Gaussians that reach into one worker's tiles from another's; with more, fewer workers draw. */
 #define T3R_REFINE_BORDER_(gaussians) (((size_t)(gaussians) + 3) / 4)
 
-/* Stereo: work of one pair of views, and as many disparities and paths as the pipeline asks for. */
-#define T3R_STEREO_DISPARITIES 128u /* most; as many as the first look finds are compared */
+/* Stereo: work of one pair of views, with the disparities and paths of the pipeline. */
+#define T3R_STEREO_DISPARITIES 128u /* most; the first look finds how many are compared */
 #define T3R_STEREO_PATHS 4u
 /* The largest side of a rectified plane in planar rectification; other shapes take no more memory. */
 #define T3R_RECTIFIED_SIDE(width, height) (((size_t)((width) > (height) ? (width) : (height)) * 5 / 4 + 7) / 8 * 8)
@@ -116,7 +116,7 @@
 #define T3R_MATCH_WORK_BYTES(width, height, disparities, paths)                                                        \
     T3R_MAX_(T3R_MATCH_PATH_BYTES_(width, height, disparities, paths),                                                 \
              (size_t)4 * T3R_MATCH_LEAST_REGION(width, height) + T3R_MATCH_RIGHT(width, disparities) * (height))
-/* X(type, part, count): what the paths take, rows of T3R_MATCH_ROWS(height) being one block. */
+/* X(type, part, count): parts of the paths' work, with blocks of T3R_MATCH_ROWS(height) rows. */
 #define T3R_MATCH_PARTS_(X, width, height, disparities, paths)                                                         \
     X(int16_t, sums, (size_t)(width) * (disparities)*T3R_MATCH_ROWS(height))                                           \
     X(int16_t, winners, T3R_MATCH_RIGHT(width, disparities) * 2)                                                       \
@@ -139,7 +139,7 @@
 #define T3R_STEREO_PLANES_(width, height, disparities)                                                                 \
     (T3R_STEREO_SIDE_BYTES_(T3R_STEREO_LEFT_(width, height)) +                                                         \
      T3R_STEREO_SIDE_BYTES_(T3R_STEREO_RIGHT_(width, height, disparities)))
-/* What the matching takes, and at least a view's luma twice */
+/* Work of the matching, at least a view's luma twice */
 #define T3R_STEREO_REST_BYTES_(width, height, disparities, paths)                                                      \
     T3R_MAX_(T3R_MATCH_WORK_BYTES(T3R_RECTIFIED_SIDE(width, height), T3R_RECTIFIED_SIDE(width, height), disparities,   \
                                   paths),                                                                              \
@@ -202,26 +202,26 @@
 #define T3R_REFINES_(shape)                                                                                            \
     (T3R_BUILDS_(shape) * (T3R_REFINE_(shape) + T3R_STREAMS_(shape) > 0 ? (size_t)1 : (size_t)0))
 
-/* 1 where planes outlive a build for the next one; a stream keeps its map in any case. */
+/* 1 if planes outlive a build for the next one; a stream keeps its map in any case. */
 #define T3R_FOLLOWS_(shape)                                                                                            \
     (T3R_BUILDS_(shape) * (1 - T3R_STREAMS_(shape)) * (T3R_WARM_(shape) != 0 ? (size_t)1 : (size_t)0))
 
 #define T3R_OTHER_WORKERS_(shape) (T3R_WORKERS_(shape) - 1) /* all but the first */
 #define T3R_VIEW_PIXELS_(shape) (T3R_WIDTH_(shape) * T3R_HEIGHT_(shape))
 #define T3R_ALL_PIXELS_(shape) (T3R_VIEW_PIXELS_(shape) * T3R_VIEWS_(shape))
-/* Views that are analysed at once. */
+/* Views analysed at the same time. */
 #define T3R_ANALYSED_(shape) (T3R_STREAMS_(shape) ? T3R_BUILDS_(shape) : T3R_VIEWS_(shape))
 #define T3R_ANALYSED_PIXELS_(shape) (T3R_VIEW_PIXELS_(shape) * T3R_ANALYSED_(shape))
-/* The last stage of what a build needs until `stage`: of the planes, and of the analysis. */
+/* The last stage that needs the planes or the analysis, if a build needs them until `stage`. */
 #define T3R_LAST_(shape, stage) (T3R_KEEP_(shape) + T3R_FOLLOWS_(shape) > 0 ? T3R_AT_RASTER : (stage))
 #define T3R_LAST_ANALYSIS_(shape, stage) (T3R_KEEP_(shape) && !T3R_STREAMS_(shape) ? T3R_AT_RASTER : (stage))
 
-/* What is kept of a splat's rows while its tile is drawn: from 129 Gaussians on, sorting leaves as much room. */
+/* Memory for a splat's rows while its tile is drawn: from 129 Gaussians on, the sort's is large enough. */
 #define T3R_KEPT_LEAST_BYTES 1028
 #define T3R_KEPT_BYTES_(gaussians)                                                                                     \
     ((size_t)(gaussians)*8 < T3R_KEPT_LEAST_BYTES ? T3R_UP_(T3R_KEPT_LEAST_BYTES) : (size_t)0)
-/* Refinement works in one buffer. First come splats, depth order, tile table and corrections of all Gaussians. Then
- * come the sums of as many Gaussians as there is room for, at least every eighth, and last tile lists. */
+/* Refinement works in one buffer: first splats, depth order, tile table and corrections of all Gaussians, then sums of
+ * at least one Gaussian in eight and at most all, last tile lists. */
 #define T3R_REFINE_FIXED_BYTES_(shape)                                                                                 \
     (T3R_KEPT_BYTES_(T3R_GAUSSIANS_(shape)) + T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_SPLAT_BYTES) +                       \
      T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_ORDER_BYTES + T3R_SORT_BYTES) +                                               \
@@ -235,8 +235,8 @@
     (T3R_REFINES_(shape) * (T3R_REFINE_FIXED_BYTES_(shape) + T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_REFINE_SUMS_BYTES) +  \
                             T3R_UP_(T3R_GAUSSIANS_(shape) * 16)))
 
-/* Tile lists: an entry a Gaussian at least. With an entry for four tiles a Gaussian and one a pixel, a pass takes a
- * whole view unless most splats are many tiles wide. */
+/* Tile lists: at least one entry per Gaussian. With four entries per Gaussian and one per pixel, a pass takes a whole
+ * view unless most splats are many tiles wide. */
 #define T3R_LISTS_LEAST_BYTES_(shape) (T3R_GAUSSIANS_(shape) * 4)
 #define T3R_LISTS_BYTES_(shape)                                                                                        \
     ((T3R_GAUSSIANS_(shape) * 4 + T3R_PIXELS_(T3R_RENDER_WIDTH_(shape), T3R_RENDER_HEIGHT_(shape))) * 4)
@@ -320,7 +320,7 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
 #define T3R_LIVE_(stage, NAME, text, bytes, first, last)                                                               \
     +((first) <= (stage) && (stage) <= (last) ? T3R_UP_(bytes) : (size_t)0)
 #define T3R_STAGE_BYTES_(stage, shape) (0 T3R_BUFFERS(T3R_LIVE_, stage, shape))
-/* Every argument is written out 2^depth times, so the tree is kept flat. */
+/* Every argument is repeated 2^depth times, so the tree is kept flat. */
 #define T3R_MOST_(a, b, c, d) T3R_MAX_(T3R_MAX_(a, b), T3R_MAX_(c, d))
 #define T3R_MOST_OF_STAGES_(shape, more_refine, more_raster)                                                           \
     T3R_MAX_(                                                                                                          \
@@ -341,8 +341,8 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
                (keep) == T3R_KEEP_MAP ? 1 : T3R_CLUSTERS_OF_POINTS(T3R_PIXELS_(width, height) * (views)), width,       \
                height, T3R_HEAD_COLUMN_BYTES, keep, T3R_DEFAULT_REFINE, stereo, 1, warm, 0)
 
-/* The arena of the default configuration: the least bytes that work, and those with which a view takes one pass (views
- * of wide splats may take more). */
+/* Arena bytes of the default configuration: the minimum, and the size with which a view takes one pass (views of wide
+ * splats may take more). */
 #define T3R_ARENA_MIN_BYTES(width, height, views, gaussians)                                                           \
     T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 0, 0))
 #define T3R_ARENA_BYTES(width, height, views, gaussians)                                                               \
@@ -357,7 +357,7 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
     T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 0, 1))
 #define T3R_WARM_ARENA_BYTES(width, height, views, gaussians)                                                          \
     T3R_FULL_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, 0, 0, 1))
-/* The same of a stream (t3r_config.stream) with `views` keyframes at hand; each that it remembers (t3r_config.remember)
+/* The same for a stream (t3r_config.stream) with `views` live keyframes; each remembered one (t3r_config.remember)
  * takes T3R_REMEMBERED_BYTES(width, height) more. */
 #define T3R_STREAM_MIN_BYTES(width, height, views, gaussians)                                                          \
     T3R_MIN_BYTES_(T3R_DEFAULT_SHAPE_(width, height, views, gaussians, T3R_KEEP_MAP, 0, 0))

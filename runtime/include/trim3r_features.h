@@ -34,7 +34,7 @@
 #define T3R_FEATURE_REFINEMENT 1
 #endif
 
-/* What few firmwares use: lenses with distortion, wavelets other than db2, allocations other than by density, several
+/* Rarely used in firmware: lenses with distortion, wavelets other than db2, allocations other than by density, several
  * workers, and the losses that refinement measures. */
 #ifndef T3R_FEATURE_EXTRAS
 #define T3R_FEATURE_EXTRAS 1
@@ -43,7 +43,7 @@
 /* Losses that refinement measures: t3r_config.fit_passes and structural, t3r_request.max_loss_q8. */
 #define T3R_FEATURE_LOSS (T3R_FEATURE_REFINEMENT && T3R_FEATURE_EXTRAS)
 
-/* The features as bits: what t3r_features() returns. */
+/* The features as bits of t3r_features(). */
 #define T3R_HAS_NONE 0u
 #define T3R_HAS_COMPARISON (1u << 0)
 #define T3R_HAS_STEREO (1u << 1)

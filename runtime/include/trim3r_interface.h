@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a program and the library must agree on: the structs of trim3r.h, field by field. Each side compiles a digest of
- * it, and the calls by which a program starts compare the two. */
+/* The structs of trim3r.h, field by field, on which a program and the library must agree. Each side compiles a digest
+ * of them; the calls that start a program compare the two. */
 #ifndef TRIM3R_INTERFACE_H
 #define TRIM3R_INTERFACE_H
 
@@ -10,7 +10,7 @@
 #define T3R_FIELD_BYTES_(type, field) sizeof(((const type *)0)->field)
 #endif
 
-/* FNV-1a, a word instead of a byte at a time. */
+/* FNV-1a by words instead of bytes. */
 #define T3R_DIGEST_(word) digest = (digest ^ (word)) * 1099511628211u;
 #define T3R_DIGEST_TYPE_(type) T3R_DIGEST_(sizeof(type))
 #define T3R_DIGEST_FIELD_(type, field) T3R_DIGEST_(offsetof(type, field)) T3R_DIGEST_(T3R_FIELD_BYTES_(type, field))

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The settings of the runtime: a row each. The fields of t3r_config are made from the rows, with their defaults, ranges
- * and needs. So are the program's options, Python's settings, the fuzzers' draws and the list of docs/library.md. */
+/* The settings of the runtime, one row each. The rows generate the fields of t3r_config with their defaults, ranges and
+ * needs, the program's options, Python's settings, the fuzzers' draws and the list in docs/library.md. */
 #ifndef TRIM3R_SETTINGS_H
 #define TRIM3R_SETTINGS_H
 
@@ -10,22 +10,21 @@
  *     kind              number; q8 = a number in 1/256; toggle = 0 or 1; wavelet, allocation, head and depth = an
  *                       enumeration of that name
  *     low, high         the range
- *     default           width, height, views and gaussians are those handed to t3r_default_config()
+ *     default           width, height, views and gaussians: the arguments of t3r_default_config()
  *     feature, from     values of `from` and more need this T3R_FEATURE_ of the library
  *     group, option     the program's option: BUILD = of all builds, STREAM = of streams, FIELD = there is none
- *     help              of the option and in tables; the comment above the row has what else a program must know */
+ *     help              for the option and tables; the comment above the row has everything else to know */
 #define T3R_SETTINGS(X)                                                                                                \
-    /* The working size, to which every view is resized. With depth by stereo at least T3R_STEREO_LEAST_SIDE           \
-     * each. */                                                                                                        \
+    /* The working size of every view. With depth by stereo at least T3R_STEREO_LEAST_SIDE each. */                    \
     X(width, number, T3R_MIN_SIDE, T3R_MAX_SIDE, width, NONE, 0, FIELD, NULL, "width of the working size in pixels")   \
     X(height, number, T3R_MIN_SIDE, T3R_MAX_SIDE, height, NONE, 0, FIELD, NULL,                                        \
       "height of the working size in pixels")                                                                          \
-    /* Of a stream, the newest keyframes that it refines on. */                                                        \
+    /* In a stream, the number of newest keyframes that refinement uses. */                                            \
     X(views, number, 0, T3R_MAX_VIEWS, views, COMPARISON, 2, FIELD, NULL,                                              \
       "most context views that the arena has room for; 0 = it renders scenes from files alone")                        \
     X(max_gaussians, number, 1, T3R_MAX_GAUSSIANS, gaussians, NONE, 0, FIELD, NULL,                                    \
       "most Gaussians that the arena has room for")                                                                    \
-    /* A scene has exactly so many, or as many as there are valid points where these are fewer. */                     \
+    /* A scene has exactly this number, or all valid points if they are fewer. */                                      \
     X(gaussians, number, 1, T3R_MAX_GAUSSIANS, gaussians, NONE, 0, FIELD, NULL,                                        \
       "budget of a scene in Gaussians, at most max_gaussians")                                                         \
     /* The largest target that t3r_render() may draw. */                                                               \
@@ -37,7 +36,7 @@
       "wavelet that measures texture")                                                                                 \
     X(levels, number, 1, T3R_MAX_LEVELS, 2, NONE, 0, BUILD, "levels",                                                  \
       "levels of the wavelet that texture is summed over")                                                             \
-    /* K in GaussianTrim3R. 0 = t3r_cluster_count() chooses. With 1 no K-means run. A stream has one. */               \
+    /* K in GaussianTrim3R. 0 = t3r_cluster_count() chooses. 1 skips the K-means. A stream has one. */                 \
     X(clusters, number, 0, T3R_MAX_CLUSTERS, 0, NONE, 0, BUILD, "clusters",                                            \
       "number of SuperClusters; 0 = as many as the allocation and the points ask for")                                 \
     /* 0 = t3r_cluster_batch_count() chooses. */                                                                       \
@@ -53,31 +52,30 @@
       "exponent of texture in the density; 0 = texture does not count")                                                \
     X(head, head, T3R_HEAD_ANALYTIC, T3R_HEAD_COUNT - 1, T3R_HEAD_ANALYTIC, LEARNED, T3R_HEAD_LEARNED, FIELD, NULL,    \
       "head that makes Gaussians of the retained points")                                                              \
-    /* t3r_head_column_bytes() returns what a head needs. The default is enough for tiny and small                     \
-     * with 8-bit activations. */                                                                                      \
+    /* t3r_head_column_bytes() returns the bytes for a head. The default is enough for tiny and small with 8-bit       \
+     * activations. */                                                                                                 \
     X(head_column_bytes, number, 0, T3R_MAX_HEAD_COLUMN_BYTES, T3R_HEAD_COLUMN_BYTES, NONE, 0, FIELD, NULL,            \
       "working memory of a learned head in bytes a column of the view; 0 = none, for builds by other heads")           \
     X(refine, number, 0, T3R_MAX_REFINE, T3R_DEFAULT_REFINE, REFINEMENT, 1, BUILD, "refine",                           \
       "passes of refinement on the context views, at most where they are fitted")                                      \
-    /* 1 = `refine` is the most, and t3r_refinement_passes() returns the number taken. A stream takes at most          \
+    /* 1 = `refine` is an upper bound, and t3r_refinement_passes() returns the number taken. A stream takes at most    \
      * T3R_STREAM_REFINE a keyframe. 0 = every build and keyframe takes all of them. */                                \
     X(fit_passes, toggle, 0, 1, T3R_FEATURE_LOSS, LOSS, 1, BUILD, "fit-passes",                                        \
       "fit the number of passes to the budget and the agreement of the views, at most --refine")                       \
-    /* 1 = splats are as wide as the retained points of all views together ask for: narrower where several             \
-     * views cover a surface, wider where one does or where points are few. 0 = as wide as those of their own          \
-     * view ask for, as splats of T3R_HEAD_LEARNED, of a stream, of a build with refinement and of a head that         \
-     * nothing adapts are in any case. */                                                                              \
+    /* 1 = widths of splats fit the retained points of all views together: narrower where several views cover a        \
+     * surface, wider where one does or where points are few. 0 = they fit the points of their own view, which         \
+     * always holds for T3R_HEAD_LEARNED, a stream, a build with refinement and a head without adaptation. */          \
     X(fit_widths, toggle, 0, 1, T3R_FEATURE_COMPARISON, COMPARISON, 1, BUILD, "fit-widths",                            \
       "without refinement, fit the widths of splats of analytic to the points of all views")                           \
-    /* 1 = from its second pass on refinement weights local contrast as structural similarity does, and ignores        \
-     * what a whole view shows brighter or with more contrast than the others. 0 = every missing level counts          \
-     * the same, as in a stream in any case. */                                                                        \
+    /* 1 = from its second pass on refinement weights local contrast like structural similarity, and ignores a         \
+     * whole view's higher brightness or contrast. 0 = every missing level counts the same, which always holds in a    \
+     * stream. */                                                                                                      \
     X(structural, toggle, 0, 1, 0, LOSS, 1, BUILD, "structural",                                                       \
       "refine structure more than level: local contrast, and not what a whole view shows brighter")                    \
     X(depth, depth, T3R_DEPTH_SENSOR, T3R_DEPTH_COUNT - 1, T3R_DEPTH_SENSOR, STEREO, T3R_DEPTH_STEREO, BUILD, "depth", \
       "source of depth; stereo matches the colours of two or more posed frames and ignores recorded depth")            \
-    /* 1 = what stereo cannot match continues the planes that the matched pixels of its view lie on; 0 = the           \
-     * surface next to it in the picture. Without effect unless depth is by stereo and fill_radius above 0. */         \
+    /* 1 = pixels that stereo cannot match continue the planes on which the matched pixels of their view lie; 0 =      \
+     * the neighbouring surface in the picture. Needs depth by stereo and fill_radius above 0. */                      \
     X(planes, toggle, 0, 1, 0, STEREO, 1, BUILD, "planes",                                                             \
       "continue what --depth stereo does not match along the planes of what it does")                                  \
     X(fill_radius, number, 0, 8, 4, NONE, 0, BUILD, "fill-radius",                                                     \
@@ -90,42 +88,41 @@
     X(redundancy, toggle, 0, 1, 1, NONE, 0, BUILD, "redundancy",                                                       \
       "let small budgets pass over points whose surface another view shows as finely")                                 \
     X(exposure, toggle, 0, 1, 1, NONE, 0, BUILD, "exposure", "bring the colours of all views to their mean exposure")  \
-    /* 1 = the poses of the views of a build are corrected first: by a rotation and a shift of each camera, at         \
-     * most 1/16 radian and 1/16 scene unit an axis. A correction is discarded unless the views then differ by         \
-     * at least a 16th less. 0 = poses stay as given, as with one view, with depth by stereo, with `warm` and          \
-     * in a stream in any case. t3r_view_camera() returns them. */                                                     \
+    /* 1 = the poses of a build's views are corrected first, by a rotation and a shift of each camera, at most 1/16    \
+     * radian and 1/16 scene unit an axis. A correction is discarded unless it makes the views differ by at least a    \
+     * 16th less. 0 = poses stay as given, which always holds with one view, with depth by stereo, with `warm` and     \
+     * in a stream. t3r_view_camera() returns them. */                                                                 \
     X(align, toggle, 0, 1, T3R_FEATURE_COMPARISON, COMPARISON, 1, BUILD, "align",                                      \
       "correct the poses of the views until they show the same surfaces in the same colours")                          \
     X(keep_analysis, toggle, 0, 1, 0, NONE, 0, FIELD, NULL,                                                            \
       "keep the analysis after the build, which t3r_rebuild() and a bounded loss need")                                \
-    /* 1 = builds follow one another, and each takes over what still holds from the one before; 0 = every build        \
-     * begins anew. Views then outlive the scene: t3r_add_view() adds to those of the last one, and where there        \
-     * is no room the newest replaces the oldest. So a pair slides along a camera's way by one view at a time.         \
-     * Of a view that stays, its depth with filled and bridged holes, its doubtful pixels and its texture are          \
-     * not made again. The K-means begin with the last centres and take a sixth of the batches. The scene's            \
-     * frame stays. Refinement takes half the passes. Both are rounded up. A build begins anew after                   \
-     * t3r_init(), t3r_reset() and a build that failed, where the exponent of the frame changes, and beyond 512        \
-     * scene units from its origin. A stream halves its passes from the second keyframe on. The bits are a             \
-     * function of all calls since t3r_init() or t3r_reset(). A build that begins anew has those of a build            \
-     * with 0. Must be 0 with depth by stereo. */                                                                      \
+    /* 1 = each build reuses the valid results of the previous one; 0 = every build starts from scratch. Views then    \
+     * outlive the scene: t3r_add_view() adds to the last scene's views, and without room the newest replaces the      \
+     * oldest. So a pair slides along a camera's path by one view at a time. A view that stays keeps its depth with    \
+     * filled and bridged holes, its doubtful pixels and its texture. The K-means begin with the last centres and      \
+     * take a sixth of the batches, and refinement takes half the passes, both rounded up. The scene's frame stays.    \
+     * A build starts from scratch after t3r_init(), t3r_reset() or a failed build, if the exponent of the frame       \
+     * changes, and beyond 512 scene units from its origin. A stream halves its passes from the second keyframe on.    \
+     * The bits are a function of all calls since t3r_init() or t3r_reset(). A build from scratch has the bits of a    \
+     * build with 0. Must be 0 with depth by stereo. */                                                                \
     X(warm, toggle, 0, 1, 0, STREAMS, 1, BUILD, "warm",                                                                \
       "let a build take over what still holds from the one before: with --slide and --stream of replay")               \
-    /* 1 = by t3r_stream_keyframe() alone; 0 = scenes are built of all views at once. Must be 0 without views          \
-     * and with depth by stereo. */                                                                                    \
+    /* 1 = the scene is built only by t3r_stream_keyframe(); 0 = scenes are built of all views at once. Must be 0      \
+     * without views and with depth by stereo. */                                                                      \
     X(stream, toggle, 0, 1, 0, STREAMS, 1, FIELD, NULL,                                                                \
       "let a map of at most `gaussians` follow a camera with a depth sensor")                                          \
     X(half_life, number, 0, 1024, 32, NONE, 0, STREAM, "half-life",                                                    \
       "number of keyframes that halve the density of what they do not see; 0 = nothing fades")                         \
-    /* In two bytes a pixel. Each pass of refinement draws two of them in turn, and what many keyframes saw            \
-     * changes by smaller steps. So the map keeps showing what the camera left. Where there is no room, the one        \
-     * that the map needs least is forgotten. Not read without `stream`. */                                            \
+    /* Takes two bytes a pixel for each. Each pass of refinement draws two of them in turn, and Gaussians that many    \
+     * keyframes saw change by smaller steps, so the map keeps showing places that the camera has left. Without        \
+     * room, the keyframe that the map needs least is forgotten. Ignored without `stream`. */                          \
     X(remember, number, 0, T3R_MAX_REMEMBERED, 0, NONE, 0, STREAM, "remember",                                         \
       "number of keyframes whose colours are remembered when their planes are gone, for refinement in "                \
       "turn")                                                                                                          \
-    /* Each has a part of the arena for itself. The number never changes a bit. */                                     \
+    /* Each has its own part of the arena. The number never changes a bit. */                                          \
     X(workers, number, 1, T3R_MAX_WORKERS, 1, EXTRAS, 2, FIELD, NULL,                                                  \
       "number of tasks that t3r_hooks.parallel_for may run at once")                                                   \
-    /* It bounds the time of a scene that is not trusted. */                                                           \
+    /* Bounds the time of an untrusted scene. */                                                                       \
     X(tile_splats, number, 0, T3R_MAX_GAUSSIANS, 0, NONE, 0, BUILD, "tile-splats",                                     \
       "draw a tile of 16 x 16 pixels from its N nearest Gaussians alone; 0 = from all")                                \
     X(seed, number, 0, UINT32_MAX, 1, NONE, 0, BUILD, "seed",                                                          \

@@ -8,13 +8,13 @@
 
 #include "trim3r_arena.h"
 
-#define T3R_LANES 8 /* columns of a group */
+#define T3R_LANES 8 /* columns in a group */
 #define T3R_TILE_GROUPS (T3R_TILE_SIDE / T3R_LANES)
 
 /* A tile's pixels, row by row. Transmittance starts at T3R_ONE_Q16.
  *
- * Why 16 bits are enough for colour: a contribution needs a weight w >= 1 (Q16), which transmittance loses, so there
- * are at most 65,535; their weighted colours sum to at most 32,640 (Q7) and their roundings to half a step each,
+ * Why 16 bits are enough for colour: a contribution needs a weight w >= 1 (Q16), which is taken from transmittance, so
+ * there are at most 65,535; their weighted colours sum to at most 32,640 (Q7) and their roundings to half a step each,
  * 32,768. */
 typedef struct t3r_tile {
     uint16_t transmittance_q16[T3R_TILE_SIDE][T3R_TILE_SIDE];
@@ -36,16 +36,16 @@ typedef struct t3r_tile_splat {
     int32_t a, b, c;
     uint16_t opacity_q16;
     uint16_t colour_q7[3];
-    uint8_t column;      /* of the first group: 0..8, or 0 where there are two */
+    uint8_t column;      /* of the first group: 0..8; 0 with two groups */
     uint8_t groups;      /* 1, or 2 adjacent groups of eight columns */
     uint8_t drawn;       /* bit g: group g is drawn; other groups are skipped */
     uint8_t first, last; /* rows */
     uint8_t x0, x1;      /* columns of the splat's box in the tile, inclusive, for refinement */
 } t3r_tile_splat;
 
-/* A splat's part in eight columns of a row, as it was blended: weights w, which transmittance lost, and alphas, rounded
- * down to 15 bits and 0 where w is 0. A splat in a tile has the rows first..last of its first group, then those of its
- * second. */
+/* A blended splat's part in eight columns of a row: weights w, which transmittance lost, and alphas, rounded down to
+ * 15 bits and 0 where w is 0. A splat in a tile has the rows first..last of its first group, then those of its second.
+ */
 typedef struct t3r_blended_row {
     uint16_t weight_q16[T3R_LANES];
     int16_t alpha_q15[T3R_LANES];
@@ -59,11 +59,11 @@ static inline uint32_t t3r_rows_of(const t3r_tile_splat *splat)
     return splat->groups * (splat->last - splat->first + 1u);
 }
 
-/* Blends a splat behind what the tile holds. Nothing needs more alignment than its type. */
+/* Blends a splat behind the tile's earlier ones. Nothing needs more alignment than its type. */
 typedef void t3r_blend_kernel(t3r_tile *tile, const t3r_tile_splat *splat);
 
-/* As t3r_blend_kernel, and stores what it blends: t3r_rows_of() rows, 0 where a group is not drawn. Returns the bitwise
- * or of the weights: 0 when the splat draws nothing. */
+/* Blends like t3r_blend_kernel and stores t3r_rows_of() blended rows, 0 where a group is not drawn. Returns the
+ * bitwise or of the weights: 0 if the splat draws nothing. */
 typedef uint16_t t3r_blend_keep_kernel(t3r_tile *restrict tile, const t3r_tile_splat *splat,
                                        t3r_blended_row *restrict rows);
 

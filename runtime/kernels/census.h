@@ -15,7 +15,7 @@
 #define T3R_CENSUS_ROWS 5
 #define T3R_CENSUS_REACH 3 /* columns to either side */
 #define T3R_CENSUS_PAIRS 24
-/* Cost against a pixel without luma: half of the bits, as two unrelated places have. */
+/* Cost against a pixel without luma: half of the bits, like two unrelated places. */
 #define T3R_CENSUS_NOTHING 12
 
 /* Computes the census of a row. rows: the luma rows y - 2..y + 2, each `width` (2..) long; the ends of a row repeat.
@@ -29,7 +29,7 @@ typedef struct t3r_census_costs {
     uint32_t width, disparities; /* width of the left row; disparities: a multiple of 16 up to T3R_PATH_MOST */
     const uint8_t *luma;         /* of both rows, 0 = no luma; a left pixel without luma costs 0 throughout */
     const uint8_t *luma_right;
-    const uint8_t *bits;       /* as census_row writes them, with a pitch of the row's length, `width` */
+    const uint8_t *bits;       /* from census_row, with a pitch of the row's length, `width` */
     const uint8_t *bits_right; /* likewise, with a pitch of T3R_MATCH_RIGHT(width, disparities) */
     uint8_t *mirrored;         /* work: the right row's bits by falling column, three times its length */
     uint8_t *least;            /* work: the least cost against each right pixel, by falling column */

@@ -51,8 +51,7 @@ typedef void t3r_depthwise_kernel(const t3r_convolution *layer, const t3r_block 
 t3r_convolve_kernel t3r_convolve_c;
 t3r_depthwise_kernel t3r_depthwise_c;
 
-/* --- packed layers: for instruction sets that need weights in their own order
- * -------------------------------------- */
+/* --- packed layers: for instruction sets that need weights in their own order ----------------------------------- */
 
 #define T3R_PACKED_OUTPUTS 8u /* outputs come in groups of this size, the last one padded */
 #define T3R_PACKED_TAPS 4u    /* likewise the taps of a run */
@@ -68,11 +67,11 @@ static inline size_t t3r_packed_bytes(uint32_t rows, uint32_t run, uint32_t outp
            T3R_PACKED_ALIGN;
 }
 
-/* Packs a layer of 8-bit weights and activations that is not depthwise, in the order in which convolve_packed of the
- * same table reads it. Its taps are `rows` runs, at most T3R_LAYER_RUNS. */
+/* Packs a layer of 8-bit weights and activations that is not depthwise, in the order that the same table's
+ * convolve_packed reads. Its taps are `rows` runs, at most T3R_LAYER_RUNS. */
 typedef void t3r_pack_layer_kernel(const t3r_convolution *layer, uint32_t rows, void *packed);
 
-/* Computes the layer on a block of strips from what pack_layer wrote. Reads only outputs, zero and output_bits of
+/* Computes the layer on a block of strips from pack_layer's output. Reads only outputs, zero and output_bits of
  * `layer`. */
 typedef void t3r_convolve_packed_kernel(const t3r_convolution *layer, const void *packed, const t3r_block *block,
                                         void *out, uint32_t out_pitch);

@@ -20,7 +20,7 @@ typedef void t3r_nv12_row_kernel(const uint8_t *restrict luma, const uint8_t *re
 typedef void t3r_triple_row_kernel(const uint8_t *restrict in, uint32_t count, uint8_t *restrict first,
                                    uint8_t *restrict second, uint8_t *restrict third);
 
-/* Position of a walk over the boxes of a destination row: at `box`, of which `left` units are still open. */
+/* Position of a walk over the boxes of a destination row: in `box`, with `left` units still open. */
 typedef struct t3r_box_walk {
     uint32_t box, left;
 } t3r_box_walk;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which variant of each kernel a processor gets. */
+/* Chooses the variant of each kernel for a processor. */
 #include "kernels.h"
 
 #include "variants.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The table of the runtime's hot loops: one entry a loop. The header of each kernel states its ranges, alignment
- * and padding.
+/* The table of the runtime's hot loops, one entry each. The header of each kernel states its ranges, alignment and
+ * padding.
  *
  * Plain C defines every entry (kernels_c.c). A variant for an instruction set gives the same bits for all inputs that
  * the kernel's header allows, and reads and writes no byte beyond what that header states. t3r_kernels_choose() fills a
@@ -94,11 +94,11 @@ typedef struct t3r_kernels {
     /* the hash of each stage */
     t3r_hash_bytes_kernel *hash_bytes;
 
-    /* Bytes an activation that convolve_packed reads: 2 = int16, 1 = a byte of activation + 128. */
+    /* Bytes of an activation in convolve_packed's strips: 2 = int16, 1 = a byte of activation + 128. */
     uint32_t strip_bytes;
 } t3r_kernels;
 
-/* Plain C: the definition of all entries but packed layers. */
+/* Plain C: the definition of all entries except packed layers. */
 extern const t3r_kernels t3r_kernels_c;
 
 /* Fills the table for a processor with these features, T3R_CPU_...; 0: plain C. */

@@ -10,7 +10,7 @@
 #define T3R_KEY_ZERO (50 << 10)
 /* Maximum pixels of a run: the number of columns of the blue noise. */
 #define T3R_KEY_RUN 64u
-/* A pixel whose threshold (of 65536) is below this, 0.003, is retained first of all, whatever its texture. */
+/* A pixel with a threshold (of 65536) below this, 0.003, is retained before all others, at any texture. */
 #define T3R_SURE_THRESHOLD 197u
 /* Added to the texture before its power, 0.002 of full scale, so that blank walls keep some points. */
 #define T3R_TEXTURE_FLOOR_Q4 8u
@@ -19,9 +19,9 @@
 typedef void t3r_wanted_row_kernel(const uint16_t *restrict texture_q4, uint32_t count, uint32_t gamma_q8,
                                    uint16_t *restrict wanted_q10);
 
-/* Computes the keys of `count` pixels: log2 of the threshold, in [0, 65535], less wanted. White noise of `place` + i
+/* Computes the keys of `count` pixels: log2 of the threshold, in [0, 65535], minus wanted. White noise of `place` + i
  * splits each of the 4,096 ranks of blue noise; without ranks (NULL) it is the whole threshold. The lowest bits of
- * `place`, those that count the run, are 0. */
+ * `place`, which count within the run, are 0. */
 typedef void t3r_key_row_kernel(uint32_t place, uint32_t seed, const uint16_t *rank,
                                 const uint16_t *restrict wanted_q10, uint32_t count, uint16_t *restrict key);
 

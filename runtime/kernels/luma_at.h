@@ -15,8 +15,8 @@ typedef struct t3r_luma_picture {
     uint32_t width, height; /* 2..8192 each */
 } t3r_luma_picture;
 
-/* Computes out[i] = 1..255, or 0 where there is no place, where the place is outside the picture, and where its nearest
- * pixel has no luma. `count`: up to T3R_RAYS; places after it, up to a multiple of 16, are read and ignored. */
+/* Computes out[i] = 1..255, or 0 without a place, for a place outside the picture, and if its nearest pixel has no
+ * luma. `count`: up to T3R_RAYS; places after it, up to a multiple of 16, are read and ignored. */
 typedef void t3r_luma_at_kernel(const t3r_luma_picture *picture, const t3r_ray_places *places, uint32_t count,
                                 uint8_t *out);
 t3r_luma_at_kernel t3r_luma_at_c;

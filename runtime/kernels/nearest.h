@@ -28,15 +28,16 @@ typedef struct t3r_neighbours {
 
 /* Prepares `nearest` of the same table for new centres: the part for the centres first..end - 1, so that workers can
  * share it. `first` is a multiple of T3R_CENTRE_GROUP, and so is `end` unless it is the number of centres. Plain C
- * computes the list of neighbours, with as many distances a centre as there are centres. A variant that compares all
- * centres needs no list and may leave it unset. */
+ * computes the list of neighbours, with one distance for each pair of centres. A variant that compares all centres may
+ * leave the list unset. */
 #define T3R_CENTRE_GROUP 16u
 typedef void t3r_nearest_begin_kernel(const t3r_centres *centres, uint32_t first, uint32_t end,
                                       const t3r_neighbours *neighbours);
 
-/* Finds the index of the nearest centre for each of `points` consecutive points, aligned to 2 bytes. `guess`, below the
- * number of centres, is where to start; it changes no result. Plain C first compares a point with the neighbours of its
- * predecessor's centre, which the triangle inequality often shows to be enough; else with all. */
+/* Finds the index of the nearest centre for each of `points` consecutive points, aligned to 2 bytes. `guess`, below
+ * the number of centres, is the start of the search; it changes no result. Plain C first compares a point with the
+ * neighbours of its predecessor's centre, which the triangle inequality often shows to be enough; otherwise with all.
+ */
 typedef void t3r_nearest_kernel(const t3r_centres *centres, const t3r_neighbours *neighbours, uint32_t points,
                                 const int16_t (*feature_q11)[T3R_DIMENSIONS], uint16_t guess, uint16_t *nearest);
 

@@ -36,8 +36,8 @@ typedef struct t3r_path_row {
     const uint8_t *cost;               /* width x disparities */
     const uint8_t *from;               /* path states, T3R_PATH_STATE_BYTES each, consecutive */
     uint8_t *to;                       /* likewise; all is written except guards and ends */
-    int16_t *sums; /* width x disparities: set to the sums of all paths, added to with `reverse`; NULL: not computed,
-                    * nor is the path along the row */
+    int16_t *sums; /* width x disparities: set to the sums of all paths, added to with `reverse`; NULL: neither sums nor
+                      the path along the row are computed */
 } t3r_path_row;
 
 /* Returns the offset of the least values in a path's state; slot s has its own at t3r_path_leasts() + s. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Splats in the coordinates of a tile, as blending reads them (SPEC.md, "Raster: blending"). */
+/* Splats in the coordinates of a tile, for blending (SPEC.md, "Raster: blending"). */
 #ifndef T3R_KERNEL_PLACE_H
 #define T3R_KERNEL_PLACE_H
 
@@ -12,7 +12,7 @@
 #define T3R_PLACED 8
 
 /* Places the splats of the first `count` >= 1 entries of a list, all of which overlap the tile at (left, top): on any
- * eight columns when the splat's box is no wider there, else on both halves of the tile. A half on which it draws
+ * eight columns if the splat's box is no wider there, else on both halves of the tile. A half on which it draws
  * nothing is not marked as drawn. The second group of a splat with one group may hold anything. */
 typedef void t3r_place_kernel(const t3r_splat *splats, const uint32_t *list, uint32_t count, uint32_t left,
                               uint32_t top, t3r_tile_splat *placed);

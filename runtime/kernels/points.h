@@ -33,8 +33,8 @@ typedef struct t3r_points {
     int32_t point_q20[3][T3R_POINTS];
 } t3r_points;
 
-/* The points in a view: the pixel whose centre is nearest, as row x width + column, or T3R_NO_PIXEL; and the depth
- * there, undefined without a pixel. */
+/* The points' places in a view: the pixel whose centre is nearest, as row x width + column, or T3R_NO_PIXEL; and the
+ * depth there, undefined without a pixel. */
 typedef struct t3r_places {
     uint32_t pixel[T3R_POINTS];
     int32_t z_q20[T3R_POINTS];

@@ -8,7 +8,7 @@
 
 #include "trim3r.h"
 
-/* Splats at or nearer than 1/32 scene unit are culled, and those whose centre has |x| or |y| above 16 z. */
+/* Splats at 1/32 scene unit or nearer are culled, and those whose centre has |x| or |y| above 16 z. */
 #define T3R_NEAR_Q20 (1 << 15)
 #define T3R_ASIDE 16
 #define T3R_DILATION_Q24 5033165 /* 0.3 px^2, added to every projected covariance */

@@ -13,8 +13,8 @@
 typedef void t3r_radix_count_kernel(const uint32_t *restrict keys, uint32_t count,
                                     uint32_t histogram[T3R_RADIX_DIGITS * T3R_RADIX]);
 
-/* Moves (key, index) pairs, in order, to the places that their digit's start gives. start[value] then points after the
- * last one with that value. The starts lead to `count` different places. */
+/* Moves (key, index) pairs, in order, to the places given by the start of their digit. start[value] then points after
+ * the last pair with that value. The starts lead to `count` different places. */
 typedef void t3r_radix_pass_kernel(const uint32_t *restrict keys, const uint32_t *restrict indices, uint32_t count,
                                    uint32_t digit, uint32_t start[T3R_RADIX], uint32_t *restrict to_keys,
                                    uint32_t *restrict to_indices);

@@ -43,14 +43,14 @@ typedef struct t3r_refine_sums {
     int16_t right_q15[2], down_q15[2];       /* change of x and y a pixel to the right and down, in this view */
 } t3r_refine_sums;
 
-/* Returns the right shift of sums over `area` pixels, ceil(log2 area) - 6, at least 0: they are as large as 64 pixels'
- * at most. */
+/* Returns the right shift of sums over `area` pixels, ceil(log2 area) - 6, at least 0, which bounds them by the sums
+ * of 64 pixels. */
 static inline uint32_t t3r_refine_shift(uint32_t area)
 {
     return area <= 64 ? 0 : 26u - (uint32_t)__builtin_clz(area - 1);
 }
 
-/* A tile being refined: first drawn, then walked back from the last splat to the first. */
+/* A tile being refined: first drawn, then unblended from the last splat to the first. */
 typedef struct t3r_wanted {
     t3r_tile pixels;                                      /* as drawn; on the way back, colours behind the current
                                                            * splat */

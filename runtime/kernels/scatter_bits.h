@@ -17,10 +17,10 @@
 #define T3R_TERM_BITS 14
 #define T3R_TERM_SUM_BITS 16
 
-/* Bound of what one pixel adds, Q7: |g| and |r| are at most 255 sqrt 3 levels, |g| also that times w <= exp(-|e|^2 /
- * 2), and |e|^k exp(-|e|^2 / 2), k <= 2, beside |g| |r| and |e|^k exp(-|e|^2), k <= 4, beside |g|^2 are at most 1. A
- * tile's sums are clamped to this times the pixels of the splat's box there, so that the bound does not depend on
- * roundings. */
+/* Bound of what one pixel adds, Q7: |g| and |r| are at most 255 sqrt 3 levels, |g| also 255 sqrt 3 times w <=
+ * exp(-|e|^2 / 2), and |e|^k exp(-|e|^2 / 2), k <= 2, beside |g| |r| and |e|^k exp(-|e|^2), k <= 4, beside |g|^2 are at
+ * most 1. A tile's sums are clamped to this times the pixels of the splat's box there, so that the bound does not
+ * depend on roundings. */
 #define T3R_MOMENT_MOST_Q7 (195075 * 128)
 
 /* Returns ceil(log2 rows), rows of eight pixels: 0..5. */

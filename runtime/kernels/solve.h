@@ -17,11 +17,11 @@ typedef struct t3r_correction {
     int16_t share_q14; /* share taken of the Gauss-Newton step, 1/32..1/2; 0: no earlier pass */
 } t3r_correction;
 
-/* Computes the corrections of `count` Gaussians. Each is a share of the damped Gauss-Newton step, as large as the
- * response to the last pass's correction allows, plus momentum: a part of that correction (Polyak, "Some methods of
- * speeding up the convergence of iteration methods", 1964). corrections: holds the last pass's, 0 in the first pass,
- * and is replaced by the new ones. Sums are below 2^31 as t3r_refine_sums says. Records are consecutive, aligned to 4
- * and 2 bytes. */
+/* Computes the corrections of `count` Gaussians. Each is a share of the damped Gauss-Newton step, chosen by the
+ * response to the last pass's correction, plus momentum: a part of that correction (Polyak, "Some methods of speeding
+ * up the convergence of iteration methods", 1964). corrections: holds the last pass's, 0 in the first pass, and is
+ * replaced by the new ones. Sums are below 2^31 as t3r_refine_sums says. Records are consecutive, aligned to 4 and 2
+ * bytes. */
 typedef void t3r_solve_kernel(const t3r_refine_sums *sums, uint32_t count, t3r_correction *corrections);
 t3r_solve_kernel t3r_solve_c;
 

@@ -6,7 +6,7 @@
 #include "core/fixed.h"
 #include "solve.h"
 
-/* Neighbours correct the same pixels, so a Gaussian takes only a part of what its sums ask for. */
+/* Neighbours correct the same pixels, so a Gaussian takes only a part of its own solution. */
 #define COLOUR_STEP_Q5 26    /* 0.8 of the weighted mean residual */
 #define SHARE_FIRST_Q14 2816 /* 11/64 of the Gauss-Newton step in the first pass */
 #define SHARE_LEAST_Q14 512  /* 1/32 */
@@ -38,11 +38,11 @@ typedef struct t3r_solution {
     int32_t x_q16[T3R_REFINE_PARAMETERS];    /* at most +-SOLUTION_MOST_Q16 */
 } t3r_solution;
 
-/* Returns the share of the Gauss-Newton step `wanted` that this pass takes: Aitken's relaxation, for each Gaussian by
- * itself (Irons and Tuck, "A version of the Aitken accelerator for computer iteration", 1969). The last pass took a
- * share of its whole step. The part of that step which is asked for again now shows what the share and those of all
- * neighbours achieved together; a reversed sign shows that it was too much. Steps are compared by what they change in
- * the pictures, the diagonal of the equations. */
+/* Returns the share of the Gauss-Newton step `wanted` that this pass takes: Aitken's relaxation, for each Gaussian
+ * separately (Irons and Tuck, "A version of the Aitken accelerator for computer iteration", 1969). The last pass took
+ * a share of its whole step. The part of that step that is wanted again now shows what this share and those of all
+ * neighbours achieved together; a reversed sign shows that it was too much. Steps are compared by their change of the
+ * pictures, the diagonal of the equations. */
 static inline int32_t t3r_share_q14(const t3r_solution *wanted, const t3r_correction *before)
 {
     const int64_t last = before->share_q14;
@@ -89,7 +89,7 @@ static inline t3r_correction t3r_correction_of(const t3r_refine_sums *s, const t
     }
     t3r_solution wanted = *solution;
     int32_t *x = wanted.x_q16;
-    x[0] -= t3r_round_shift32(x[3] + x[5], 1); /* how the halves in phi change the opacity */
+    x[0] -= t3r_round_shift32(x[3] + x[5], 1); /* change of opacity by the halves in phi */
     const int32_t most[] = {OPACITY_MOST, SHIFT_MOST, SHIFT_MOST, SHAPE_MOST, SHAPE_MOST, SHAPE_MOST};
     const int32_t share = t3r_share_q14(&wanted, before);
     for (int i = 0; i < T3R_REFINE_PARAMETERS; i++) {

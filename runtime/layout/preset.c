@@ -9,7 +9,7 @@ typedef struct preset_row {
     uint32_t structural;
 } preset_row;
 
-/* Chosen on training scenes (docs/study/presets.md). */
+/* Chosen on training scenes (docs/study/results.md). */
 static const preset_row rows[] = {
     [T3R_PRESET_FAST] = {"tiny", 2, 0},
     [T3R_PRESET_BALANCED] = {"small", 8, 0},

@@ -40,7 +40,7 @@ uint32_t t3r_predict_budget(const t3r_budget_evidence *e, uint32_t most, uint32_
     return (uint32_t)T3R_MIN(T3R_MAX(wanted, least), (uint64_t)most);
 }
 
-/* Sets the views' poses from their cameras: the aligned ones, or as given. */
+/* Sets the views' poses from their cameras: aligned, or as given. */
 static void stand(const t3r_runtime *rt, t3r_view *views, bool as_given)
 {
     for (uint32_t v = 0; v < rt->views; v++) {
@@ -48,12 +48,12 @@ static void stand(const t3r_runtime *rt, t3r_view *views, bool as_given)
         if (as_given) {
             t3r_place_camera(&camera, &rt->given[v]);
         }
-        (void)t3r_pose_in_scene(&camera, &rt->frame, &views[v].pose); /* both have been in range before */
+        (void)t3r_pose_in_scene(&camera, &rt->frame, &views[v].pose); /* both were in range before */
     }
 }
 
-/* Returns the disagreement of the views with the given poses; 0 = nothing to compare. New views have poses of the same
- * source, which nothing aligns. */
+/* Returns the disagreement of the views with the given poses; 0: nothing to compare. New views come with given poses,
+ * which nothing aligns. */
 static uint32_t disagreement_as_given(t3r_runtime *rt, t3r_view *views)
 {
     const bool aligned = t3r_aligns(&rt->config);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Corrects the poses of context views until the views agree: Gauss-Newton steps on what the views show of the same
+/* Corrects the poses of context views until the views agree: Gauss-Newton steps on the colour and depth of shared
  * surfaces, from coarse pictures to fine ones (Lucas and Kanade, "An iterative image registration technique", 1981;
  * Kerl, Sturm and Cremers, "Robust odometry estimation for RGB-D cameras", 2013). */
 #include "align.h"
@@ -16,14 +16,14 @@
 /* Expected error of a pose: 1/32 radian, and 1/32 of the median depth. */
 #define PRIOR_SHIFT 10
 #define DEVIATION_MOST_Q30 (1 << 26) /* 1/16 radian or scene unit */
-#define STILL_Q30 (1 << 17)          /* at level 0: after shorter steps a level ends */
+#define STILL_Q30 (1 << 17)          /* at level 0: a level ends after shorter steps */
 #define CLIPPED 32u                  /* levels: larger differences count as this much */
 
 typedef struct alignment {
     t3r_runtime *rt;
     t3r_view *views;
     uint32_t count;
-    uint32_t stride[T3R_MAX_VIEWS]; /* between compared pixels of a view, in columns and rows */
+    uint32_t stride[T3R_MAX_VIEWS]; /* stride of the compared pixels of a view, in columns and rows */
     uint32_t step, steps;           /* for progress: done and total */
     t3r_pointmap_work work;
     t3r_aligned_view aligned[T3R_MAX_VIEWS];
@@ -36,8 +36,6 @@ typedef struct difference {
     uint64_t levels;
     uint32_t pixels;
 } difference;
-
-/* --- poses ------------------------------------------------------------------------------------------------------- */
 
 /* Turns q by a small rotation vector in the axes of the scene. Components below 1.5 change by less than a tenth. */
 static void turn(const int32_t q[4], const int32_t by_q30[3], int32_t out[4])
@@ -67,12 +65,10 @@ static bool place(const alignment *a, uint32_t v)
 static void place_as_given(const alignment *a, uint32_t v)
 {
     t3r_pose_as_given(a->rt, v);
-    (void)t3r_pose_in_scene(&a->rt->camera[v], &a->rt->frame, &a->views[v].pose); /* in range: it has been before */
+    (void)t3r_pose_in_scene(&a->rt->camera[v], &a->rt->frame, &a->views[v].pose); /* it was in range before */
 }
 
-/* --- pictures ---------------------------------------------------------------------------------------------------- */
-
-/* Averages green pixels over blocks of 2^level x 2^level. Pixels that don't fill a block are left out. */
+/* Averages green pixels over blocks of 2^level x 2^level. Pixels outside whole blocks are omitted. */
 static void shrink(const t3r_view *view, uint32_t level, uint8_t *out)
 {
     const uint32_t side = 1u << level, width = view->width >> level, height = view->height >> level;
@@ -108,7 +104,7 @@ static void show_level(alignment *a, uint32_t level)
     }
 }
 
-/* Returns the distance of compared columns and rows, at least 2. */
+/* Returns the stride of compared columns and rows, at least 2. */
 static uint32_t stride_of(const t3r_view *view, uint32_t views)
 {
     const uint32_t pixels = view->width * view->height, most = t3r_align_pixels(views);
@@ -130,8 +126,6 @@ static uint32_t coarsest_level(const t3r_view *view)
     }
     return level;
 }
-
-/* --- rounds ------------------------------------------------------------------------------------------------------ */
 
 /* Compares all views with all others: computes the sums of each view and the levels of each pair. */
 static t3r_status compare(alignment *a, difference *all)

@@ -4,7 +4,7 @@
 #include "core/fixed.h"
 
 #define N T3R_ALIGN_UNKNOWNS
-#define PIVOT_LEAST (INT64_C(1) << 14) /* of diagonals of at least 2^28 */
+#define PIVOT_LEAST (INT64_C(1) << 14) /* with diagonals of at least 2^28 */
 #define FACTOR_MOST (INT64_C(1) << 28) /* Q20 */
 #define VALUE_MOST (INT64_C(1) << 33)
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Bridging of wide depth holes: depth from other views that measured it, and else from the edges of the hole. */
+/* Bridging of wide depth holes: depth measured by other views, or interpolated from the edges of the hole. */
 #ifndef T3R_BRIDGE_H
 #define T3R_BRIDGE_H
 

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Bridging across views: takes depth that other views measured, and checks bridges against them. */
+/* Bridging across views: takes depth measured by other views, and checks bridges against them. */
 #include "bridge.h"
 
 #include <stdbool.h>
 
 #include "core/fixed.h"
 #include "reproject.h"
-
-/* --- depth from other views --------------------------------------------------------------------------------------- */
 
 /* Returns the smallest depth step whose depth is at least z, 0 when there is none. Depth rises with the step. */
 static uint16_t step_at(t3r_depth_scale scale, int32_t z_q20)
@@ -30,7 +28,7 @@ static bool takes_depth(const t3r_view *view, size_t pixel)
     return !t3r_has_depth(view->validity[pixel]) || t3r_is_lent(view->validity[pixel]);
 }
 
-/* Gives the pixel a depth from another view. Of several points that fall on it, the nearest counts. */
+/* Gives the pixel a depth from another view; of several points on it, the nearest. */
 static void lend(const t3r_pointmap *to, size_t pixel, int32_t z_q20)
 {
     const t3r_view *view = to->view;
@@ -115,8 +113,6 @@ void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t 
     }
 }
 
-/* --- against the other views -------------------------------------------------------------------------------------- */
-
 /* Returns the validity of a bridged pixel, or of one with another view's depth, after comparison with view `to`. */
 static uint8_t judge(uint8_t validity, const t3r_pointmap *to, const t3r_projected_pixel *projected, bool settled)
 {
@@ -135,7 +131,7 @@ static uint8_t judge(uint8_t validity, const t3r_pointmap *to, const t3r_project
 typedef struct settle_job {
     t3r_pointmap maps[T3R_MAX_VIEWS];
     uint32_t count, v, settled;
-    uint32_t bridged[T3R_MAX_WORKERS]; /* one a worker */
+    uint32_t bridged[T3R_MAX_WORKERS]; /* one per worker */
 } settle_job;
 
 /* Reads and writes of the own view only the pixel itself, so rows are independent. */

@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "reproject.h"
 
-#define STEP 2 /* pixels between compared pixels */
+#define STEP 2 /* stride of the compared pixels */
 #define LEVEL_LEAST 16
 #define LEVEL_MOST 239
 #define PAIRS_LEAST 256
@@ -148,8 +148,8 @@ uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t expon
     for (uint32_t v = 0; v < count; v++) {
         for (int c = 0; c < 3; c++) {
             int32_t mean_q8 = (int32_t)t3r_round_div64(sum_q8[c], links);
-            /* Levels are within an octave of the first view's, and the mean over at most 16 views includes this one. So
-             * they differ by less than 2 octaves less a 16th either way: gains are below 2^15.9. */
+            /* Levels are within an octave of the first view's, and the mean over at most 16 views includes this one.
+             * So they differ by less than 2 octaves minus a 16th either way: gains are below 2^15.9. */
             int32_t over = linked[v] ? level_q8[v][c] - mean_q8 : 0;
             gain_q14[v][c] = (uint16_t)t3r_round_shift32((int32_t)t3r_exp2_q16(-over * 256), 2);
         }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Flying pixels: measured depth where no surface is. Between two surfaces a sensor, or a match, may return a depth in
- * between. In another view such a point is in front of what that view measured. */
+/* Flying pixels: measured depth without a surface. Between two surfaces a sensor, or a match, may return a depth in
+ * between. In another view such a point lies in front of the measured surface. */
 #ifndef T3R_FLYING_PIXELS_H
 #define T3R_FLYING_PIXELS_H
 

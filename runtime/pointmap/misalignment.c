@@ -20,7 +20,7 @@ typedef struct sighting {
     int32_t inverse_z_q20; /* at most 2^25 */
 } sighting;
 
-/* Finds where `to` shows a pixel of `from`. Returns false if it has another surface there. */
+/* Finds where `to` shows a pixel of `from`. Returns false if another surface is there. */
 static bool sees(const t3r_pointmap *from, uint32_t u, uint32_t v, const t3r_pointmap *to, sighting *s)
 {
     const t3r_view *view = to->view;

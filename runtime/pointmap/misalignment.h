@@ -17,16 +17,16 @@ typedef struct t3r_luma_level {
     uint32_t level;
 } t3r_luma_level;
 
-/* A view as alignment compares it. */
+/* A view as input of alignment. */
 typedef struct t3r_aligned_view {
     t3r_pointmap map;
     t3r_luma_level luma;
 } t3r_aligned_view;
 
-/* Statistics of a pair's differences in the last round. Differences are taken relative to `middle`; beyond `spread` of
- * them, weights fall (Huber). */
+/* Statistics of a pair's differences in the last round. Differences are taken relative to `middle`; beyond `spread`,
+ * weights fall (Huber). */
 typedef struct t3r_pair_levels {
-    int16_t middle, spread; /* levels; a spread of 0: not known yet */
+    int16_t middle, spread; /* levels; spread 0: unknown so far */
 } t3r_pair_levels;
 
 /* The normal equations of one view's six unknowns. */

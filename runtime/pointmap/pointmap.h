@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The pointmap: x, y, z in the scene frame and surface tangents of every valid pixel. It is a function of the depth
- * plane, evaluated where needed: that saves twelve bytes a pixel, and nothing can get out of step. */
+ * plane, evaluated where needed, which saves twelve bytes a pixel. */
 #ifndef T3R_POINTMAP_H
 #define T3R_POINTMAP_H
 

@@ -6,8 +6,8 @@
 #include "core/fixed.h"
 #include "reproject.h"
 
-/* Whether z / f of the projected pixel is small enough next to the pixel's own. Cross-multiplied: z < 2^31, f in Q8 <
- * 2^23. */
+/* Whether the projected pixel's z / f is at most 17/16 of the pixel's own, or below 16/17 (redundancy.h).
+ * Cross-multiplied: z < 2^31, f in Q8 < 2^23. */
 static bool fine_enough(const t3r_view *view, int32_t z_q20, const t3r_view *other, int32_t other_z_q20, bool earlier)
 {
     int64_t focal = ((int64_t)view->fx_q16 + view->fy_q16) >> 8;
@@ -16,7 +16,7 @@ static bool fine_enough(const t3r_view *view, int32_t z_q20, const t3r_view *oth
     return earlier ? 16 * there <= 17 * here : 17 * there < 16 * here;
 }
 
-/* Whether the pixel of `to` shows the surface of a point that `from` has at depth z, and fine enough to cover it. */
+/* Whether the pixel of `to` shows the surface of a point that `from` has at depth z, finely enough to cover it. */
 static bool covers(const t3r_pointmap *from, int32_t z_q20, const t3r_pointmap *to, uint32_t pixel,
                    int32_t projected_z_q20, bool earlier)
 {
@@ -33,7 +33,7 @@ typedef struct covered_job {
     t3r_pointmap maps[T3R_MAX_VIEWS];
     uint32_t count, v;
     const t3r_kernels *kernels;
-    uint32_t *witness; /* for each pixel: (view x pixels of a view + pixel + 1) of the pixel that covers it, or 0 */
+    uint32_t *witness; /* for each pixel: (view x pixels of a view + pixel + 1) of the covering pixel, or 0 */
 } covered_job;
 
 /* Marks covered points, records the first covering view, and empties the batch. */
@@ -63,8 +63,8 @@ static void find_covered(const covered_job *job, t3r_points *points, const t3r_u
     points->count = 0;
 }
 
-/* Marks covered pixels of rows. The pixels that cover them lie in other views, where another task may mark the same
- * byte, so they are marked later. */
+/* Marks covered pixels of rows. Covering pixels are marked later, because they lie in other views, where another task
+ * may mark the same byte. */
 static void mark_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
     (void)worker;

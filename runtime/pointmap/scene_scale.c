@@ -19,7 +19,7 @@ static uint32_t octave(uint64_t depth_unit_q40, uint16_t raw)
 #define NEARER STEPS
 #define BINS (STEPS + 64) /* bins a worker, padded so that workers share no cache line */
 
-/* Histogram of the measured depths of all views: one a worker, finally summed into worker 0's. */
+/* Histogram of the measured depths of all views: one per worker, finally summed into worker 0's. */
 typedef struct count_job {
     const t3r_view *view;
     int32_t exponent;
@@ -62,7 +62,7 @@ static void count_steps(void *context, uint32_t begin, uint32_t end, uint32_t wo
     }
 }
 
-/* Returns all workers where the work memory has room for their histograms, else one. */
+/* Returns all workers if the work memory has room for their histograms, else one. */
 static t3r_workers workers_of(const t3r_view *views, const t3r_pointmap_work *work)
 {
     const size_t room = (size_t)views[0].width * views[0].height + 3 * T3R_RATIO_BINS;

@@ -11,7 +11,7 @@
 /* Chooses the exponent of the frame from the views' measured depths. Returns T3R_ERR_NO_DEPTH when there are none. */
 t3r_status t3r_scene_exponent(const t3r_view *views, uint32_t count, const t3r_pointmap_work *work, int32_t *exponent);
 
-/* As t3r_scene_exponent(); also computes the median depth in that frame. */
+/* Chooses the exponent like t3r_scene_exponent() and computes the median depth in that frame. */
 t3r_status t3r_scene_scale_choose(const t3r_view *views, uint32_t count, const t3r_pointmap_work *work,
                                   int32_t *exponent, int32_t *median_q20);
 

@@ -4,7 +4,7 @@
 #include "core/fixed.h"
 #include "raster_tile.h"
 
-/* Minimum number of splats a band: one worker is done with fewer before another has started. */
+/* Minimum number of splats in a band: one worker finishes fewer before another has started. */
 #define SPLATS_A_BAND 4096u
 
 typedef struct bin_job {

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What rendering and refinement do with a view before its tiles are drawn: projection, depth order and counts by
- * tile. */
+/* Steps of rendering and refinement before a view's tiles are drawn: projection, depth order and counts by tile. */
 #ifndef T3R_RASTER_LIST_H
 #define T3R_RASTER_LIST_H
 
 #include "raster_tile.h"
 
-/* Working memory for one view: room for max_gaussians splats and their order, a table entry a tile, and lists. */
+/* Working memory for one view: room for max_gaussians splats and their order, one table entry per tile, and lists. */
 typedef struct t3r_raster_room {
     t3r_splat *splats;
     uint32_t *order; /* histogram, then two key and two index buffers of max_gaussians each */

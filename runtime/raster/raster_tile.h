@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tiles: which splats a tile lists, and how it is drawn from its list. */
+/* Tiles: the splats that a tile lists, and drawing a tile from its list. */
 #ifndef T3R_RASTER_TILE_H
 #define T3R_RASTER_TILE_H
 
@@ -29,13 +29,14 @@ typedef struct t3r_binning {
     const t3r_tile_span *spans; /* in the same order */
     uint32_t visible;
     uint32_t across, tiles;
-    uint32_t *table; /* an entry a tile: its count, then the end of its list once a pass opens it */
+    uint32_t *table; /* one entry per tile: its count, then the end of its list once a pass opens it */
     uint32_t *lists;
     uint64_t capacity; /* entries of lists, at least `visible` */
-    uint32_t most;     /* maximum number of splats drawn a tile, from the start of its list */
+    uint32_t most;     /* maximum number of splats drawn per tile, from the start of its list */
 } t3r_binning;
 
-/* Returns how many splats of the tile's list, which begins at `begin`, are drawn. The tile's pass must be open. */
+/* Returns the number of splats of the tile's list, which begins at `begin`, that are drawn. The tile's pass must be
+ * open. */
 static inline uint32_t t3r_list_length(const t3r_binning *binning, uint32_t begin, uint32_t tile)
 {
     const uint32_t listed = binning->table[tile] - begin;
@@ -45,8 +46,8 @@ static inline uint32_t t3r_list_length(const t3r_binning *binning, uint32_t begi
 /* Counts every tile's splats into the table. */
 void t3r_bin_count(const t3r_workers *workers, const t3r_binning *binning);
 
-/* Fills the lists of as many tiles from `first` on as there is room for, at least one. Returns the first tile that is
- * left over. Then table[t] is the end of tile t's list, which starts where tile t - 1's ends (0 for `first`). */
+/* Fills the lists of all tiles from `first` on that fit, at least one. Returns the first remaining tile. Then table[t]
+ * is the end of tile t's list, which starts where tile t - 1's ends (0 for `first`). */
 uint32_t t3r_bin_pass(const t3r_workers *workers, const t3r_binning *binning, uint32_t first);
 
 /* A tile while it is drawn. */
@@ -64,7 +65,7 @@ void t3r_draw_list(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_s
                    uint32_t count, const t3r_target *target);
 void t3r_draw_end(const t3r_drawn_tile *tile, const t3r_target *target);
 
-/* Steps of drawing, for callers that do more with a tile than write it into a target. */
+/* Steps of drawing, for callers that do more with a tile than writing it into a target. */
 
 /* Splats between two checks of whether all pixels of a tile are opaque. */
 #define T3R_STOP_INTERVAL 16

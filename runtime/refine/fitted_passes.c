@@ -9,7 +9,7 @@
 #define SHARE_COUNTED 4u       /* a share above 1/4 counts as 1/4: Gaussians don't get narrower than a pixel */
 #define STEP 2u                /* pixels between compared pixels */
 #define PAIRS_LEAST 64u        /* with fewer compared pairs, the disagreement is unknown */
-#define UNKNOWN_Q8 (150u << 8) /* levels^2, typical of sensors that are not bad */
+#define UNKNOWN_Q8 (150u << 8) /* levels^2, typical of good sensors */
 
 uint32_t t3r_predict_passes(uint32_t points, uint32_t gaussians, uint32_t disagreement_q8, uint32_t most)
 {
@@ -18,7 +18,7 @@ uint32_t t3r_predict_passes(uint32_t points, uint32_t gaussians, uint32_t disagr
     }
     const uint64_t quarter = ((uint64_t)points + SHARE_COUNTED - 1) / SHARE_COUNTED;
     const uint64_t retained = T3R_MIN(gaussians, quarter);
-    /* four times the square: the root of it is twice the result, which is then halved with rounding. Below 2^11 x 2^8 x
+    /* four times the square: its root is twice the result, which is then halved with rounding. Below 2^11 x 2^8 x
      * 2^32. */
     const uint64_t square = (uint64_t)4 * PAY * 256u * points / (retained * T3R_MAX(disagreement_q8, 1u));
     return (uint32_t)t3r_clamp64(((int64_t)t3r_isqrt64(square) + 1) / 2, 1, most);

@@ -40,7 +40,7 @@ static void widen(t3r_refine_sums *sums, const t3r_splat *splat)
     }
 }
 
-/* K| <= t / (t^2 + 0.3) < 0.913 for each singular value t of T */
+/* |K| <= t / (t^2 + 0.3) < 0.913 for each singular value t of T */
 #define AXIS_MOST_Q15 30147
 
 /* Stores the splat's own axes: e = K d, K = T^T S^-1 with the first two columns of T, so that d q = -e . step for a
@@ -74,22 +74,22 @@ typedef struct view_job {
 } view_job;
 
 /* Tiles and list entries between two calls of the progress hook. One worker calls it more often, as bands cost it
- * nothing: a tile and splat pair takes some 30,000 instructions of plain C. Where few of a tile's splats are kept, it
- * also calls it within a tile. */
+ * nothing: a pair of tile and splat takes about 30,000 instructions of plain C. Where few of a tile's splats are kept,
+ * it also calls it within a tile. */
 #define TILES_A_CHUNK 256u
 #define SPLATS_A_CHUNK 65536u
 #define SPLATS_ALONE 256u
 
-/* Bands measured at once. Their results lie on the stack, which has no room for those of T3R_MAX_WORKERS bands. */
+/* Bands measured at the same time. Their results are on the stack, which has no room for T3R_MAX_WORKERS bands. */
 #define MEASURED_AT_ONCE 4u
 
-/* One view drawn and compared without a change of any sums, and what the bands find. */
+/* One view drawn and compared without changing any sums, and the bands' results. */
 typedef struct measure_job {
     view_job job;
     uint32_t first; /* first of the bands being measured */
     uint64_t error[MEASURED_AT_ONCE];
     uint32_t pixels[MEASURED_AT_ONCE];
-    t3r_level_sums levels[MEASURED_AT_ONCE]; /* filled instead where the view's levels are measured */
+    t3r_level_sums levels[MEASURED_AT_ONCE]; /* filled instead when the view's levels are measured */
 } measure_job;
 
 static uint32_t list_begin(const view_job *job, uint32_t tile)
@@ -116,8 +116,8 @@ static bool draws_again(void *context, uint32_t splats)
     return job->again <= SPLATS_ALONE || ask(job);
 }
 
-/* Cuts the next tiles into bands, after filling their lists where no pass has them yet. No bands: all tiles are done.
- * Returns false when the progress hook cancels. */
+/* Cuts the next tiles into bands, after filling their lists if no pass has done so. No bands: all tiles are done.
+ * Returns false if the progress hook cancels. */
 static bool next_chunk(view_job *job)
 {
     const t3r_workers workers = t3r_workers_of(job->rt);
@@ -160,7 +160,7 @@ static void accumulate_band(void *context, uint32_t index, uint32_t worker)
     }
 }
 
-/* Levels are measured on one tile in four, shifted by two in each row: evenly spread, and pixels enough. */
+/* Levels are measured on one tile in four, shifted by two in each row: evenly spread, and enough pixels. */
 #define LEVELLED_TILES 4u
 
 static void measure_band(void *context, uint32_t index, uint32_t worker)
@@ -302,7 +302,7 @@ typedef struct shown_view {
     const t3r_camera *camera;
     const uint16_t *gain_q14;
     const uint16_t *remembered;     /* pixels; NULL: the view has planes */
-    const t3r_structure *structure; /* NULL: residuals count as they are */
+    const t3r_structure *structure; /* NULL: residuals count unchanged */
 } shown_view;
 
 /* Draws the view and adds to the sums of the slice. */
@@ -341,7 +341,7 @@ static t3r_status accumulate(const t3r_runtime *rt, slice_job *slice, const show
     return goes_on ? T3R_OK : T3R_ERR_CANCELLED;
 }
 
-/* Draws the remembered keyframes whose turn it is. Those out of the map's range are skipped. */
+/* Draws the remembered keyframes whose turn it is, except those out of the map's range. */
 static t3r_status accumulate_remembered(const t3r_runtime *rt, slice_job *slice, const t3r_view *size, uint32_t turn,
                                         uint32_t *done, uint32_t total)
 {
@@ -383,7 +383,7 @@ static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, cons
     return t3r_is_stream(&rt->config) ? accumulate_remembered(rt, slice, views, turn, done, total) : T3R_OK;
 }
 
-/* Measures the levels of all views on the scene as it is. */
+/* Measures the levels of all views on the current scene. */
 static t3r_status measure_levels(const t3r_runtime *rt, const t3r_refine_layout *w, const t3r_view *views,
                                  uint32_t done, uint32_t total, t3r_structure structure[T3R_MAX_VIEWS])
 {

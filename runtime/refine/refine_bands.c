@@ -57,8 +57,8 @@ uint32_t t3r_refine_bands(const t3r_binning *bin, uint32_t begin, uint32_t end, 
                           t3r_refine_band bands[T3R_MAX_WORKERS])
 {
     uint32_t count = T3R_MIN(borders->bands, end - begin);
-    for (bool fits = false; !fits; count = fits ? count : count / 2) { /* ends at the latest with one band, which has no
-                                                                        * border */
+    for (bool fits = false; !fits;
+         count = fits ? count : count / 2) { /* ends at the latest with one band, which has no border */
         cut(bin, begin, end, listed, count, bands);
         fits = true;
         for (uint32_t b = 1; b < count && fits; b++) {

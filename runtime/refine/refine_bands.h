@@ -33,8 +33,8 @@ typedef struct t3r_refine_slice {
 } t3r_refine_slice;
 
 /* Cuts the tiles begin..end - 1 of an open pass into bands with about the same number of list entries each, at most
- * borders->bands. The list of the first tile starts at `listed`. There are fewer bands where more Gaussians of the
- * slice cross a border than fit. Clears the border sums in use. Returns the number of bands, at least 1. */
+ * borders->bands. The list of the first tile starts at `listed`. If more Gaussians of the slice cross a border than
+ * fit, there are fewer bands. Clears the border sums in use. Returns the number of bands, at least 1. */
 uint32_t t3r_refine_bands(const t3r_binning *bin, uint32_t begin, uint32_t end, uint32_t listed,
                           const t3r_refine_slice *slice, const t3r_refine_borders *borders,
                           t3r_refine_band bands[T3R_MAX_WORKERS]);

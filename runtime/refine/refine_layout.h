@@ -7,16 +7,16 @@
 #include "refine_bands.h"
 #include "refine_tile.h"
 
-/* The refinement work buffer, cut up. The first four parts and the smallest lists always fit. Sums take what they can
- * use of the rest, and lists take the remainder. */
+/* The refinement work buffer, cut up. The first four parts and the smallest lists always fit. Sums take the rest up to
+ * their full size, and lists the remainder. */
 typedef struct t3r_refine_layout {
     t3r_raster_room room;
-    t3r_correction *corrections; /* one a Gaussian; holds the last pass's until this pass has solved its own */
+    t3r_correction *corrections; /* one per Gaussian; holds the previous pass's until this pass has solved its own */
     t3r_refine_sums *sums;
     uint32_t slice; /* Gaussians whose sums fit */
     t3r_refine_borders borders;
-    t3r_wanted *wanted; /* one for each band but the first */
-    uint32_t *kept;     /* `kept_words` a band for the splats kept while a tile is drawn */
+    t3r_wanted *wanted; /* one per band except the first */
+    uint32_t *kept;     /* `kept_words` per band for the splats kept while a tile is drawn */
     uint32_t kept_words;
 } t3r_refine_layout;
 

@@ -63,7 +63,7 @@ static t3r_blended_row *rows_at(const t3r_refine_view *job, uint32_t rows)
 }
 
 /* Draws the list up to `end`, or until all pixels are opaque, and keeps its last splats: a full buffer is emptied and
- * filled anew. */
+ * filled again. */
 static kept_splats draw(const t3r_refine_view *job, const uint32_t *list, uint32_t end, uint32_t left, uint32_t top,
                         t3r_tile *tile)
 {
@@ -113,7 +113,7 @@ static bool is_in(const t3r_refine_slice *slice, uint32_t index)
     return index - slice->first < slice->count; /* unsigned: an index below the slice wraps and fails */
 }
 
-/* Distance of the prefetch of sums, which don't fit the nearest cache and are used in no order. */
+/* Prefetch distance of sums, which don't fit the nearest cache and are used in no order. */
 #define SUMS_AHEAD 4
 static void ask_for_sums(const t3r_refine_slice *slice, uint32_t index)
 {
@@ -151,7 +151,7 @@ static void take_off(const t3r_refine_view *job, const uint32_t *list, const kep
     }
 }
 
-/* Not inlined: its tile shouldn't be on the stack while splats are removed. */
+/* Not inlined: its tile must not be on the stack while splats are removed. */
 static __attribute__((noinline)) kept_splats draw_again(const t3r_refine_view *job, const uint32_t *list, uint32_t end,
                                                         uint32_t left, uint32_t top)
 {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Refinement of one tile of a context view: draws it as the rasterizer does and scatters its residuals to the
- * splats. */
+/* Refinement of one tile of a context view: draws it like the rasterizer and scatters its residuals to the splats. */
 #ifndef T3R_REFINE_TILE_H
 #define T3R_REFINE_TILE_H
 
@@ -23,12 +22,12 @@ typedef struct t3r_refine_view {
     uint32_t band;      /* index of the band being drawn */
     uint32_t across;    /* tiles a row */
     t3r_wanted *wanted; /* the tile and its residuals, too large for the stack */
-    uint32_t *kept;     /* room for the splats kept while a tile is drawn, at least T3R_KEPT_LEAST words; the more room,
-                         * the less often a full tile is drawn again */
+    uint32_t *kept;     /* memory for the splats kept while a tile is drawn, at least T3R_KEPT_LEAST words; with more, a
+                           full tile is drawn again less often */
     uint32_t kept_words;
-    const uint16_t *gain_q14;       /* of r, g, b: the view is levelled by them first */
+    const uint16_t *gain_q14;       /* of r, g, b: they level the view first */
     const uint16_t *remembered;     /* pixels of a remembered keyframe, which has no planes; NULL: a live view */
-    const t3r_structure *structure; /* of the view; NULL: residuals count as they are */
+    const t3r_structure *structure; /* of the view; NULL: residuals count unchanged */
     /* Called before `splats` splats of a tile are drawn again; false ends the tile. */
     bool (*goes_on)(void *context, uint32_t splats);
     void *context;
@@ -47,7 +46,7 @@ void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t 
 uint64_t t3r_refine_tile_error(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x,
                                uint32_t tile_y, uint32_t *pixels);
 
-/* As t3r_refine_tile_error(), but adds the tile to the sums of the view's levels, relative to the current
+/* Draws the tile like t3r_refine_tile_error() and adds it to the sums of the view's levels, relative to the current
  * job->structure levels. */
 void t3r_refine_tile_levels(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x,
                             uint32_t tile_y, t3r_level_sums *sums);

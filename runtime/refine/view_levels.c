@@ -9,7 +9,7 @@
 #define NOISE_Q16 (25 << 16) /* levels^2: a view with less contrast doesn't determine the slope */
 #define RESIDUAL_MOST_Q4 (255 << 4)
 
-/* Returns the target less 128 levels, from residual and drawn colour, clamped to 128 levels either way. */
+/* Returns the target minus 128 levels, from residual and drawn colour, clamped to 128 levels either way. */
 static int32_t target_q4(const t3r_wanted *tile, int c, uint32_t j, uint32_t i)
 {
     const int32_t drawn_q4 = t3r_round_shift32(T3R_MIN((int32_t)tile->pixels.colour_q7[c][j][i], 255 << 7), 3);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Differences in brightness and contrast of a whole view from the other views. */
+/* Differences in brightness and contrast between a whole view and the other views. */
 #ifndef T3R_VIEW_LEVELS_H
 #define T3R_VIEW_LEVELS_H
 
@@ -10,15 +10,14 @@
 /* Passes before which levels are measured. In the second, colours have been corrected once. */
 #define T3R_LEVELLED_PASSES 2u
 
-/* A line for each of r, g, b: at level t the view is offset + slope (t - 128) above the mean of the views. Gains level
- * the exposure before ("Between views"); this line covers what they leave: shadow, haze and the camera's response
- * curve. */
+/* A line for each of r, g, b: at level t the view is offset + slope (t - 128) above the mean of the views. Gains have
+ * levelled the exposure ("Between views"); this line covers the rest: shadow, haze and the camera's response curve. */
 typedef struct t3r_view_levels {
     int16_t offset_q8[3]; /* levels, at most 32 either way */
     int16_t slope_q14[3]; /* at most 1/4 either way */
 } t3r_view_levels;
 
-/* Sums over the pixels that count, below 2^24 of them. t is the target less 128 levels, r the remaining residual. */
+/* Sums over the counted pixels, fewer than 2^24. t is the target minus 128 levels, r the remaining residual. */
 typedef struct t3r_level_sums {
     uint32_t pixels;
     int64_t target_q4[3], squares_q8[3], missing_q4[3], products_q8[3]; /* of t, t^2, r, r t */

@@ -8,7 +8,7 @@
 
 #include "trim3r.h"
 
-/* All 0: the method as it is. */
+/* All 0: the whole method. */
 typedef struct t3r_ablation {
     uint32_t shuffle;   /* 1 = SuperClusters exchange their textures at random */
     uint32_t unadapted; /* 1 = heads see every point as retained, so splats stay as small as pixels */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Keyframes that a stream remembers after their planes are gone: their colours, for refinement. */
+/* Keyframes that a stream remembers after their planes are overwritten: their colours, for refinement. */
 #ifndef T3R_REMEMBERED_H
 #define T3R_REMEMBERED_H
 
@@ -13,7 +13,7 @@
 
 /* Head of a remembered keyframe. Its pixels follow row by row at T3R_REMEMBERED_HEAD_BYTES. Any values are safe. */
 typedef struct t3r_remembered {
-    t3r_camera camera; /* of the working size */
+    t3r_camera camera; /* at the working size */
     uint16_t gain_q14[3];
     uint16_t unused;
     uint32_t number; /* 1 for the first keyframe */

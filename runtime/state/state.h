@@ -21,7 +21,7 @@
 #define T3R_MAGIC 0x72336d74u /* "tm3r" */
 
 /* Refuses misuse of the API (null pointers, calls out of order, calls after an error) with a status in every build. A
- * debug build may also stop at it. */
+ * debug build may stop here, too. */
 #define T3R_REFUSE_UNLESS(condition, status)                                                                           \
     do {                                                                                                               \
         T3R_ASSERT(condition);                                                                                         \
@@ -30,7 +30,7 @@
         }                                                                                                              \
     } while (0)
 
-/* Parameters of a scene: the configuration's values, or those of the request. */
+/* Parameters of a scene: the configuration's values or the request's. */
 typedef struct t3r_build {
     uint32_t gaussians; /* 1..max_gaussians */
     t3r_allocation allocate;
@@ -38,7 +38,8 @@ typedef struct t3r_build {
     uint32_t refine; /* 0..the configuration's */
 } t3r_build;
 
-/* A stream allocates by pixel where a build does by SuperCluster: keys are to mean the same in every keyframe. */
+/* Returns the configuration's parameters. A stream allocates by pixel instead of by SuperCluster, so that keys mean
+ * the same in every keyframe. */
 static inline t3r_build t3r_build_of(const t3r_config *config)
 {
     const bool clustered = config->allocate == T3R_ALLOCATE_DENSITY || config->allocate == T3R_ALLOCATE_PAPER;
@@ -57,14 +58,14 @@ struct t3r_runtime {
     uint32_t bits_epoch;
     uint64_t arena_bytes;
     uint64_t layout_hash;
-    t3r_config config; /* from t3r_init(), with values for what 0 leaves open (t3r_settled) */
+    t3r_config config; /* from t3r_init(), with values for settings left open (t3r_settled) */
     t3r_ablation ablation;
     t3r_build build; /* of the scene, or of the last attempt at one */
     uint64_t offset[T3R_BUFFER_COUNT];
     uint64_t list_capacity;                  /* entries of the tile lists */
     uint64_t refine_bytes;                   /* of the refinement work */
     uint32_t views;                          /* context views added */
-    t3r_camera camera[T3R_MAX_VIEWS];        /* at the working size, undistorted; the poses are those in use */
+    t3r_camera camera[T3R_MAX_VIEWS];        /* at the working size, undistorted; with the poses in use */
     t3r_placement given[T3R_MAX_VIEWS];      /* poses as views were added; unused by a stream */
     int32_t deviation_q30[T3R_MAX_VIEWS][6]; /* of the pose in use from the given one: radians, scene units */
     uint64_t depth_unit_q40[T3R_MAX_VIEWS];
@@ -77,12 +78,12 @@ struct t3r_runtime {
     uint8_t stereo_partner[T3R_MAX_VIEWS]; /* partner view */
     uint16_t gain_q14[T3R_MAX_VIEWS][3];   /* brings r, g, b of a view to the mean exposure */
     uint32_t gaussians;                    /* in the scene */
-    uint32_t passes;                       /* of refinement, in the last build */
+    uint32_t passes;                       /* refinement passes of the last build */
     uint32_t render_passes;
     uint32_t head_crc;   /* of the weights bound last */
     uint32_t keyframes;  /* taken by a stream; the last `views` of them are retained */
-    uint32_t next_slot;  /* the view that the next keyframe of a stream replaces; with `warm`, that the next view
-                          * replaces when all are there */
+    uint32_t next_slot;  /* the view that a stream's next keyframe replaces; with `warm`, that the next view replaces
+                            when all slots are used */
     uint32_t remembered; /* keyframes that a stream keeps without planes, at most config.remember */
     t3r_reuse reuse;     /* empty without `warm` */
     uint32_t follows;    /* 1 = the last analysis reused something */

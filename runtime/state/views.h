@@ -15,21 +15,21 @@
 typedef enum t3r_depth_source {
     T3R_NO_DEPTH,     /* all bits are 0 */
     T3R_FILLED,       /* a small hole, filled from the measured pixels around it (depth.h, stereo_fill.h) */
-    T3R_BRIDGED,      /* a wide hole (bridge.h), bridged anew by every analysis */
+    T3R_BRIDGED,      /* a wide hole (bridge.h), bridged again by every analysis */
     T3R_MEASURED = 3, /* by the sensor, or matched by stereo */
     T3R_DEPTH_SOURCE_BITS = 3
 } t3r_depth_source;
 
-/* Results of the comparison of views for a pixel with depth: the bits above. */
+/* Results of comparing views for a pixel with depth: the bits above. */
 enum t3r_mark {
     T3R_MARK_COVERED = 4,  /* another view has the surface about as finely */
     T3R_MARK_DOUBTFUL = 8, /* contradicted: a flying pixel */
     T3R_MARK_WITNESS = 16, /* covers another view's pixel; used only within stage pointmap */
-    T3R_MARK_LENT = 32,    /* a bridged pixel with depth measured by another view; used only within stage pointmap */
+    T3R_MARK_LENT = 32,    /* a bridged pixel whose depth another view measured; used only within stage pointmap */
     T3R_MARKS = 60         /* all of them */
 };
 
-/* Above the marks, from stage superclusters on: the label is 256 more than its plane says. */
+/* Above the marks, from stage superclusters on: adds 256 to the label in the label plane. */
 #define T3R_LABEL_HIGH 64u
 _Static_assert(T3R_MAX_CLUSTERS <= 512, "labels have nine bits");
 
@@ -108,8 +108,8 @@ static inline uint8_t t3r_unmarked(uint8_t validity)
     return validity & T3R_DEPTH_SOURCE_BITS;
 }
 
-/* Returns the confidence that leaves the runtime, with a Gaussian and in the hashes of stages (SPEC.md, "Between
- * views"). Marks used only within stage pointmap don't change it. */
+/* Returns the confidence for output, with a Gaussian and in the hashes of stages (SPEC.md, "Between views"). Marks
+ * used only within stage pointmap don't change it. */
 uint8_t t3r_confidence_of(uint8_t validity);
 
 /* The planes of one view, each width x height, rows without gaps. */
@@ -136,13 +136,13 @@ static inline uint32_t t3r_label(uint8_t low, uint8_t validity)
     return low + (validity & T3R_LABEL_HIGH) * (256 / T3R_LABEL_HIGH);
 }
 
-/* Returns the SuperCluster of a pixel with depth: a byte, and a bit above the marks where there are more than 256. */
+/* Returns the SuperCluster of a pixel with depth: a byte, and a bit above the marks for labels of 256 and more. */
 static inline uint32_t t3r_label_of(const t3r_view *view, size_t pixel)
 {
     return t3r_label(view->label[pixel], view->validity[pixel]);
 }
 
-/* Sets a label. Call it once an analysis, which has cleared the bits of the last one's labels. */
+/* Sets a label. Call once per analysis, which clears the bits of earlier labels first. */
 static inline void t3r_set_label(const t3r_view *view, size_t pixel, uint32_t label)
 {
     view->label[pixel] = (uint8_t)label;
@@ -160,7 +160,7 @@ bool t3r_is_reliable_anywhere(const t3r_view *view);
 /* Returns the planes of view `index`, below the configured number. The pose is set only for a view that was added. */
 t3r_view t3r_view_of(const t3r_runtime *rt, uint32_t index);
 
-/* Returns the planes of all configured views, likewise. */
+/* Returns the planes of all configured views in the same way. */
 void t3r_views_of(const t3r_runtime *rt, t3r_view views[T3R_MAX_VIEWS]);
 
 /* Clears the marks of covered pixels; marks of doubtful pixels and bridged depth stay. */

@@ -24,8 +24,6 @@ static plane plane_of(const t3r_match *match, uint32_t side)
     return (plane){width, match->height, match->luma[side], match->disparity[side], match->confidence[side]};
 }
 
-/* --- agreement -------------------------------------------------------------------------------------------------- */
-
 static bool near(uint16_t a, uint16_t b)
 {
     return t3r_abs32((int32_t)a - b) <= ONE;
@@ -66,8 +64,6 @@ void t3r_match_agree(const t3r_match *match)
     }
 }
 
-/* --- speckles --------------------------------------------------------------------------------------------------- */
-
 enum { UNSEEN, QUEUED, LARGE };
 
 static bool joined(const plane *p, size_t a, size_t b)
@@ -75,8 +71,8 @@ static bool joined(const plane *p, size_t a, size_t b)
     return p->confidence[b] != 0 && near(p->disparity[a], p->disparity[b]);
 }
 
-/* Follows the region that begins at `start` until it ends, has `least` pixels, or meets a pixel of a region known to be
- * large. Returns how many pixels are in the queue; *large says whether the region is large. */
+/* Follows the region that begins at `start` until it ends, has `least` pixels, or meets a pixel of a region known to
+ * be large. Returns the number of queued pixels; *large: whether the region is large. */
 static uint32_t explore(const plane *p, uint32_t start, uint32_t least, uint8_t *mark, uint32_t *queue, bool *large)
 {
     uint32_t queued = 1;
@@ -142,8 +138,6 @@ uint32_t t3r_match_speckles(const t3r_match *match, uint32_t side)
     return removed;
 }
 
-/* --- smoothing -------------------------------------------------------------------------------------------------- */
-
 static inline void sort(uint16_t *a, uint16_t *b)
 {
     const int16_t x = (int16_t)*a, y = (int16_t)*b; /* disparities are below 2^15, and vectors compare signed numbers */
@@ -174,7 +168,7 @@ static inline uint8_t lesser(uint8_t a, uint8_t b)
     return a < b ? a : b;
 }
 
-/* Computes the least of nine confidences likewise. */
+/* Computes the least of nine confidences in the same way. */
 static void least_of_nine(const uint8_t *above, const uint8_t *middle, const uint8_t *below, uint32_t width,
                           uint8_t *restrict out)
 {
@@ -211,8 +205,6 @@ void t3r_match_smooth(const t3r_match *match, uint32_t side)
     }
 }
 
-/* --- filling ---------------------------------------------------------------------------------------------------- */
-
 static const int8_t directions[8][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}, {1, -1}, {-1, 1}};
 
 /* Disparities in rising order. */
@@ -235,7 +227,7 @@ static void gather(gathering *g, uint16_t disparity)
 static void look_around(const plane *p, int32_t x, int32_t y, const uint8_t known[3], gathering *all, gathering *open)
 {
     all->count = open->count = 0;
-    /* ends once fewer than SURROUNDED can be met */
+    /* ends when fewer than SURROUNDED can still be found */
     for (uint32_t d = 0; d < 8 && d - all->count <= 8 - SURROUNDED; d++) {
         const int32_t dx = directions[d][0], dy = directions[d][1];
         const int32_t columns = dx == 0 ? T3R_MATCH_REACH : dx < 0 ? x : (int32_t)p->width - 1 - x;

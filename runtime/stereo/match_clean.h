@@ -7,12 +7,12 @@
 
 #include "match.h"
 
-/* Removes the confidence of pixels whose disparity differs by more than a pixel from that of the pixel it leads to. The
+/* Removes the confidence of pixels whose disparity differs by more than a pixel from the disparity at its partner. The
  * right plane gets its confidences from the left one. */
 void t3r_match_agree(const t3r_match *match);
 
-/* Removes the confidence of small regions, of less than 1/1024 of the picture; neighbours belong together where they
- * differ by at most a pixel. side: 0 left, 1 right. Returns how many pixels. Uses match->work. */
+/* Removes the confidence of regions smaller than 1/1024 of the picture; neighbours are connected if they differ by at
+ * most a pixel. side: 0 left, 1 right. Returns the number of pixels. Uses match->work. */
 uint32_t t3r_match_speckles(const t3r_match *match, uint32_t side);
 
 /* Replaces trusted pixels with eight trusted neighbours by the median of the nine disparities. Uses match->work. */

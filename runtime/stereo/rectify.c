@@ -14,9 +14,9 @@
 #define SAME_ROTATION_Q30 (1 << 20)
 /* Planar rectification takes rays up to 2 to the side of 1 ahead. Beyond, planes are stretched more than five times. */
 #define PLANAR_MOST 2
-/* Polar columns stay this far from the baseline's own direction, t = 1: 1/32, 3.6 degrees. */
+/* Polar columns keep this distance from the baseline's own direction, t = 1: 1/32, 3.6 degrees. */
 #define POLAR_MOST_Q24 (ONE_Q24 * 31 / 32)
-/* Pixels a unit of column or row, at most: places up to 4 units away fit 32 bits in Q16. */
+/* Most pixels per unit of column or row: places up to 4 units away fit 32 bits in Q16. */
 #define SCALE_MOST_Q16 ((INT64_C(1) << 29) - 1)
 /* Points along each side of a picture at which its extent is measured. */
 #define BORDER_STEPS 32
@@ -248,8 +248,8 @@ static int64_t blend(int32_t f_q16, int32_t g_q16, int64_t w_q30)
     return t3r_isqrt64((uint64_t)(f * f * w + g * g * ((1 << 14) - w)) << 2);
 }
 
-/* Chooses pixels a unit of column and row, as means over both views. They keep the resolution at the middle of the
- * pictures, or with polar planes on the whole. */
+/* Chooses pixels per unit of column and row, as means over both views. They keep the resolution at the middle of the
+ * pictures, with polar planes on the whole. */
 static void choose_scale(t3r_rectification *rect)
 {
     int64_t sum[2] = {0, 0};
@@ -261,8 +261,8 @@ static void choose_scale(t3r_rectification *rect)
         const int64_t w = length >> 30 == 0 ? ONE_Q30 : T3R_MIN(ONE_Q30, x * x / (length >> 30));
         const int64_t along = blend(v->fx_q16, v->fy_q16, w), beside = blend(v->fy_q16, v->fx_q16, w);
         if (rect->polar) {
-            /* dt = (1 + t^2) / 2 of an angle's step; rows are as dense as pixels some way from the middle of the
-             * picture */
+            /* dt = (1 + t^2) / 2 of an angle's step; rows are as dense as pixels at some distance from the middle of
+             * the picture */
             sum[0] += t3r_round_shift64(along * (ONE_Q30 + cos), 30) * 9 / 8;
             sum[1] += t3r_round_shift64(beside * (ONE_Q30 * 3 / 8 + cos / 2), 30);
         } else {
@@ -293,8 +293,8 @@ static bool matches_in(uint64_t width, uint64_t height, uint64_t side, uint32_t 
            T3R_MATCH_WORK_BYTES(width, height, disparities, 8) <= T3R_MATCH_WORK_BYTES(side, side, disparities, 8);
 }
 
-/* Sets size and place of the first view's plane: the rows that both views have, and the columns of the first that the
- * second may show nearer, to their left. */
+/* Sets size and place of the first view's plane: the rows that both views have, and the first view's columns except
+ * those left of the second's first, which the second cannot show: points appear further left in it. */
 static t3r_pair frame_plane(t3r_rectification *rect, uint32_t disparities)
 {
     const uint64_t side = T3R_RECTIFIED_SIDE(rect->view_width, rect->view_height);

@@ -82,7 +82,7 @@ typedef struct t3r_view_columns {
 void t3r_view_columns_of(const t3r_rectification *rect, uint32_t view, uint32_t u, uint32_t step, uint32_t count,
                          t3r_view_columns *columns);
 
-/* Computes the places of a view's pixels in such columns and row v, as t3r_rectified_place() does. places->z_q24 is the
+/* Computes the places of a view's pixels in these columns and row v, like t3r_rectified_place(). places->z_q24 is the
  * distance, 0 = no place. */
 void t3r_rectified_places(const t3r_kernels *kernels, const t3r_rectification *rect, uint32_t view,
                           const t3r_view_columns *columns, uint32_t v, t3r_ray_places *places);

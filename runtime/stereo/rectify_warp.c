@@ -29,7 +29,7 @@ static void map_row(const t3r_rectification *rect, const t3r_rectified_view *v, 
     int64_t e[2];
     row_direction(rect, row, e);
     for (int i = 0; i < 3; i++) {
-        /* e| below 2^26.1 in planes, 2^24 in polar ones, where e is a unit vector */
+        /* |e| below 2^26.1 in planes, 2^24 in polar ones, where e is a unit vector */
         const int64_t direction = t3r_round_shift64(e[0] * v->turn_q30[3 * i + 1] + e[1] * v->turn_q30[3 * i + 2], 24);
         map->turn_q30[i] = v->turn_q30[3 * i];
         map->slope_q30[i] = rect->polar ? (int32_t)direction : 0;

@@ -131,7 +131,7 @@ static uint32_t lanes(uint32_t disparities)
     return (disparities + T3R_PATH_LANES - 1) / T3R_PATH_LANES * T3R_PATH_LANES;
 }
 
-/* The right plane in full size as the coarse pass drew it. columns, rows: 0 where there was no room to keep it. */
+/* The right plane in full size as the coarse pass drew it. columns, rows: 0 if there was no room to keep it. */
 typedef struct drawing {
     const uint8_t *view; /* luma of the right view */
     const uint8_t *luma;
@@ -205,7 +205,7 @@ static __attribute__((noinline)) void fill_left(const t3r_stereo_settings *setti
     }
 }
 
-/* Whether the matching of the coarse pass leaves `bytes` of the work memory. */
+/* Whether the coarse pass's matching leaves `bytes` of the work memory. */
 static bool look_leaves(const t3r_stereo_settings *settings, const planes *full, const t3r_match *coarse, size_t bytes)
 {
     const size_t taken = T3R_MATCH_WORK_BYTES(coarse->width, coarse->height, coarse->disparities, settings->paths);
@@ -330,7 +330,7 @@ static t3r_pair first_look(const t3r_stereo_settings *settings, const t3r_rectif
     const uint32_t width = rect->width / QUARTER, height = rect->height / QUARTER;
     const int32_t base = rect->least_disparity;
     const uint32_t wanted = (uint32_t)(rect->most_disparity - base) / QUARTER + 1;
-    /* at most as many as there are columns, and as the work memory has room for */
+    /* limited by the number of columns and the work memory */
     const uint32_t room = T3R_MIN(T3R_MIN(rect->width, T3R_PATH_MOST), QUARTER * settings->disparities);
     const uint32_t count = lanes(T3R_MIN(wanted, room));
     const planes p = divide_quarter(full, width, height, count);
@@ -383,7 +383,7 @@ t3r_pair t3r_stereo_depth(const t3r_stereo_settings *settings, const t3r_camera 
         found.confidence[side] = full.side[side].confidence;
     }
     if (seen.right.view == NULL) {
-        luma_of(&views[1], full.work); /* the left plane's luma is there from the coarse pass */
+        luma_of(&views[1], full.work); /* the coarse pass has drawn the left plane's luma */
     }
     right_job job = {.side = {.kernels = settings->kernels,
                               .rect = &rect,

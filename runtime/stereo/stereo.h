@@ -19,8 +19,9 @@
 /* Match confidences of t3r_stereo_depth(). */
 #define T3R_STEREO_NONE 0u   /* no depth */
 #define T3R_STEREO_FILLED 1u /* depth of the surroundings */
-#define T3R_STEREO_LEAST 2u  /* 2..255: matched, more is surer */
-#define T3R_STEREO_SURE 64u  /* from here on as good as measured; below, errors are two to four times as frequent */
+#define T3R_STEREO_LEAST 2u  /* 2..255: matched, larger is surer */
+#define T3R_STEREO_SURE                                                                                                \
+    64u /* from here on reliable like a measurement; below, errors are two to four times as frequent */
 
 typedef struct t3r_stereo_settings {
     const t3r_kernels *kernels;
@@ -28,7 +29,7 @@ typedef struct t3r_stereo_settings {
     uint32_t paths;       /* 4 or 8 */
     uint32_t fill;        /* 1 = holes get the depth of their surroundings, T3R_STEREO_FILLED */
     t3r_workers workers;  /* share rows; all 0: one row after the other */
-    uint32_t planes;      /* 1 = outlines that matched outlines are not trusted (plane_outline.h) */
+    uint32_t planes;      /* 1 = matches of outlines with outlines are not trusted (plane_outline.h) */
 } t3r_stereo_settings;
 
 /* Computes depth and match confidence of two views of one size from their colours and checked, undistorted cameras.
@@ -44,7 +45,7 @@ t3r_pair t3r_stereo_match_score(const t3r_stereo_settings *settings, const t3r_c
                                 const t3r_view views[2], void *work, uint32_t *score);
 
 /* Converts the plane of match confidences into validity: T3R_MEASURED, with T3R_MARK_DOUBTFUL below `least` (2..255);
- * T3R_FILLED where depth is the surroundings'; T3R_NO_DEPTH without depth. */
+ * T3R_FILLED for filled depth; T3R_NO_DEPTH without depth. */
 void t3r_stereo_marks(const t3r_view *view, uint32_t least);
 
 #endif

@@ -89,7 +89,7 @@ static void sweep_hole(const filling *f, size_t row, size_t before, uint32_t fro
     }
 }
 
-/* Whether some of `count` pixels have no depth. */
+/* Whether any of `count` pixels has no depth. */
 static bool any_hole(const uint16_t *cost, uint32_t count)
 {
     uint16_t any = 0;
@@ -99,7 +99,7 @@ static bool any_hole(const uint16_t *cost, uint32_t count)
     return any != 0;
 }
 
-/* Sweeps one row. Pixels with depth cost nothing and take nothing, so each hole of the row is independent. */
+/* Sweeps one row. Pixels with depth have cost 0 and keep their depth, so each hole of the row is independent. */
 static void sweep_row(const filling *f, uint32_t y, bool first, bool down)
 {
     const uint32_t width = f->view->width;
@@ -126,7 +126,7 @@ static size_t cell_of(const filling *f, uint32_t x, uint32_t y)
     return (size_t)(y / f->cell) * f->columns + x / f->cell;
 }
 
-/* Adds `count` pixels of a row of a cell; the first is x0 right of the cell's middle, and all are y below it. */
+/* Adds `count` pixels of a row of a cell; the first is x0 right of the cell's middle, all are y below it. */
 static void sum_row(t3r_surface_sums *s, const uint16_t *depth, uint32_t count, int32_t x0, int64_t y)
 {
     /* at most 2^9 pixels, |x| at most 2^8, i at most 2^24 */

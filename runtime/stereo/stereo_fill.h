@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Filling of what stereo could not match with the depth of the surroundings (SPEC.md, "Stereo: filling"). */
+/* Fills pixels that stereo could not match with the depth of the surroundings (SPEC.md, "Stereo: filling"). */
 #ifndef T3R_STEREO_FILL_H
 #define T3R_STEREO_FILL_H
 
@@ -11,7 +11,7 @@
 #define T3R_STEREO_FILL_CELLS 8u
 #define T3R_STEREO_FILL_SUMS_BYTES 72 /* a cell; stereo_fill.c asserts it */
 
-/* Bytes of work, aligned to 64: sums of cells; planes of sources, costs and luma. Less than matching takes. */
+/* Bytes of work, aligned to 64: sums of cells; planes of sources, costs and luma. Fewer than matching takes. */
 #define T3R_STEREO_FILL_CELLS_BYTES ((size_t)T3R_STEREO_FILL_CELLS * T3R_STEREO_FILL_CELLS * T3R_STEREO_FILL_SUMS_BYTES)
 #define T3R_STEREO_FILL_BYTES(width, height)                                                                           \
     (T3R_UP_(T3R_STEREO_FILL_CELLS_BYTES) + T3R_UP_(T3R_PIXELS_(width, height) * 4) +                                  \

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Fusion of several pairs' depths of one view (SPEC.md, "Stereo: more than two views"). */
+/* Fusion of the depths of a view from several pairs (SPEC.md, "Stereo: more than two views"). */
 #ifndef T3R_STEREO_FUSE_H
 #define T3R_STEREO_FUSE_H
 

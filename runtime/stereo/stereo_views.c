@@ -42,7 +42,7 @@ static t3r_stereo_settings stereo_settings(const t3r_runtime *rt)
     };
 }
 
-/* Runs the coarse pass of all pairs; with two views there is no choice to make. */
+/* Runs the coarse pass of all pairs; two views need none. */
 static t3r_status look_at_all(const t3r_runtime *rt, const t3r_view *views, survey *found)
 {
     const t3r_stereo_settings settings = stereo_settings(rt);
@@ -75,7 +75,7 @@ static bool precedes(const survey *s, uint32_t v, uint32_t a, uint32_t b)
     return s->match_score[v][a] != s->match_score[v][b] ? s->match_score[v][a] > s->match_score[v][b] : a < b;
 }
 
-/* Returns how many other views are better partners of v than `a`. */
+/* Returns the number of other views that are better partners of v than `a`. */
 static uint32_t rank(const survey *s, uint32_t count, uint32_t v, uint32_t a)
 {
     uint32_t before = 0;
@@ -95,7 +95,7 @@ static void rank_all(const t3r_runtime *rt, survey *s)
     }
 }
 
-/* Places the depths of one pair after its work memory, where several pairs contribute to a view. */
+/* Places the depths of one pair after its work memory, if several pairs contribute to a view. */
 static void divide_pair(const t3r_runtime *rt, t3r_view both[2])
 {
     const uint32_t width = rt->config.width, height = rt->config.height;

@@ -7,10 +7,10 @@
 #include "state/views.h"
 #include "trim3r.h"
 
-/* Partners of each view: those of the highest match score. */
+/* Partners of each view, by the highest match score. */
 #define T3R_STEREO_PARTNERS 2u
 
-/* Clears the planes of depth and validity, which without a sensor hold an earlier analysis. */
+/* Clears the planes of depth and validity, which without a sensor hold the results of an earlier analysis. */
 void t3r_stereo_clear(const t3r_view *views, uint32_t count);
 
 /* Computes depth planes, depth units and validity (as t3r_stereo_marks() does) of all views of the runtime, and records

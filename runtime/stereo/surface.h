@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-/* Upper bound of one over depth in steps, Q30: that of 64 steps. */
+/* Upper bound of one over depth in steps, Q30: 64 steps. */
 #define T3R_INVERSE_MOST (1 << 24)
 
 /* Sums over pixels that have depth. x and y are relative to any fixed place, i is one over depth. */
@@ -22,9 +22,9 @@ typedef struct t3r_surface_slope {
 /* Returns 2^30 / depth, round-half-up, at most T3R_INVERSE_MOST. depth > 0. */
 int64_t t3r_inverse_depth_q30(uint16_t depth);
 
-/* Fits a plane to one over depth by least squares and returns its slopes. n > 0; n |x| and n |y| below 2^31. spread_q4:
- * square pixels, above 0, added to the spread of places, so that pixels in a single row or column have little slope
- * across. */
+/* Fits a plane to one over depth by least squares and returns its slopes. n > 0; n |x| and n |y| below 2^31.
+ * spread_q4: square pixels, above 0, added to the spread of places, so that pixels in a single row or column give
+ * little slope across. */
 t3r_surface_slope t3r_surface_slope_of(const t3r_surface_sums *sums, int32_t spread_q4);
 
 #endif

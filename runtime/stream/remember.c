@@ -8,10 +8,7 @@
 #include "refine/refine.h"
 #include "state/remembered.h"
 
-/* --- what a remembered keyframe shows ------------------------------------------------------------------------------
- */
-
-/* From where it looked. False: out of the map's range. */
+/* Sets the view's lens and pose to the keyframe's. Returns false if it is out of the map's range. */
 static bool stand_at(const t3r_runtime *rt, const t3r_camera *camera, t3r_view *view)
 {
     *view = (t3r_view){
@@ -25,8 +22,8 @@ static bool stand_at(const t3r_runtime *rt, const t3r_camera *camera, t3r_view *
     return t3r_camera_check(camera) == T3R_OK && t3r_pose_in_scene(camera, &rt->frame, &view->pose) == T3R_OK;
 }
 
-/* About as finely as its own keyframe did, on a pixel that had a depth. It may be hidden there: the depth is gone.
- * pixels: NULL of a view that still has its planes. */
+/* Whether the view shows the Gaussian about as finely as its own keyframe, on a pixel that had a depth. The Gaussian
+ * may be hidden there, as remembered keyframes have no depth. pixels: NULL for a view that still has its planes. */
 static bool shows(const t3r_view *view, const uint16_t *pixels, const t3r_gaussian *g, const t3r_map_record *record)
 {
     t3r_projected_pixel at;
@@ -54,10 +51,7 @@ void t3r_remembered_hold(const t3r_runtime *rt, t3r_map *map)
     }
 }
 
-/* --- remembering and forgetting ------------------------------------------------------------------------------------
- */
-
-/* The thresholds of an ordered dither, in 1/16: flat surfaces keep their mean in five bits. */
+/* Thresholds of an ordered dither, in 1/16: flat surfaces keep their mean in five bits. */
 static const uint8_t dither[4][4] = {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
 
 static uint16_t packed(const t3r_view *view, uint32_t x, uint32_t y)
@@ -82,7 +76,8 @@ static bool shows_anything(const t3r_view *view)
     return false;
 }
 
-/* Every second one weighs twice as much, every fourth four times: those that stay are spread over time. */
+/* Returns the weight of keyframe `number`: 1, 2 for every second, 4 for every fourth, so that the remembered ones are
+ * spread over time. */
 static uint32_t weight_of(uint32_t number)
 {
     return number & (0u - number);
@@ -97,11 +92,12 @@ static void add_shown(const t3r_map *map, const t3r_view *view, const uint16_t *
     }
 }
 
-/* The one whose loss costs the map least once that of the slot is remembered: by what it shows, and by its weight. */
+/* Returns the remembered keyframe that the map needs least, other than the one in the slot: by the Gaussians that it
+ * shows, times its weight. */
 static uint32_t least_needed(const t3r_runtime *rt, uint32_t slot)
 {
     const t3r_map map = t3r_map_of(rt);
-    uint32_t *shown_by = t3r_refine_room(rt).order; /* a bit a keyframe; between keyframes nothing is there */
+    uint32_t *shown_by = t3r_refine_room(rt).order; /* one bit per keyframe; the memory is unused between keyframes */
     memset(shown_by, 0, map.count * sizeof *shown_by);
     t3r_view view;
     for (uint32_t k = 0; k < rt->remembered; k++) {
@@ -136,7 +132,7 @@ void t3r_remember(t3r_runtime *rt, uint32_t slot)
     if (rt->config.remember == 0 || slot >= rt->views || !shows_anything(&view)) {
         return;
     }
-    const uint32_t number = rt->keyframes - rt->views + 1; /* the oldest of those at hand */
+    const uint32_t number = rt->keyframes - rt->views + 1; /* the oldest of the live ones */
     const uint32_t at = rt->remembered < rt->config.remember ? rt->remembered++ : least_needed(rt, slot);
     t3r_remembered *keyframe = t3r_remembered_at(rt, at);
     *keyframe = (t3r_remembered){.camera = rt->camera[slot], .number = number};

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The way of a keyframe. Its planes take the slot of the oldest of the keyframes at hand:
+/* The stages of a keyframe. Its planes take the slot of the oldest live keyframe:
  *
- *     frame - image - depth - pointmap -+- the map seen and drawn from there -+- budget - mask - head - map - refine
- *                                       +- wavelet -- texture energy ---------+
+ *   frame - image - depth - pointmap -+- the map seen and drawn from there -+- budget - mask - head - map - refine
+ *                                     +- wavelet -- texture energy ---------+
  *
- * The stages are a build's (stages.h). The map is the scene; what competes with it are the pixels that it does not
- * show. */
+ * The stages are a build's (stages.h). The map is the scene; the pixels that it does not show compete with it. */
 #include "stream.h"
 
 #include "budget/budget_keys.h"
@@ -26,12 +25,13 @@
 #include "stream_map.h"
 #include "superclusters/one_cluster.h"
 
-#define REBASE_Q20 (1 << 29) /* so far from the origin it follows: 512 scene units */
+#define REBASE_Q20 (1 << 29) /* distance from the origin beyond which the origin follows: 512 scene units */
 
-/* --- where the map stands ----------------------------------------------------------------------------------------- */
+/* --- origin of the map ------------------------------------------------------------------------------------------ */
 
-/* Whole scene units are whole steps of Q32 world units, whatever the exponent, and of Q20: nothing is rounded. Towards
- * 0, so that the origin stays between where it was and the camera, below 2^62 both. */
+/* Moves the origin to the camera by whole scene units: whole steps of Q32 world units for any exponent, and of Q20, so
+ * nothing is rounded. Rounds towards 0, so that the origin stays between its old place and the camera, both below
+ * 2^62. */
 static void rebase(t3r_runtime *rt, const int32_t position_q20[3])
 {
     int64_t by_q20[3];
@@ -62,7 +62,7 @@ t3r_status t3r_stream_follow(t3r_runtime *rt, const t3r_camera *camera)
     return status;
 }
 
-/* Retained keyframes out of range of the new origin are ignored. */
+/* Ignores retained keyframes out of range of the new origin. */
 static void leave_far_keyframes(t3r_runtime *rt, const t3r_view *views, uint32_t slot)
 {
     for (uint32_t v = 0; v < rt->views; v++) {
@@ -74,7 +74,7 @@ static void leave_far_keyframes(t3r_runtime *rt, const t3r_view *views, uint32_t
     }
 }
 
-/* --- the keyframe by itself and among those at hand --------------------------------------------------------------- */
+/* --- the keyframe alone, and among the live ones ---------------------------------------------------------------- */
 
 static t3r_view_span alone(uint32_t slot)
 {
@@ -91,10 +91,9 @@ static t3r_status develop(t3r_runtime *rt, uint32_t slot, const t3r_frame *frame
     return t3r_develop_view(rt, slot, frame, &rt->camera[slot]);
 }
 
-/* The gains that bring the new keyframe and the one before to their mean exposure. Older ones keep theirs: what each
- * keyframe is to look like is the mean of its neighbours on the way, and the map changes along with the camera's
- * exposure.
- */
+/* Computes the gains that bring the new keyframe and the previous one to their mean exposure. Older ones keep theirs:
+ * each keyframe is levelled to the mean of its neighbours on the path, and the map changes along with the camera's
+ * exposure. */
 static t3r_status level_keyframe(t3r_runtime *rt, const t3r_view *views, uint32_t slot)
 {
     if (!t3r_pointmap_step(rt, alone(slot), T3R_PART_EXPOSURE, 0)) {
@@ -117,7 +116,7 @@ static t3r_status level_keyframe(t3r_runtime *rt, const t3r_view *views, uint32_
     return T3R_OK;
 }
 
-/* Wide holes stay bridged. */
+/* Clears the marks of older keyframes; wide holes stay bridged. */
 static void reset_older_marks(const t3r_runtime *rt, const t3r_view *views, uint32_t slot)
 {
     for (uint32_t v = 0; v < rt->views; v++) {
@@ -138,9 +137,9 @@ static t3r_status compare_keyframes(t3r_runtime *rt, t3r_view *views, uint32_t s
     return status == T3R_OK ? level_keyframe(rt, views, slot) : status;
 }
 
-/* --- the map from there ------------------------------------------------------------------------------------------- */
+/* --- the map as the keyframe sees it ---------------------------------------------------------------------------- */
 
-/* Pixels whose surface the map shows count as covered. */
+/* Marks pixels whose surface the map shows as covered; returns their number. */
 static uint32_t mark_shown(const t3r_pointmap *keyframe, const uint32_t *drawn_q20)
 {
     const t3r_view *view = keyframe->view;
@@ -152,7 +151,7 @@ static uint32_t mark_shown(const t3r_pointmap *keyframe, const uint32_t *drawn_q
             continue;
         }
         const int32_t z_q20 = t3r_depth_q20(keyframe->scale, view->depth[i]);
-        /* whatever is seen in a wide hole is what is there */
+        /* in a wide hole the drawn surface is taken as the true one */
         if (t3r_is_bridged(*validity) || t3r_is_one_surface(z_q20, drawn_q20[i], 16)) {
             *validity = t3r_marked(*validity, T3R_MARK_COVERED);
             shown++;
@@ -195,7 +194,7 @@ static t3r_status see_map(t3r_runtime *rt, const t3r_view *views, uint32_t slot,
     return status;
 }
 
-/* --- what is new -------------------------------------------------------------------------------------------------- */
+/* --- new points ------------------------------------------------------------------------------------------------- */
 
 static t3r_status add_points(t3r_runtime *rt, t3r_view *views, uint32_t slot, t3r_stream_report *report)
 {
@@ -228,10 +227,10 @@ static t3r_status add_points(t3r_runtime *rt, t3r_view *views, uint32_t slot, t3
     return T3R_OK;
 }
 
-/* --- all of it ---------------------------------------------------------------------------------------------------- */
+/* --- the whole keyframe ----------------------------------------------------------------------------------------- */
 
-/* The planes are the keyframe's; the views at hand include it. */
-/* Neither this nor refine_map() is inlined, as their views are not needed at once. */
+/* Takes the keyframe whose planes are in the slot. Not inlined, like refine_map(), so that only one of them has its
+ * views on the stack. */
 static __attribute__((noinline)) t3r_status take(t3r_runtime *rt, uint32_t slot, t3r_stream_report *report)
 {
     t3r_view views[T3R_MAX_VIEWS];
@@ -248,7 +247,7 @@ static __attribute__((noinline)) t3r_status take(t3r_runtime *rt, uint32_t slot,
         return status;
     }
     leave_far_keyframes(rt, views, slot);
-    t3r_views_of(rt, views); /* poses in the frame there is now */
+    t3r_views_of(rt, views); /* poses in the current frame */
     status = compare_keyframes(rt, views, slot);
     if (status == T3R_OK) {
         status = see_map(rt, views, slot, report);
@@ -280,7 +279,7 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
         rt->views = T3R_MAX(views, slot + 1);
         status = take(rt, slot, report);
     }
-    if (status != T3R_OK) { /* the slot's planes hold no keyframe now */
+    if (status != T3R_OK) { /* the slot's planes no longer hold a keyframe */
         const t3r_view view = t3r_view_of(rt, slot);
         memset(view.validity, T3R_NO_DEPTH, (size_t)view.width * view.height);
         rt->views = views;

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A keyframe of a stream, from the camera's frame to the map. */
+/* Takes a keyframe of a stream, from the camera's frame to the map. */
 #ifndef T3R_STREAM_H
 #define T3R_STREAM_H
 
 #include "trim3r.h"
 
-/* Moves the map's origin after the checked camera where it has come far. An error: it stands where no map reaches. */
+/* Moves the map's origin after the checked camera if it is far away. An error: the camera is beyond the map's range. */
 t3r_status t3r_stream_follow(t3r_runtime *rt, const t3r_camera *camera);
 
-/* Takes the checked keyframe into the map. `camera` is that of t3r_frame_check(). */
+/* Takes the checked keyframe into the map. `camera` comes from t3r_frame_check(). */
 t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                            t3r_stream_report *report);
 

@@ -8,9 +8,9 @@
 #include "pointmap/contradiction.h"
 #include "state/state.h"
 
-#define FINER_Q8 256        /* log2: pixels on the surface so much narrower replace the Gaussian */
+#define FINER_Q8 256        /* log2: a keyframe with pixels this much narrower on the surface replaces the Gaussian */
 #define WIDEN_STEP_Q10 64   /* log2 of density: smaller changes wait until they add up */
-#define WIDEN_MOST_Q10 8192 /* of one step */
+#define WIDEN_MOST_Q10 8192 /* bound of one step */
 
 t3r_map t3r_map_of(const t3r_runtime *rt)
 {
@@ -47,7 +47,7 @@ static void move_to(t3r_map *map, uint32_t from, uint32_t to)
     map->records[to] = map->records[from];
 }
 
-/* An octave is spread over `half_life` keyframes: the part of the one at hand. */
+/* Returns the current keyframe's part of an octave spread over `half_life` keyframes. */
 static uint32_t fade_q10(uint32_t keyframes, uint32_t half_life)
 {
     if (half_life == 0) {
@@ -92,12 +92,12 @@ static uint32_t point_key(const t3r_view *view, size_t pixel)
     return T3R_MAX((uint32_t)view->key[pixel], (uint32_t)T3R_MAP_KEY_LEAST);
 }
 
-/* How many have each of 256 keys, or each of 256 times as many. */
+/* Numbers of Gaussians and points for each of 256 values of a byte of the key. */
 typedef struct counts {
     uint32_t gaussians[256], points[256];
 } counts;
 
-/* By their upper eight bits, or by their lower ones where the upper are `upper`. */
+/* Counts by the upper byte, or with `upper` by the lower byte of keys with that upper one. */
 #define ANY_UPPER 256u
 static void count_key(uint32_t key, uint32_t upper, uint32_t counted[256])
 {
@@ -123,7 +123,7 @@ static void count_keys(const t3r_map *map, const t3r_view *view, const t3r_budge
     }
 }
 
-/* The last of the 256 below which fewer than `most` are; adds up those below. */
+/* Returns the last byte value below which fewer than `most` are counted; adds up the counts below it. */
 static uint32_t pass(const counts *n, uint32_t most, uint32_t *gaussians, uint32_t *points)
 {
     uint32_t at = 0;
@@ -137,9 +137,9 @@ static uint32_t pass(const counts *n, uint32_t most, uint32_t *gaussians, uint32
 t3r_map_cut t3r_map_compete(const t3r_map *map, const t3r_view *view, const t3r_budget_settings *settings,
                             uint32_t most)
 {
-    /* The least threshold of which at least `most` are not above it, byte by byte */
+    /* finds the least threshold with at least `most` keys not above it, byte by byte */
     counts n;
-    uint32_t gaussians = 0, points = 0; /* below it */
+    uint32_t gaussians = 0, points = 0; /* below the threshold */
     count_keys(map, view, settings, ANY_UPPER, &n);
     const uint32_t upper = pass(&n, most, &gaussians, &points);
     count_keys(map, view, settings, upper, &n);
@@ -150,7 +150,7 @@ t3r_map_cut t3r_map_compete(const t3r_map *map, const t3r_view *view, const t3r_
     return (t3r_map_cut){upper << 8 | lower, ties, points + more_points, gaussians + ties};
 }
 
-/* As wide as Gaussians need to be of which 2^-thinned were left: 2^(thinned / 2) times as far apart. */
+/* Scales the width by 2^(thinned / 2), the growth of the spacing when 2^-thinned of the Gaussians are left. */
 static void widen(t3r_gaussian *g, int32_t thinned_q10)
 {
     int64_t scale_q16 = t3r_exp2_q16(T3R_MIN(thinned_q10, WIDEN_MOST_Q10) * 32); /* 2^(thinned / 2), at most 2^4 */
@@ -207,7 +207,7 @@ uint32_t t3r_map_append(t3r_map *map, uint32_t count, const t3r_pointmap *keyfra
     uint32_t before = map->count;
     for (uint32_t i = 0; i < count; i++, pixel++) {
         while (!t3r_retained(view, pixel)) {
-            pixel++; /* the head made a Gaussian of each in this order */
+            pixel++; /* the head made one Gaussian for each of these, in this order */
         }
         if (!in_range(map->gaussians[before + i].position_q20)) {
             continue;

@@ -10,7 +10,7 @@
 #define STEP 2 /* pixels */
 #define GRID 8 /* cells along each side of the picture */
 
-/* The cell of a pixel, as a bit. */
+/* Returns the bit of a pixel's cell. */
 static uint64_t cell_of(const t3r_view *view, size_t pixel)
 {
     uint32_t x = (uint32_t)(pixel % view->width), y = (uint32_t)(pixel / view->width);

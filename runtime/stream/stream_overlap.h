@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How much a camera would see of what the newest keyframe saw. */
+/* The share of the newest keyframe's points that a camera would see. */
 #ifndef T3R_STREAM_OVERLAP_H
 #define T3R_STREAM_OVERLAP_H
 
@@ -7,7 +7,7 @@
 
 #include "trim3r.h"
 
-/* The checked camera, of a picture of width x height; a keyframe has been taken. */
+/* Computes t3r_stream_overlap() for a checked camera with a picture of width x height; there is a keyframe. */
 t3r_status t3r_overlap_with_newest(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
                                    uint32_t *overlap_q8);
 

@@ -4,7 +4,7 @@
 #include "core/fixed.h"
 #include "core/memory.h"
 
-#define PART 256u /* sample points a part; a draw skips whole parts by their summed distances */
+#define PART 256u /* sample points per part; a draw skips whole parts by their summed distances */
 #define PARTS (T3R_CLUSTER_SAMPLE / PART)
 #define CENTRES_A_STEP                                                                                                 \
     8u /* centres between two steps of the host: about 7 million instructions of plain C with the                      \
@@ -42,8 +42,7 @@ static void sample_point(const t3r_sample *sample, uint32_t index, int16_t c[T3R
     }
 }
 
-/* State of the seeding. One worker does it alone: a centre takes less time than handing parts of the sample to
- * others. */
+/* State of the seeding. Runs on one worker: a centre takes less time than passing parts of the sample to others. */
 typedef struct seeding {
     const t3r_kernels *kernels;
     const t3r_sample *sample;
@@ -98,7 +97,7 @@ static void choose_centre(const seeding *s, uint32_t *random, int16_t centre[T3R
     }
 }
 
-/* Adds the centres that stay. Returns whether there is one. */
+/* Adds the kept centres. Returns whether there is one. */
 static bool add_staying(seeding *s, uint32_t count, const bool *stays, const t3r_cluster *clusters)
 {
     bool any = false;

@@ -6,9 +6,9 @@
 
 #include "superclusters.h"
 
-/* Places the settings' number of centres on points of the source. Centres that stay are not changed, and the others are
- * drawn far from them (NULL: none stays). Without a valid point no centre is changed. Calls the host's step with 0 of
- * `total` between centres. Returns false when the host cancels. */
+/* Places the settings' number of centres on points of the source. Kept centres (stays[]; NULL: none) are not changed,
+ * and the others are drawn far from them. Without a valid point no centre is changed. Calls the host's step with 0 of
+ * `total` between centres. Returns false if the host cancels. */
 bool t3r_seed_centres(const t3r_point_source *source, const t3r_cluster_settings *settings, const bool *stays,
                       t3r_cluster *clusters, const t3r_sample *sample, const t3r_cluster_host *host, uint32_t total);
 

@@ -9,7 +9,7 @@
 #define BLOCK T3R_POINTS  /* points gathered at a time */
 #define TASK_POINTS 512u  /* points a task labels */
 #define FOLLOW_PART 6u    /* a build that follows another takes 1 / FOLLOW_PART of the batches */
-#define FOLLOW_WEIGHT 16u /* initial weight of a centre that is taken over, in points */
+#define FOLLOW_WEIGHT 16u /* initial weight of a reused centre, in points */
 #define FOLLOW_SHARE                                                                                                   \
     2u /* such a centre is kept if its points in the first batch are at least 1 / FOLLOW_SHARE of the                  \
         * mean */
@@ -29,8 +29,6 @@ static void load_centres(t3r_centres *centres, const t3r_cluster *clusters, uint
     }
 }
 
-/* --- means ------------------------------------------------------------------------------------------------------ */
-
 /* Sums over the points of each SuperCluster. */
 typedef struct cluster_sums {
     int64_t (*sum)[T3R_DIMENSIONS];
@@ -46,7 +44,7 @@ typedef struct means_job {
     t3r_centres centres;
     t3r_sample sample; /* used while centres are placed, in the memory of the fields below */
     t3r_neighbours neighbours;
-    cluster_sums sums[T3R_MAX_WORKERS]; /* sums[0] finally holds those of all workers */
+    cluster_sums sums[T3R_MAX_WORKERS]; /* sums[0] finally holds the sums of all workers */
     uint32_t *weight;                   /* points averaged into each centre so far, at most WEIGHT_MOST */
     uint32_t first;                     /* index of the first task's block of TASK_POINTS */
     uint32_t batch;                     /* number of the batch */
@@ -260,7 +258,7 @@ static void set_weights(const means_job *job, uint32_t points)
     }
 }
 
-/* Places all centres anew. Returns false when cancelled. */
+/* Places all centres again. Returns false when cancelled. */
 static bool place_centres(const means_job *job, const t3r_cluster_settings *settings, t3r_cluster *clusters,
                           uint32_t total)
 {
@@ -272,8 +270,8 @@ static bool place_centres(const means_job *job, const t3r_cluster_settings *sett
     return true;
 }
 
-/* Runs the first batch with centres taken over from the last build. Centres that get fewer than half of the mean number
- * of its points are placed anew. Returns false when cancelled. */
+/* Runs the first batch with the last build's centres. Centres that get fewer than half of the mean number of its
+ * points are placed again. Returns false if cancelled. */
 static bool follow_centres(means_job *job, const t3r_cluster_settings *settings, t3r_cluster *clusters, uint32_t total)
 {
     bool stays[T3R_MAX_CLUSTERS];

@@ -65,17 +65,17 @@ typedef struct t3r_cluster {
 typedef struct t3r_cluster_settings {
     const t3r_kernels *kernels;
     uint32_t clusters, batches, seed;
-    bool follows; /* the clusters hold the centres of similar points, to start from */
+    bool follows; /* the clusters hold centres of similar points to start from */
 } t3r_cluster_settings;
 
 /* The host of the K-means: its workers, and a step called between batches, chunks of the assignment pass, and a few of
  * the first centres. */
 typedef struct t3r_cluster_host {
     t3r_workers workers;
-    void *sums; /* T3R_CLUSTER_SUMS_BYTES(K) for each worker but worker 0, aligned to T3R_ARENA_ALIGN; NULL with one
-                 * worker */
+    void *sums; /* T3R_CLUSTER_SUMS_BYTES(K) for each worker except worker 0, aligned to T3R_ARENA_ALIGN; NULL with one
+                   worker */
     void *context;
-    bool (*step)(void *context, uint32_t done, uint32_t total); /* returns false to stop; NULL: never stops */
+    bool (*step)(void *context, uint32_t done, uint32_t total); /* returns false to cancel; NULL: never cancels */
 } t3r_cluster_host;
 
 static inline bool t3r_cluster_step(const t3r_cluster_host *host, uint32_t done, uint32_t total)

@@ -33,8 +33,7 @@ static void store_halves(int16_t *row, halves x)
     memcpy(row + x.lows, x.high, x.highs * sizeof(int16_t));
 }
 
-/* ---- db2: low[n - 1] holds a[n], high[n - 1] b[n], then d1[n]; the row gets s[n], then d[n - 1]
- * ---------------------- */
+/* ---- db2: low[n - 1] holds a[n], high[n - 1] b[n], then d1[n]; the row gets s[n], then d[n - 1] ---------------- */
 
 static void forward_db2(int16_t *row, halves x)
 {

@@ -42,7 +42,7 @@
 #include "trim3r.h"
 #include "wavelet.h"
 
-/* The rows of one level: the first rows of the plane or, where earlier levels kept their rows in place, the low rows of
+/* The rows of one level: the first rows of the plane or, if earlier levels kept their rows in place, the low rows of
  * the last of them. */
 typedef struct t3r_level {
     const t3r_kernels *kernels;

@@ -73,8 +73,8 @@ static void texture_plane(const t3r_level *level, uint32_t levels, uint16_t *tex
         uint16_t *out = texture_q4 + (size_t)y * width;
         level[0].kernels->texture_spread(out, rows[0], width);
         if (y + 1 < height) {
-            level[0].kernels->texture_spread(out + width, rows[0], width); /* a copy would wait for the stores before
-                                                                            * it */
+            level[0].kernels->texture_spread(out + width, rows[0],
+                                             width); /* a copy would wait for the preceding stores */
         }
     }
 }

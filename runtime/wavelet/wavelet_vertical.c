@@ -74,7 +74,7 @@ static void forward_haar(const t3r_level *x)
     }
 }
 
-/* Returns the even row after odd row n, at the end the one before it. */
+/* Returns the even row after odd row n, or at the end the one before it. */
 static const int16_t *even_behind(const t3r_level *x, uint32_t n)
 {
     if (2 * n + 2 < x->height) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""boards.py TRIM3R FOLDER BOARD...: the firmware of each board makes the bits of this machine, takes what docs/study/boards.md
-has, and says what it lacks. The boards share a port."""
+"""boards.py TRIM3R FOLDER BOARD...: the firmware of each board makes the bits of this machine, has the sizes in
+docs/study/boards.md, and says what it lacks. The boards share a port."""
 import json
 import pathlib
 import re
@@ -17,7 +17,7 @@ PROGRAM, FOLDER, OWN = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sor
 PAGE = (ROOT / "docs" / "study" / "boards.md").read_text()
 SECTION = re.search(r"## The head `small`\n(.*?)\n## ", PAGE, re.S)[1]
 TABLE = next(part for part in SECTION.split("\n\n") if BOARDS[OWN[0]]["name"] in part)
-NAMES = TABLE.strip().splitlines()[0].strip("| ").split(" | ")
+NAMES = next(line for line in TABLE.splitlines() if line.startswith("|")).strip("| ").split(" | ")
 TOLERANCE = 0.02 # another version of the compiler
 
 
@@ -31,7 +31,7 @@ def boards(*words, expect=0):
 
 
 def shown(label, name):
-    """A figure of the page, of the firmware with this name."""
+    """Returns a figure from the page, for the firmware with this name."""
     row = re.search(rf"^\| {re.escape(label)} \|(.*)\|$", TABLE, re.M)
     check(row is not None, f"the page has no row {label}")
     check(name in NAMES, f"the page has no column {name}")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""flash.py TRIM3R FOLDER: the flash of small firmwares stays within its limits and is what docs/study/boards.md has.
-Their hashes are those of this machine."""
+"""flash.py TRIM3R FOLDER: the flash of small firmwares stays within its limits and agrees with docs/study/boards.md.
+Their hashes equal this machine's."""
 import json
 import pathlib
 import re

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""levels.py TRIM3R FOLDER: gcc and clang compile each file of the runtime for the Cortex-M55 at every level. The firmware
-with a runtime by clang, whose enumerations are wider than those of the rest by gcc, has the bits of this machine."""
+"""levels.py TRIM3R FOLDER: gcc and clang compile each file of the runtime for the Cortex-M55 at every level. A
+firmware whose runtime is from clang, with wider enumerations than gcc's rest, has the bits of this machine."""
 import concurrent.futures
 import os
 import pathlib
@@ -21,7 +21,7 @@ LEVELS = ("-O0", "-O1", "-O2", "-O3", "-Os")
 
 
 def refused(sources):
-    """Each file, level and compiler that end in an error."""
+    """Returns each file, level and compiler that end in an error."""
     def compiled(job):
         compiler, level, source = job
         ended = subprocess.run([*compiler, level, *BOARDS[BOARD]["flags"], "-w", "-I", RUNTIME / "include", "-I", RUNTIME,
@@ -46,7 +46,7 @@ def main():
     found = refused(sources)
     check(found == [], f"does not compile: {found}")
     run(sys.executable, "-B", ROOT / "tools" / "boards", BOARD, "--clang", "--optimize=-O3", "--program", PROGRAM, "--out",
-        FOLDER) # its exit status is that of the bits
+        FOLDER) # its exit status reports the bits
     done()
 
 

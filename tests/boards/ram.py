@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""preset.py TRIM3R FOLDER: the settings for 128 KiB of RAM run on a Cortex-M3 whose RAM has exactly so many bytes, with data, a
-strip of a frame, picture, arena and stack in it, and make the bits of this machine. A watchdog is fed in time."""
+"""ram.py TRIM3R FOLDER: the settings for 128 KiB of RAM run on a Cortex-M3 whose RAM has exactly that size, with
+data, a strip of a frame, picture, arena and stack in it, and make the bits of this machine. The watchdog is reset
+in time."""
 import json
 import pathlib
 import re

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""stack.py: what docs/study/boards.md has of the stack, which an emulator painted, against the bound from the call graph. The
-painted stack is within the bound and what the firmware's own functions take; and the bound is not far above it."""
+"""stack.py: the stack in docs/study/boards.md, measured in an emulator, against the bound from the call graph. The
+measured stack is within the bound plus the firmware's own functions, and the bound is not far above it."""
 import pathlib
 import re
 import subprocess
@@ -13,12 +13,12 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 PAGE = (ROOT / "docs" / "study" / "boards.md").read_text()
 TARGETS = {"Cortex-M3": "cortex-m3", "Cortex-M7": "cortex-m7", "Cortex-M55": "cortex-m55"}
-OF_FIRMWARE = 1024 # main(), the reader of the recording and what the compiler's library keeps
-LEAST = 0.7        # of the bound: stereo, which the firmware doesn't run, makes it
+OF_FIRMWARE = 1024 # main(), the reader of the recording and the compiler's library
+LEAST = 0.7        # relative to the bound: stereo, which the firmware doesn't run, determines it
 
 
 def bound(target):
-    """Bytes below and with t3r_reconstruct()."""
+    """Returns the bytes of t3r_reconstruct() and everything that it calls."""
     ended = subprocess.run([sys.executable, "-B", "stack_depth.py", target, "--markdown"], cwd=ROOT / "tests" / "proofs",
                            capture_output=True, text=True)
     if ended.returncode == 77:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""capture.py TRIM3R: the command as a user has it: sources, signals, files that roll over, poses, events, --build."""
+"""capture.py TRIM3R: the command for users: sources, signals, files that roll over, poses, events, --build."""
 import json
 import os
 import pty
@@ -29,7 +29,7 @@ def of_topic(path, topic):
 
 
 def copies():
-    """A recording of a recording is the same to the last bit of its frames."""
+    """A recording of a recording has exactly the same frames."""
     room = capture("replay:room.mcap", "--hash", "-o", "copy.mcap")
     again = capture("replay:copy.mcap", "--hash")
     check(room["frames"] == again["frames"] == 12 and room["paired"] == 12, "all frames")
@@ -65,7 +65,7 @@ def builds():
 
 
 def bare():
-    """A recording without poses and intrinsics, as a camera alone makes it."""
+    """A recording without poses and intrinsics, like one of a camera alone."""
     with open("far.txt", "w", encoding="ascii") as file:
         file.write("9000 0 0 0 0 0 0 1\n9000.1 0 0 0 0 0 0 1\n")
     told = capture("replay:room.mcap", "--poses", "far.txt", "-o", "bare.mcap")
@@ -90,7 +90,7 @@ def poses():
     lens = capture("replay:bare.mcap", "--intrinsics", "70,71,31.5,23.5,0.1,-0.2,0.001,0.002,0.05", "-o", "lens.mcap")
     check(lens["frames"] == 12, "intrinsics")
     check(expect_json("info", "lens.mcap")["distortion"] == "radtan", "a lens with distortion")
-    expect(1, "capture", "--source", "replay:bare.mcap", "--poses", "tum.txt", "--clock-offset", "estimate", "--hash", err="offset is not")
+    expect(1, "capture", "--source", "replay:bare.mcap", "--poses", "tum.txt", "--clock-offset", "estimate", "--hash", err="offset cannot")
     for far in ("4000000000", "79999999999", "-18446744073", "99999999999999999999", "estimate:4000000000"):
         expect(2, "capture", "--source", "replay:bare.mcap", "--poses", "tum.txt", "--clock-offset", far, "--hash", err="--clock-offset takes")
     told = capture("replay:bare.mcap", *asked, "tum.txt", "--clock-offset", "-3999999999.999999999")
@@ -110,7 +110,7 @@ def rolls_over():
 
 
 def spares_what_it_reads():
-    """Neither the first file nor one that it rolls over to replaces the recording or the poses, by whatever name."""
+    """Neither the first file nor a later one replaces the recording or the poses, by whatever name."""
     with open("spare-1.mcap", "wb") as file:
         file.write(read("room.mcap"))
     os.symlink("spare-1.mcap", "link-2.mcap")
@@ -124,7 +124,7 @@ def spares_what_it_reads():
 
 
 def stops(number):
-    """A signal: exit status 0, a recording that is whole."""
+    """A signal: exit status 0, and a complete recording."""
     command = [TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "--json", "-o",
                "signal.mcap"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
@@ -154,7 +154,7 @@ def memory():
 
 
 def progress():
-    """On a terminal a line of rate, drops and size of the work; elsewhere none."""
+    """On a terminal a line with rate, drops and size of the work; elsewhere none."""
     leader, follower = pty.openpty()
     process = subprocess.Popen([TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "--hash"],
                                stdout=subprocess.DEVNULL, stderr=follower)
@@ -171,7 +171,7 @@ def progress():
 
 
 def stops_before_it_begins():
-    """Ctrl-C while the clocks' offset is looked for: what there is under the output's name stays."""
+    """Ctrl-C while the clocks' offset is estimated: an existing file with the output's name stays."""
     with open("kept.mcap", "wb") as file:
         file.write(b"\x89MCAP0\r\nof before")
     expect(0, "room", "--size", "640x480", "--frames", 2, "-o", "large.mcap")  # so that it takes long
@@ -209,7 +209,7 @@ def killed():
 
 def refusals():
     expect(2, "capture", err="--source is missing")
-    expect(2, "capture", "--source", "replay:room.mcap", err="what is to become")
+    expect(2, "capture", "--source", "replay:room.mcap", err="-o REC.mcap or --build")
     expect(1, "capture", "--source", "nothing:at-all", "--hash", err="is none of")
     expect(1, "capture", "--source", "replay:missing.mcap", "--hash", err="No such file")
     expect(1, "capture", "--source", "v4l2:/dev/null", "--hash", err="is not a video device")
@@ -253,7 +253,7 @@ def refusals():
 
 
 def events():
-    """What is counted stands in the recording, too, level and all."""
+    """The counts are also in the recording, each with its level."""
     expect(0, "capture", "--source", "replay:room.mcap", "-o", "quiet.mcap", "--quiet")
     schemas = [content for opcode, content in mcap_read.records(read("quiet.mcap")) if opcode == 0x03]
     check(any(b"rcl_interfaces/msg/Log" in content for content in schemas), "the topic of events")

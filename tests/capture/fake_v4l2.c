@@ -93,7 +93,7 @@ static void finish(fake_node *node)
     }
 }
 
-/* Makes all images that are due. */
+/* Makes all images whose time has come. */
 static void run_node(fake_node *node, int64_t now_ns)
 {
     while (node->streaming && node->next_ns <= now_ns) {
@@ -127,7 +127,7 @@ void fake_sleep(fake_v4l2 *fake, int64_t ns)
     run(fake);
 }
 
-/* ---- faults on order ---- */
+/* ---- requested faults ---- */
 
 static int fault(fake_v4l2 *fake, unsigned long call)
 {

@@ -40,7 +40,7 @@ typedef struct fake_node {
     uint32_t timestamp_flags;    /* 0: monotonic, at the end of a frame */
     int64_t first_ns, interval_ns;
     uint32_t first_sequence;
-    uint32_t most_buffers; /* the most buffers that it gives; 0 = as many as requested */
+    uint32_t most_buffers; /* most buffers that it provides; 0 = as many as requested */
     /* fills the image `number` (from 0, including images without a buffer); returns its bytes */
     uint32_t (*fill)(void *user, const struct fake_node *node, uint32_t number, uint8_t *memory);
     void *user;
@@ -84,11 +84,11 @@ void fake_start(fake_v4l2 *fake);
 /* Adds a second node that gives Z16 of the same size. */
 void fake_add_depth(fake_v4l2 *fake);
 t3r_v4l2_system fake_system(fake_v4l2 *fake);
-/* Time passes: the driver goes on without being asked. */
+/* Lets time pass: the driver works on without being called. */
 void fake_sleep(fake_v4l2 *fake, int64_t ns);
 /* Whether everything is closed and unmapped, and nothing was misused. */
 bool fake_clean(const fake_v4l2 *fake);
-/* Bytes of row y, plane and all, of the format agreed on. */
+/* Returns the bytes of an image in the negotiated format, all planes included. */
 uint32_t fake_image_bytes(const fake_node *node);
 /* Returns byte i of the default image `number`. */
 uint8_t fake_byte(uint32_t number, uint32_t i);

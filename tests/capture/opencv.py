@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""opencv.py TRIM3R: pictures and films by OpenCV's VideoCapture against the very samples they were made of, and the
-Gaussians of them against those of a recording made without OpenCV. Skipped without the adapter or numpy and cv2."""
+"""opencv.py TRIM3R: pictures and films by OpenCV's VideoCapture against the samples that they were made of, and
+their Gaussians against those of a recording made without OpenCV. Skipped without the adapter or numpy and cv2."""
 import functools
 import http.server
 import json
@@ -39,7 +39,7 @@ class Server(http.server.SimpleHTTPRequestHandler):
 
 
 def keeps_secrets(film):
-    """Of a stream's URL neither user nor password nor query is recorded or told."""
+    """Neither user, password nor query of a stream's URL is recorded or printed."""
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Server, directory=os.getcwd())) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         place = f"127.0.0.1:{server.server_port}/{film}"
@@ -78,7 +78,7 @@ with tempfile.TemporaryDirectory() as folder:
     with open("euroc.csv", "w", encoding="ascii") as file:
         for stamp, (_, (x, y, z, qx, qy, qz, qw)) in zip(stamps, poses):
             file.write(",".join(map(repr, (stamp, x, y, z, qw, qx, qy, qz))) + "\n")
-    # intrinsics as the room has them, exactly
+    # intrinsics exactly like the room's
     info = next(m for t, _, m in mcap_read.messages(open("room.mcap", "rb").read()) if t == "/camera/camera_info")
     cdr = mcap_read.Cdr(info)
     mcap_read.stamp(cdr), cdr.string(), cdr.number("I"), cdr.number("I"), cdr.string()

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Capture by libcamera over a library that lives in this process: agreement, frames without a copy, gaps, failures,
- * unplugging, standing still. */
+/* Capture by libcamera with a fake library in this process: negotiation, frames without a copy, gaps, failures,
+ * unplugging, stalls. */
 #include <stdio.h>
 #include <string.h>
 
@@ -10,9 +10,9 @@
 
 enum { WIDTH = 16, HEIGHT = 8, STRIDE = 24, BUFFERS = 3, NEVER = 1000000 };
 
-/* The library: buffers are finished in the order in which they were queued. */
+/* The fake library: buffers are finished in the order in which they were queued. */
 static struct {
-    const char *refuses; /* opening; NULL = not */
+    const char *refuses; /* NULL = opening succeeds */
     const char *format;
     uint32_t stride, short_bytes;
     uint32_t failed_at, skip_at, gone_at, still_at, refuse_queue_at, cancel_at;

@@ -93,7 +93,7 @@ TEST(pictures_are_decoded_with_and_without_tables)
     assert_null(t3r_mjpeg_decode(decoder, jpeg, bytes, WIDTH, HEIGHT, again));
     assert_memory_equal(rgb, again, sizeof rgb);
     assert_non_null(t3r_mjpeg_decode(decoder, jpeg, bytes, WIDTH, HEIGHT + 8, rgb));
-    /* cut anywhere: a reason, no crash, and the next one is decoded */
+    /* truncated anywhere: a reason, no crash, and the next picture is decoded */
     bytes = compress(1, jpeg, sizeof jpeg);
     for (uint32_t cut = 0; cut < bytes - 2; cut++) {
         assert_non_null(t3r_mjpeg_decode(decoder, jpeg, cut, WIDTH, HEIGHT, rgb));
@@ -103,8 +103,8 @@ TEST(pictures_are_decoded_with_and_without_tables)
     t3r_mjpeg_close(NULL);
 }
 
-/* Progressive, in as many scans as asked: after the means one coefficient of one colour each, by a bit more each time.
- */
+/* Progressive, with any number of scans: the means first, then one coefficient of one colour per scan, one bit more
+ * each time. */
 TEST(many_scans_are_refused_early)
 {
     uint8_t rgb[WIDTH * HEIGHT * 3];

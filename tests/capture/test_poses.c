@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Trajectories: parsing, interpolation between poses, and the offset of two clocks found from moving pictures. */
+/* Trajectories: parsing, interpolation between poses, and the offset of two clocks estimated from moving pictures. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,8 +8,6 @@
 #include "capture/clock_offset.h"
 #include "import/poses/trajectory.h"
 #include "test.h"
-
-/* ---- reading ---- */
 
 static void parsed(const char *text, trajectory *out)
 {
@@ -46,7 +44,7 @@ TEST(lines_are_read_to_the_nanosecond)
     assert_int_equal(t.poses[0].stamp_ns, 1403636579763555584);
     assert_true(t.poses[0].pose.rotation[0] >= 1 && t.poses[0].pose.rotation[1] <= 0); /* w comes first there */
     trajectory_free(&t);
-    /* of two poses of one time the first stays */
+    /* of two poses at one time the first is kept */
     parsed("1 1 0 0 0 0 0 1\n1 2 0 0 0 0 0 1\n", &t);
     assert_int_equal(t.count, 1);
     trajectory_free(&t);
@@ -63,7 +61,7 @@ TEST(lines_are_read_to_the_nanosecond)
     assert_int_equal(t.poses[0].stamp_ns, INT64_C(4000000000000000000));
     trajectory_free(&t);
     refused("4000000000000000001,1,2,3,1,0,0,0\n", "nanoseconds");
-    refused("18446744073709551617,1,2,3,1,0,0,0\n", "nanoseconds"); /* 1, if its overflow were not seen */
+    refused("18446744073709551617,1,2,3,1,0,0,0\n", "nanoseconds"); /* would be 1 if its overflow went unnoticed */
     refused("39999999999999999999,1,2,3,1,0,0,0\n", "nanoseconds");
 }
 
@@ -75,7 +73,7 @@ TEST(poses_are_interpolated_within_a_bracket)
     assert_true(trajectory_at(&t, 1025000000, &pose));
     assert_true(fabs(pose.position[0] - 0.25) < 1e-12 && fabs(pose.position[1] - 0.5) < 1e-12 &&
                 fabs(pose.position[2] + 1) < 1e-12);
-    assert_true(fabs(fabs(pose.rotation[0]) - 1) < 1e-12); /* q and -q are one rotation: no detour */
+    assert_true(fabs(fabs(pose.rotation[0]) - 1) < 1e-12); /* q and -q: one rotation */
     assert_true(trajectory_at(&t, 2000000000, &pose) && pose.position[0] >= 5);
     assert_false(trajectory_at(&t, 1500000000, &pose)); /* neighbours too far apart */
     assert_false(trajectory_at(&t, 999999999, &pose));
@@ -95,13 +93,11 @@ TEST(times_that_no_integer_holds_have_no_pose)
     assert_false(trajectory_at_offset(&t, INT64_MIN, -1, &pose));
 }
 
-/* ---- clocks ---- */
-
 enum { WIDTH = 80, HEIGHT = 60, FRAMES = 150 };
 #define FOCAL 75.0
 #define DISTANCE 3.0
 
-/* The camera's direction and place at a time, in radians and metres. */
+/* The camera's direction and position at a time, in radians and metres. */
 typedef struct motion {
     double yaw, pitch, x;
 } motion;
@@ -146,8 +142,8 @@ static void picture(const motion *m, uint32_t frame, uint8_t pixels[HEIGHT][WIDT
     }
 }
 
-/* Makes poses at 100 Hz of a clock that is ahead; x right, y down: looking right is a turn about y, looking up one
- * about x. */
+/* Makes poses at 100 Hz with a clock that is ahead; x right, y down: looking right is a rotation about y, looking up
+ * one about x. */
 static void track(motion (*path)(double), double ahead_s, trajectory *t)
 {
     t->count = 800;

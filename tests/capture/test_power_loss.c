@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A recording whose process is killed, 200 times at random moments, with every way of storing messages: every
- * complete frame is there, and the frames read equal those written. Files that roll over stay within their size
- * limit. */
+/* A recording whose process is killed, 200 times at random moments, with every way of storing messages: every complete
+ * frame can be read, and equals the written one. Files that roll over stay within their size limit. */
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -52,7 +51,7 @@ static t3r_capture_frame make_frame(uint32_t number)
     };
 }
 
-/* Records without end in the child and reports how much is complete. */
+/* Records endlessly in the child, and reports the number of complete frames. */
 static void record_for_ever(const char *path, const recording_options *how, volatile uint32_t *whole)
 {
     static capture_record record;
@@ -109,7 +108,7 @@ TEST_WITH(a_killed_process_loses_at_most_the_message_it_was_writing, scratch_set
         if (child == 0) {
             record_for_ever(path, &ways[kill_number % 4], whole);
         }
-        while (*whole == 0) { /* until the first frame is there: the header, too, takes its time */
+        while (*whole == 0) { /* until the first frame is complete: the header also takes time */
             nanosleep(&(struct timespec){0, 50000}, NULL);
         }
         random = random * 1664525u + 1013904223u;
@@ -126,7 +125,7 @@ TEST_WITH(a_killed_process_loses_at_most_the_message_it_was_writing, scratch_set
             fail_msg("%s", error);
         }
         uint32_t count = t3r_recording_frame_count(recording);
-        assert_in_range(count, told, told + 1); /* the one being reported may be complete */
+        assert_in_range(count, told, told + 1); /* the frame after the last reported one may be complete */
         for (uint32_t i = count > 3 ? count - 3 : 0; i < count; i++) {
             check_frame(recording, i);
         }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A frame's whole path, from a driver to a recording and to Gaussians, allocates no memory once it runs: this
- * program's allocator counts. And the live results equal those of the recording's replay, bit for bit. */
+/* A frame's path, from a driver to a recording and to Gaussians, allocates no memory after the start: this program's
+ * allocator counts. The live results equal those of the recording's replay, bit for bit. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@
 #include "scratch.h"
 #include "test.h"
 
-/* ---- the allocator: glibc's own, counted; it stands in for the whole process's, the C library included ---- */
+/* glibc's own allocator, counted; it replaces the whole process's, the C library included */
 
 static volatile uint64_t allocations;
 
@@ -78,7 +78,7 @@ static int draw_room(void **state)
     return 0;
 }
 
-/* Each format's own samples of the picture; what they mean does not matter here. */
+/* Fills samples for each format; their meaning does not matter here. */
 static uint32_t fill_colour(void *user, const fake_node *node, uint32_t number, uint8_t *memory)
 {
     (void)user;
@@ -131,7 +131,7 @@ static t3r_capture *open_camera(fake_v4l2 *fake)
     return capture;
 }
 
-/* Poses of the room's path over the time of the capture, by the camera's own clock. */
+/* Returns poses on the room's path over the time of the capture, by the camera's own clock. */
 static trajectory path_of_room(void)
 {
     trajectory t = {.kind = "test", .count = 400};
@@ -148,7 +148,7 @@ static trajectory path_of_room(void)
 
 /* ---- tests ---- */
 
-/* Counts the allocations while frames from `from` on arrive: the source shows when capture_run() has begun. */
+/* Counts the allocations while frames from `from` on arrive; the source knows when capture_run() has begun. */
 typedef struct counted_source {
     t3r_capture capture;
     t3r_capture *inner;
@@ -196,7 +196,7 @@ TEST_WITH(nothing_is_allocated_once_it_runs, scratch_setup, scratch_teardown)
     build.config.refine = 1;
     const capture_plan plan = {.source = "test",
                                .output = recording,
-                               .max_bytes = 400000, /* rolls over on its way */
+                               .max_bytes = 400000, /* rolls over during the run */
                                .poses = &poses,
                                .intrinsics = &lens,
                                .frames = 60,
@@ -248,7 +248,7 @@ TEST_WITH(a_recording_replays_what_was_live, scratch_setup, scratch_teardown)
         snprintf(recording, sizeof recording, "%s", scratch_path(s, "b.mcap"));
         fake_v4l2 fake;
         start_camera(&fake, fourccs[i]);
-        fake.node[1].drop_from = 7; /* this colour image stays without depth, and in the replay too */
+        fake.node[1].drop_from = 7; /* this colour image has no depth, also in the replay */
         fake.node[1].drop_count = 1;
         t3r_capture *camera = open_camera(&fake);
         trajectory poses = path_of_room();
@@ -286,7 +286,7 @@ TEST_WITH(a_recording_replays_what_was_live, scratch_setup, scratch_teardown)
         assert_int_equal(replayed.frames_hash, live.frames_hash);
         assert_int_equal(replayed.scene_hash, live.scene_hash);
 
-        /* and `trim3r build` makes the same of it as was made live */
+        /* and `trim3r build` makes the scene that was made live */
         t3r_recording *bag = t3r_recording_open(recording, error, sizeof error);
         assert_non_null(bag);
         /* every pair, the image without depth, and the reason */
@@ -306,7 +306,7 @@ TEST_WITH(a_recording_replays_what_was_live, scratch_setup, scratch_teardown)
     }
 }
 
-/* The first image has no depth: the first frame that is kept sets the room for kept frames. */
+/* The first image has no depth: the first used frame determines the memory for kept frames. */
 TEST(a_build_begins_with_the_first_frame_that_it_uses)
 {
     for (uint32_t every = 0; every < 2; every++) {
@@ -380,7 +380,7 @@ TEST(kept_frames_are_read_by_their_rows)
     munmap(memory, whole + page);
 }
 
-/* No latency is added between a frame's stamp and its replay, however recently it was recorded. */
+/* A replay reports no latency between a frame's stamp and its arrival, however recent the recording is. */
 TEST_WITH(a_replay_has_no_latency, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
@@ -407,7 +407,7 @@ TEST_WITH(a_replay_has_no_latency, scratch_setup, scratch_teardown)
     assert_int_equal(replayed.latency.count, 0);
 }
 
-/* Repeated until its clock is full a recording ends with a reason; no stamp goes back. */
+/* A recording repeated until its clock is full ends with a reason; no stamp goes back. */
 TEST_WITH(a_repeated_recording_ends_with_its_clock, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
@@ -430,7 +430,7 @@ TEST_WITH(a_repeated_recording_ends_with_its_clock, scratch_setup, scratch_teard
     assert_int_equal(capture_record_end(&record), 0);
     t3r_capture *replay = t3r_replay_open_repeated(recording, UINT32_MAX, error, sizeof error);
     assert_non_null(replay);
-    for (int i = 0; i < 6; i++) { /* a third turn's length further is 3e18 ns, more than 2^61 */
+    for (int i = 0; i < 6; i++) { /* a fourth turn would start at 3e18 ns, beyond 2^61 */
         assert_int_equal(t3r_capture_next(replay, &frame), T3R_CAPTURE_FRAME);
         assert_int_equal(frame.stamp_ns, 1000 + i * span_ns);
     }
@@ -440,8 +440,8 @@ TEST_WITH(a_repeated_recording_ends_with_its_clock, scratch_setup, scratch_teard
     t3r_capture_close(replay);
 }
 
-/* A camera that never gives a frame, although it is reopened again and again, is given up in the end, and the
- * recording is complete. */
+/* A camera that never gives a frame, although it is reopened again and again, is finally given up, and the recording
+ * is complete. */
 TEST_WITH(a_camera_that_stands_still_for_good_is_given_up, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;

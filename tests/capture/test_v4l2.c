@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* V4L2 capture over a driver in this process: negotiation, delivery, and every way to fail. */
+/* V4L2 capture with a fake driver in this process: negotiation, delivery, and every kind of failure. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -105,7 +105,7 @@ static void check_image(const fake_v4l2 *fake, const t3r_capture_frame *frame, u
     }
 }
 
-/* The next frame, which must be image `number`. */
+/* Takes the next frame, which must be image `number`. */
 static void take_number(const fake_v4l2 *fake, t3r_capture *capture, uint32_t number)
 {
     t3r_capture_frame frame = take(capture);
@@ -125,7 +125,7 @@ TEST(every_format_comes_as_it_is_and_without_a_copy)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         fake_v4l2 fake;
         fake_start(&fake);
-        fake.node[0].formats[0] = V4L2_PIX_FMT_SBGGR8; /* none that is supported */
+        fake.node[0].formats[0] = V4L2_PIX_FMT_SBGGR8; /* no supported format */
         fake.node[0].formats[1] = cases[i].fourcc;
         fake.node[0].padding = i % 2 == 0 ? 0 : 24;
         t3r_capture *capture = open_small(&fake);
@@ -253,7 +253,7 @@ TEST(a_call_that_fails_while_opening_is_told_and_leaves_nothing)
     finish(&fake, capture);
 }
 
-/* ---- what goes wrong while it streams ---- */
+/* ---- failures while streaming ---- */
 
 TEST(damaged_images_are_left_out_counted_and_named)
 {
@@ -281,7 +281,7 @@ TEST(gaps_are_the_drivers_or_the_callers)
 {
     fake_v4l2 fake;
     fake_start(&fake);
-    fake.node[0].first_sequence = UINT32_MAX - 5; /* the count goes over its end */
+    fake.node[0].first_sequence = UINT32_MAX - 5; /* the counter overflows */
     fake.node[0].drop_from = 4;
     fake.node[0].drop_count = 3;
     t3r_capture *capture = open_small(&fake);
@@ -294,7 +294,7 @@ TEST(gaps_are_the_drivers_or_the_callers)
     assert_int_equal(t3r_capture_counts_of(capture).dropped_driver, 3);
     assert_string_equal(events.text[0], "3 dropped by the driver before colour 1");
     take(capture);
-    /* four buffers, one of them held here: three more images fit */
+    /* four buffers, one of them held by the test: three more images fit */
     fake_sleep(&fake, 33333333 * INT64_C(10));
     take(capture);
     take(capture);
@@ -329,8 +329,8 @@ TEST(every_wait_ends)
     }
     assert_true(fake.now_ns - start <= 1010000000);
     assert_non_null(strstr(t3r_capture_error(capture), "no image for 1000 ms"));
-    assert_int_equal(t3r_capture_next(capture, &frame), T3R_CAPTURE_LOST); /* and again, at once */
-    /* it comes back */
+    assert_int_equal(t3r_capture_next(capture, &frame), T3R_CAPTURE_LOST); /* and again, immediately */
+    /* the camera comes back */
     assert_int_equal(t3r_capture_reopen(capture), T3R_CAPTURE_FRAME);
     take_number(&fake, capture, 2);
     assert_int_equal(t3r_capture_counts_of(capture).reopened, 1);
@@ -347,7 +347,7 @@ TEST(every_wait_ends)
     assert_int_equal(t3r_capture_next(capture, &frame), T3R_CAPTURE_LOST);
     finish(&fake, capture);
 
-    /* a driver that reports ready and has nothing does not cause a busy loop */
+    /* a driver that reports ready without an image does not cause a busy loop */
     fake_start(&fake);
     capture = open_with(&fake, &settings);
     fake.node[0].ready_lies = true;
@@ -407,7 +407,7 @@ TEST(passing_errors_cost_no_frame_but_are_told)
     }
     assert_int_equal(t3r_capture_counts_of(capture).faults, 3);
     assert_int_equal(t3r_capture_counts_of(capture).frames, 20);
-    /* EIO without end is no passing error */
+    /* endless EIO is not a passing error */
     fake.faults[0] = (fake_fault){VIDIOC_DQBUF, 0, 1000, EIO};
     t3r_capture_frame frame;
     int got = T3R_CAPTURE_NOTHING;
@@ -417,7 +417,7 @@ TEST(passing_errors_cost_no_frame_but_are_told)
     assert_int_equal(got, T3R_CAPTURE_LOST);
     finish(&fake, capture);
 
-    /* buffers that are never requeued end the capture once the last is gone */
+    /* if buffers are never requeued, the capture ends after the last one */
     fake_start(&fake);
     capture = open_small(&fake);
     fake.faults[0] = (fake_fault){VIDIOC_QBUF, 0, 100000, EINVAL};
@@ -512,7 +512,7 @@ TEST(images_without_companions_are_told)
     assert_int_equal(counts.alone, 2);
     assert_int_equal(counts.paired, paired);
     assert_int_equal(counts.dropped_driver, 2);
-    assert_int_equal(counts.depth_dropped, 1 + 2); /* the lost one, and the two whose colour was lost */
+    assert_int_equal(counts.depth_dropped, 1 + 2); /* the lost one, and two whose colour was lost */
     assert_int_equal(counts.corrupted, 1);
     uint32_t told = 0;
     for (uint32_t i = 0; i < events.count; i++) {
@@ -537,7 +537,7 @@ TEST(a_still_depth_camera_does_not_hold_colour_up)
     }
     finish(&fake, capture);
 
-    /* nor the other way round: colour comes late */
+    /* likewise if the colour camera starts late: old depth is dropped */
     fake_start(&fake);
     fake_add_depth(&fake);
     fake.node[0].first_ns += 2000000000;
@@ -547,7 +547,7 @@ TEST(a_still_depth_camera_does_not_hold_colour_up)
     assert_true(t3r_capture_counts_of(capture).depth_dropped > 50);
     finish(&fake, capture);
 
-    /* and a still colour camera is lost, however much depth comes */
+    /* and a colour camera that gives nothing counts as lost, however much depth comes */
     fake_start(&fake);
     fake_add_depth(&fake);
     fake.node[0].stall_at = 5;
@@ -564,7 +564,7 @@ TEST(a_still_depth_camera_does_not_hold_colour_up)
     assert_true(fake.now_ns - before < 3300000000);
     finish(&fake, capture);
 
-    /* a depth node that cannot be opened leaves no half-open pair */
+    /* if the depth node cannot be opened, no half-open pair is left */
     fake_start(&fake);
     fake_add_depth(&fake);
     fake.node[1].formats[0] = V4L2_PIX_FMT_YUYV;
@@ -605,7 +605,7 @@ TEST(no_failed_call_hangs_leaks_or_loses_a_frame_untold)
                 if (got == T3R_CAPTURE_LOST) {
                     assert_true(t3r_capture_error(capture)[0] != '\0');
                     assert_int_equal(t3r_capture_reopen(capture), T3R_CAPTURE_FRAME);
-                    last = UINT32_MAX; /* LOST reports what a closed device did not give */
+                    last = UINT32_MAX; /* LOST reports the images that a closed device did not give */
                 }
                 if (got == T3R_CAPTURE_FRAME) {
                     unseen += last == UINT32_MAX ? 0 : frame.sequence - last - 1;

@@ -96,14 +96,14 @@ def reports(folder):
 
 
 def noise(path, side, seed):
-    """A PNG that does not pack."""
+    """Writes a PNG that hardly compresses."""
     dice = random.Random(seed)
     with open(path, "wb") as file:
         file.write(png([dice.randbytes(3 * side) for _ in range(side)], level=0))
 
 
 def small_reports(folder):
-    """A report stays below 4 MB unless it is told otherwise, and the front's pictures come first."""
+    """A report stays below 4 MB unless an option allows more; the front's pictures have priority."""
     table = made_up(f"{folder}/many.csv", scenes=1, cases=1)
     with open(table, encoding="utf-8") as file:
         heading, *rows = file.read().splitlines()
@@ -123,7 +123,7 @@ def small_reports(folder):
 
 
 def older(folder):
-    """What eval wrote before it told wavelet, levels, clusters, bytes of the scene and pictures."""
+    """Tables that eval wrote before it reported wavelet, levels, clusters, bytes of the scene and pictures."""
     old, new = f"{folder}/old.csv", f"{folder}/new.svg"
     with open(old, "w", encoding="utf-8") as file:
         file.write("scene,context,target,method,head,bits,refine,allocate,depth,ablation,keep,gaussians,psnr,build_ms\r\n"
@@ -146,7 +146,7 @@ def refuses(folder):
 
     out = ("--svg", f"{folder}/never.svg")
     refuse(USAGE, "EVAL.csv is missing", *out)
-    refuse(USAGE, "nothing is to be written", table)
+    refuse(USAGE, "there is no output", table)
     refuse(USAGE, "--pictures belongs", table, *out, "--pictures", folder)
     refuse(USAGE, "one folder for all", table, "-o", f"{folder}/never.html", "--pictures", folder, "--pictures", folder)
     refuse(USAGE, "--dark belongs", table, *out, "--dark")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the scripts of this folder share."""
+"""Shared by the scripts of this folder."""
 import os
 
 import browser  # noqa: F401
@@ -26,7 +26,7 @@ def made_up(path, scenes=3, cases=2):
 
 
 def built_in(trim3r, folder):
-    """Two evaluations of the built-in room with their pictures: tables and folders."""
+    """Evaluates the built-in room twice, with pictures; returns the tables and folders."""
     tables = []
     run(trim3r, "room", "--size", "48x48", "-o", f"{folder}/room.mcap")
     run(trim3r, "room", "--size", "48x48", "--seed", "5", "-o", f"{folder}/den.mcap")

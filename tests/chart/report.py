@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""report.py TRIM3R [FOLDER]: the report in a headless Chromium: every axis, the legend, pointer and keyboard, pictures,
-light and dark, a phone; no errors, no requests. With FOLDER, what it looks like goes there."""
+"""chart's report in a headless Chromium: every axis, the legend, pointer and keyboard, pictures, light and dark, a
+phone; no errors, no requests.
+
+report.py TRIM3R [FOLDER]; with FOLDER, screenshots go there."""
 import sys
 import tempfile
 
@@ -28,7 +30,7 @@ def opened(page, path):
 
 
 def axes(page, svg_titles):
-    """What the page shows first is what C drew; every choice draws something else."""
+    """The page first shows what C drew; every choice changes the drawing."""
     titles = page.value(TITLES)
     check(len(titles) == 9, f"a point for each method and budget: {titles}")
     front = [t.replace(", on the front", "") for t in titles if "on the front" in t]

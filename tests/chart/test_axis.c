@@ -6,7 +6,7 @@
 #include "study/chart/axis.h"
 #include "test.h"
 
-/* Names may repeat where 15 digits end. */
+/* With named == false names may repeat: 15 digits do not distinguish the ticks. */
 static void check(chart_measure measure, double least, double most, bool named)
 {
     chart_axis axis = chart_axis_make(measure, least, most);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tables to points: grouping, means over scenes, quartiles, what is on the front, names. */
+/* Tables to points: grouping, means over scenes, quartiles, membership of the front, names. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -151,7 +151,8 @@ TEST(test_names_tell_what_differs)
         assert_string_equal(names.series[s].text, expected[s]);
     }
     assert_string_equal(names.common, "small, 8 bits, refine 4");
-    assert_int_equal(names.series[0].colour, names.series[1].colour); /* who: the colour; how: the shape */
+    assert_int_equal(names.series[0].colour,
+                     names.series[1].colour); /* program: the colour; configuration: the shape */
     assert_int_not_equal(names.series[0].shape, names.series[1].shape);
     assert_int_not_equal(names.series[0].colour, names.series[2].colour);
     assert_int_equal(names.series[0].shape, names.series[3].shape);
@@ -173,7 +174,7 @@ TEST(test_refusals)
         {"method,build_ms\na,1\n", "t.csv:1: the heading names no quality: one of psnr, ssim, perceptual, planar_psnr"},
         {"psnr,keep\n1,2\n",
          "t.csv:1: the heading names no cost: one of build_ms, render_ms, arena_bytes, scene_bytes"},
-        {"psnr,build_ms,psnr\n1,2,3\n", "t.csv:1: psnr stands in the heading twice"},
+        {"psnr,build_ms,psnr\n1,2,3\n", "t.csv:1: psnr is in the heading twice"},
         {"psnr,build_ms\n1,2\n\n1\n", "t.csv:4: 1 cells, where the heading has 2"},
         {"psnr,build_ms\n1,2,3\n", "t.csv:2: 3 cells, where the heading has 2"},
         {"psnr,build_ms\n1,inf\n", "t.csv:2: build_ms: 'inf' is not a finite number"},

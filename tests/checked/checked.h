@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A bound of the runtime's arithmetic that does not hold ends the program and says where. Every file is compiled with
- * this first, so it includes nothing: glibc's own end of an assertion does. */
+/* A violated bound of the runtime's arithmetic ends the program and prints its place. This is included before every
+ * file, so it includes nothing and calls glibc's function for failed assertions. */
 #ifndef T3R_CHECKED_H
 #define T3R_CHECKED_H
 

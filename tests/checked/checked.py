@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""checked.py FOLDER SHARED_DATA: the program built with T3R_CHECK_FIXED builds, follows and draws scenes of the built-in room
-by every head, source of depth and way of working, of perturbed frames, and of the recorded scenes where they are there. A
-bound that does not hold ends it."""
+"""checked.py FOLDER SHARED_DATA: the program built with T3R_CHECK_FIXED builds, streams and draws scenes of the
+built-in room with every head, source of depth and way of working, of perturbed frames, and of the recorded scenes
+if they are there. A violated bound ends it."""
 import json
 import os
 import pathlib
@@ -42,7 +42,7 @@ def finds_what_is_planted(folder):
 
 
 def works(program, recording, folder):
-    """What a recording with depth can be used for."""
+    """Uses a recording with depth in all ways."""
     out = folder / "out.ply"
     for head in HEADS:
         run(program, "build", recording, "--head", head, "--keep", "15", "-o", out)

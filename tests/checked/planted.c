@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Bounds that do not hold, one an argument. */
+/* Violates bounds, one per argument. */
 #include <stdlib.h>
 
 #include "core/divisor.h"

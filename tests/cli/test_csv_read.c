@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tables of anyone's making: what is read, and what is refused with its line. */
+/* Tables of any origin: what is read, and what is refused with its line. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,8 +65,8 @@ static void refuse(const char *text, size_t bytes, const char *why)
 TEST(test_refusals)
 {
     refuse("a\n\"b", 4, "t.csv:2: a quote that is not closed");
-    refuse("a\n\n\"b\nc\"d", 9, "t.csv:3: text behind a quoted cell");
-    refuse("\"b\" ,", 5, "t.csv:1: text behind a quoted cell");
+    refuse("a\n\n\"b\nc\"d", 9, "t.csv:3: text after a quoted cell");
+    refuse("\"b\" ,", 5, "t.csv:1: text after a quoted cell");
     refuse("ab\"c", 4, "t.csv:1: a quote within a cell that did not begin with one");
     refuse("a\0b", 3, "t.csv:1: a control character");
     refuse("\"a\0b\"", 5, "t.csv:1: a control character");

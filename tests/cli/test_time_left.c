@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The time left of work of which a part was there already. */
+/* The remaining time of work that was partly done before. */
 #include "cli/text/time_left.h"
 #include "test.h"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Branches of the runtime: which there are and which were taken, by gcov of all objects in a build folder."""
+"""Branches of the runtime, all and taken, from gcov of all objects in a build folder."""
 import collections
 import concurrent.futures
 import json
@@ -13,20 +13,20 @@ VECTORS = frozenset(("x86", "arm", "wasm", "lanes"))
 
 INLINED = "inlined" # gcov has no name for a function that the compiler must inline
 
-# Where branches are: two lines of a function that read the same are one place.
+# Places of branches: two equal lines of a function are one place.
 Place = collections.namedtuple("Place", "file function text")
 
 
 def gcov(objects):
-    """What gcov knows of these objects: a dictionary each."""
+    """Yields gcov's data of these objects: a dictionary each."""
     said = subprocess.run(["gcov", "--json-format", "--stdout", "--branch-probabilities", *map(str, objects)],
                           capture_output=True, text=True, check=True)
     return [json.loads(line) for line in said.stdout.splitlines() if line]
 
 
 def place_of(folder, file, root):
-    """A source file below `root`, or None if it is none. The build names files from the top of the tree, ccache from the folder
-    in which the compiler ran."""
+    """Returns a source file's path below `root`, or None if it is outside. The build names files from the top of the
+    tree, ccache from the folder in which the compiler ran."""
     for start in folder, root.parent:
         path = pathlib.Path(os.path.normpath(pathlib.Path(start, file)))
         if path.is_relative_to(root) and path.exists():
@@ -35,7 +35,8 @@ def place_of(folder, file, root):
 
 
 def counted(folder, root=RUNTIME):
-    """{(file, function, line): how often each branch there was taken}, added up over all objects of the folder."""
+    """Returns {(file, function, line): how often each branch there was taken}, added up over all objects of the
+    folder."""
     objects = [path for path in sorted(folder.rglob("*.gcda")) if VECTORS.isdisjoint(path.parts)]
     groups = [objects[at:at + 8] for at in range(0, len(objects), 8)]
     taken = {}
@@ -57,7 +58,7 @@ def counted(folder, root=RUNTIME):
 
 
 def uncovered(taken, root=RUNTIME):
-    """{place: how many of its branches nothing took}"""
+    """Returns {place: how many of its branches were never taken}."""
     lines, found = {}, collections.Counter()
     for (file, function, line), ways in taken.items():
         missing = sum(count == 0 for count in ways)

@@ -3,7 +3,7 @@
 """Counts which branches of the runtime the tests take, and holds the others against uncovered.txt.
 
     coverage.py FOLDER             builds in the folder, runs, counts
-    coverage.py FOLDER --write     and writes docs/study/coverage.md
+    coverage.py FOLDER --write     and writes docs/study/proofs.md
     coverage.py FOLDER --again     counts what ran there before
     coverage.py FOLDER --list      and prints what no test takes, as uncovered.txt has it
 
@@ -23,31 +23,17 @@ import planted
 import reasons
 import runs
 
+sys.path.append(str(branches.ROOT / "tools" / "study" / "scripts"))
+from measured import table, write_block  # noqa: E402
+
 LEAST_PERCENT = 95
-PAGE = branches.ROOT / "docs" / "study" / "coverage.md"
-TEXT = """# Branches that the tests take
-
-Made by `tests/coverage/coverage.py --write` with gcov {version}. A branch is one way out of a condition, as gcc lays it
-without optimization: `if (a && b)` has four. At night a test counts anew: at least {least} % must be taken, and
-[uncovered.txt](../../tests/coverage/uncovered.txt) must explain each of the others.
-
-What runs are the programs in C of `tests/unit`, `tests/oracle`, `tests/workers`, `tests/kernels`, `tests/formats` and
-`tests/planning`, the driver of the golden hashes, and `trim3r` on the built-in room. Fuzzers and tests on recorded scenes do
-not count. Kernels for vector instructions are left out: gcov counts functions that must be inlined once for each caller, and
-`tests/kernels` compares each kernel with plain C.
-
-Of {all} branches {taken} are taken, {share:.2f} %.
-
-| file of `runtime/` | branches | taken | % |
-|---|---:|---:|---:|
-{rows}
-"""
+PAGE = branches.ROOT / "docs" / "study" / "proofs.md"
 
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path, help="folder of the build")
-    parser.add_argument("--write", action="store_true", help="write docs/study/coverage.md")
+    parser.add_argument("--write", action="store_true", help="put the table into docs/study/proofs.md")
     parser.add_argument("--again", action="store_true", help="count what ran before")
     parser.add_argument("--list", action="store_true", help="print what is not taken, with its lines")
     options = parser.parse_args()
@@ -69,23 +55,24 @@ def share(all_branches, taken):
 
 
 def files_of(counted):
-    """{file: (branches, those taken)}"""
+    """Returns {file: (branches, those taken)}."""
     files = collections.defaultdict(lambda: (0, 0))
     for (file, _, _), ways in counted.items():
         known, taken = files[file]
-        # below 0: gcov subtracts counts, of which threads that count at once lose some
+        # below 0: gcov subtracts counts, and concurrent threads lose some counts
         files[file] = (known + len(ways), taken + sum(count != 0 for count in ways))
     return files
 
 
 def row(file, known, taken):
-    return f"| {file} | {known:,} | {taken:,} | {share(known, taken):.1f} |"
+    return [file, f"{known:,}", f"{taken:,}", f"{share(known, taken):.1f}"]
 
 
 def write(files, known, taken):
-    rows = "\n".join(row(f"`{file}`", *files[file]) for file in sorted(files))
-    PAGE.write_text(TEXT.format(version=branches.version(), least=LEAST_PERCENT, all=f"{known:,}", taken=f"{taken:,}",
-                                share=share(known, taken), rows=rows))
+    """Puts all files together, and those of which less is taken than of all must be, into the page."""
+    low = sorted((share(*counts), file) for file, counts in files.items() if share(*counts) < LEAST_PERCENT)
+    rows = [row("all", known, taken), *(row(f"`{file}`", *files[file]) for _, file in low)]
+    write_block(PAGE, "coverage", table(("file of `runtime/`", "branches", "taken", "%"), rows))
 
 
 def main():
@@ -103,7 +90,7 @@ def main():
     files = files_of(counted)
     known, taken = (sum(numbers) for numbers in zip(*files.values()))
     for file in sorted(files):
-        print(row(file, *files[file]))
+        print(" ".join(row(file, *files[file])))
     print(f"{taken} of {known} branches, {share(known, taken):.2f} %")
     uncovered = branches.uncovered(counted)
     if options.list:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the coverage's test must find: planted branches, a lacking reason, one too many, a low share."""
+"""Errors that the coverage's test must find: planted branches, a missing reason, an extra reason, a low share."""
 import pathlib
 import tempfile
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""uncovered.txt: the branches that no test takes, and why.
+"""uncovered.txt: the branches that no test takes, and the reasons.
 
-A reason stands above its places, which are indented: `FILE FUNCTION BRANCHES: TEXT OF THE LINE`. An empty line ends it.
+A reason is above its places, which are indented: `FILE FUNCTION BRANCHES: TEXT OF THE LINE`. An empty line ends it.
 """
 import collections
 import pathlib
@@ -18,7 +18,7 @@ class Malformed(Exception):
 
 
 def read(text):
-    """{place: how many of its branches the text explains}"""
+    """Returns {place: how many of its branches the text explains}."""
     explained, reason = collections.Counter(), False
     for number, line in enumerate(text.splitlines(), 1):
         if not line.startswith(" "):
@@ -38,7 +38,7 @@ def line_for(place, count):
 
 
 def disagreements(uncovered, explained):
-    """Branches without a reason, and reasons without a branch; a sentence a place."""
+    """Returns branches without a reason, and reasons without a branch; a sentence for each place."""
     found = []
     for place in sorted(set(uncovered) | set(explained)):
         count, known = uncovered.get(place, 0), explained.get(place, 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is run to see which branches of the runtime are taken: programs of tests, and the program trim3r."""
+"""Runs that show which branches of the runtime are taken: test programs, and the program trim3r."""
 import itertools
 import os
 import subprocess
@@ -35,7 +35,7 @@ def build(folder):
 
 
 def forget(folder):
-    """What earlier runs took."""
+    """Deletes the counts of earlier runs."""
     for path in folder.rglob("*.gcda"):
         path.unlink()
 
@@ -49,7 +49,7 @@ def run_tests(folder):
 
 
 def run_program(program, scratch):
-    """Scenes of the built-in room in every setting that leads through other code."""
+    """Builds scenes of the built-in room in every setting that takes other branches."""
     def trim3r(*words):
         quiet(program, *words, cwd=scratch)
 

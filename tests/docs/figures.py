@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Figures in a table that was copied by hand stand side by side in a row of its source: PSNR alone, or PSNR / SSIM."""
+"""Figures in a hand-copied table are next to each other in a row of its source: PSNR alone, or PSNR / SSIM."""
 import re
 
 NUMBER = r"(\d+\.\d{2,3})"
@@ -11,7 +11,7 @@ def figures(name, text, source):
     for line in text.splitlines():
         wanted = cells(line, PAIR) or cells(line, SINGLE)
         if line.startswith("|") and len(wanted) > 2 and not any(stands_in(wanted, row) for row in rows):
-            yield f"{name}: not a row of docs/study/paper.md, presets.md or retrained.md: {line}"
+            yield f"{name}: not a row of docs/study/paper.md: {line}"
 
 
 def cells(line, kind):

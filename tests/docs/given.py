@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that pages begin with, each made once for all of them, on built-in input."""
+"""Files with which pages begin, each made once for all of them, from built-in input."""
 import json
 import pathlib
 import re
@@ -11,8 +11,8 @@ import zipfile
 import pages
 from png import png
 
-SIDE = 40, 30  # of made-up pictures
-ROOM = 64  # side of the room.mcap that most pages begin with
+SIDE = 40, 30  # size of synthetic pictures
+ROOM = 64  # side of the room.mcap with which most pages begin
 
 
 class Given:
@@ -32,7 +32,7 @@ class Given:
         subprocess.run([self.program, *map(str, arguments)], check=True, capture_output=True, cwd=self.folder)
 
     def views(self):
-        """Three pictures of the room at 256x256 and a text with their poses, as COLMAP has them."""
+        """Makes three pictures of the room at 256x256 and a text with their poses, in COLMAP's form."""
         start = self.folder / "views"
         if not start.exists():
             self.run("room", "--frames", 3, "-o", "large.mcap")
@@ -80,7 +80,7 @@ def photo(given, path):
 
 
 def posed(given, path):
-    """Three pictures with depth beside each other, as NeRFCapture writes them."""
+    """Makes three pictures with depth side by side, in NeRFCapture's form."""
     path.mkdir()
     frames = []
     for i in range(3):
@@ -104,7 +104,7 @@ def tum(given, path):
 
 
 def trajectory(given, path):
-    """A tracker beside the clock of the room's six frames."""
+    """Makes a tracker's poses next to the clock of the room's six frames."""
     path.write_text("".join(f"{i / 30:.6f} {i / 50} 0 0 0 0 0 1\n" for i in range(9)))
 
 
@@ -119,18 +119,18 @@ def head(given, path):
 
 
 def scene(given, path):
-    """Every point of the room's frames 0 and 2 with its own splat, as a network elsewhere might make them."""
+    """Makes a splat for every point of the room's frames 0 and 2, like another program's network."""
     recording(given, given.folder / "scene.mcap")
     given.run("build", "scene.mcap", "--context", "0,2", "--keep", "100%", "--head", "none", "--refine", 0, "-o", path)
 
 
 def example(given, path):
-    """The README's program."""
+    """Extracts the README's program."""
     path.write_text(re.search(r"```c\n(.*?)```", (pages.ROOT / "README.md").read_text(), flags=re.S)[1])
 
 
 def pointmaps(given, path):
-    """A slanted plane before the cameras of `photos`, as DUSt3R would save it."""
+    """Makes a slanted plane in front of the cameras of `photos`, in DUSt3R's form."""
     count, side, focal = 3, 64, 55.0
     points, poses = [], []
     for view in range(count):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pages and what stands in them: blocks, prose, links."""
+"""Contents of the pages: blocks, prose, links."""
 import pathlib
 import re
 
@@ -14,7 +14,7 @@ def all_pages():
 
 
 class Block:
-    """A fenced block: its language, the reason why it does not run, the line on which it begins, what is expected of it."""
+    """A fenced block: its language, the reason why it does not run, its first line, its expected output."""
 
     def __init__(self, text, match):
         language, _, reason = match.group(1).partition("not-run")
@@ -33,7 +33,7 @@ class Block:
 
 
 def blocks_of(text):
-    """The fenced blocks; a text block that follows a shell block is what that one prints."""
+    """Returns the fenced blocks; a text block that follows a shell block is its output."""
     blocks, end = [], 0
     for match in FENCE.finditer(text):
         block = Block(text, match)
@@ -45,24 +45,24 @@ def blocks_of(text):
 
 
 def given_in(text):
-    """Files that the page begins with: <!-- given: room.mcap posed/ -->."""
+    """Returns the files with which the page begins: <!-- given: room.mcap posed/ -->."""
     return [name for match in re.finditer(r"<!-- given: (.*?) -->", text) for name in match.group(1).split()]
 
 
 def needed_by(text):
-    """What must have been built for the page: <!-- needs: build/release/NAME -->."""
+    """Returns the build outputs that the page needs: <!-- needs: build/release/NAME -->."""
     return [name for match in re.finditer(r"<!-- needs: (.*?) -->", text) for name in match.group(1).split()]
 
 
 def without_blocks(text):
-    """The page with fenced blocks, comments and tables blanked, line for line."""
+    """Returns the page with fenced blocks, comments and tables blanked, line for line."""
     text = re.sub(FENCE, lambda match: "\n" * match.group(0).count("\n"), text)
     text = re.sub(r"<!--.*?-->", lambda match: "\n" * match.group(0).count("\n"), text, flags=re.S)
     return re.sub(r"^\|.*$", "", text, flags=re.M)
 
 
 def sentences_of(text):
-    """(line, words) of each sentence outside blocks, tables and headings."""
+    """Yields (line, words) of each sentence outside blocks, tables and headings."""
     paragraph, first = [], 0
     for number, line in enumerate(without_blocks(text).split("\n") + [""], start=1):
         new = line.startswith(("#", "    ")) or not line.strip()

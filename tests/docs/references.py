@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What pages refer to exists: commands, their options, names of the interface, links."""
+"""References on pages exist: commands, their options, names of the interface, links."""
 import functools
 import re
 import subprocess
@@ -12,7 +12,7 @@ NAME = re.compile(r"\b(?:t3r|T3R)_\w+")
 
 
 class Program:
-    """The commands of trim3r and their options, as its help has them."""
+    """The commands of trim3r and their options, from its help."""
 
     def __init__(self, path):
         self.path = path
@@ -24,7 +24,7 @@ class Program:
 
 
 def commands(name, text):
-    """Commands outside a shell block, and blocks that do not run and do not say why."""
+    """Finds commands outside a shell block, and blocks that do not run and give no reason."""
     for block in blocks_of(text):
         if block.skipped and not block.reason:
             yield f"{name}:{block.line}: the block does not run and gives no reason"

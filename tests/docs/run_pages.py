@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""run_pages.py TRIM3R [PAGE...]: the shell blocks of the pages (pages.py) run, and print what the pages say.
+"""run_pages.py TRIM3R [PAGE...]: the shell blocks of the pages (pages.py) run, and print the text on the pages.
 
-The blocks of a page run in order in an empty folder that holds what the page names as given. A text block right after a
-shell block is its output, line by line; `...` stands for anything within a line, and alone in a line for any lines.
-A page that needs what was not built, as <!-- needs: build/release/NAME -->, is left out.
+The blocks of a page run in order in an empty folder with the files that the page names as given. A text block directly
+after a shell block is its output, line by line; `...` stands for anything within a line, and alone in a line for any
+lines. A page that needs a missing build output, as <!-- needs: build/release/NAME -->, is skipped.
 """
 import os
 import pathlib
@@ -17,7 +17,7 @@ import time
 from given import MAKERS, Given
 from pages import ROOT, all_pages, blocks_of, given_in, needed_by
 
-LIMIT = 300  # seconds of one block
+LIMIT = 300  # seconds for one block
 
 
 def main():
@@ -41,7 +41,7 @@ def main():
 
 
 def find_what_is_planted(program, made, folder):
-    """A page whose command fails, one whose output differs, one whose input is not there: each must be found."""
+    """Checks that a failing command, a different output and a missing input are each found."""
     planted = {"exit status": "```sh\ntrim3r room -o room.mcap\ntrim3r info nowhere.mcap\n```\n",
                "the page says": "```sh\necho one; echo two; echo three\n```\n\n```text\none\n...\ntwo\n```\n",
                "unknown": "<!-- given: nothing.mcap -->\n"}
@@ -55,7 +55,7 @@ def find_what_is_planted(program, made, folder):
 
 
 def run_page(name, text, program, made, folder):
-    """How many blocks ran, and what was found."""
+    """Returns the number of blocks that ran, and the findings."""
     findings = [f"{name}: a file of an unknown name is given: {wanted}" for wanted in given_in(text) if wanted not in MAKERS]
     if findings:
         return 0, findings
@@ -77,7 +77,7 @@ def run_page(name, text, program, made, folder):
 
 
 def link_the_tree(place, program):
-    """What commands name from the repository's root."""
+    """Links the repository's folders that commands name."""
     for name in ("runtime", "quant", "tools"):
         (place / name).symlink_to(ROOT / name)
     (place / "build").mkdir()

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""settings.py [--update]: the list of settings in docs/library.md is that of trim3r_settings.h, and each option has its
-setting's name. --update writes the list."""
+"""settings.py [--update]: the list of settings in docs/library.md agrees with trim3r_settings.h, and each option has
+its setting's name. --update writes the list."""
 import pathlib
 import re
 import sys
@@ -51,7 +51,7 @@ def rows():
 
 
 def number(kind, value):
-    """A value as the option takes it."""
+    """Returns a value as the option takes it."""
     if value == GIVEN:
         return "given"
     return f"{value / 256:.2g}" if kind == "q8" else ("off", "on")[value] if kind == "toggle" else str(value)

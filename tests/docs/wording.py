@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How pages read: the length of sentences, and lines that wrapping made into lists."""
+"""Style of the pages: the length of sentences, and wrapped lines that look like lists."""
 import re
 
 from pages import sentences_of, without_blocks
@@ -14,7 +14,7 @@ def sentences(name, text):
 
 
 def markers(name, text):
-    """Lines inside a paragraph that begin like a list, a quotation or an underline."""
+    """Finds lines inside a paragraph that begin like a list, a quotation or an underline."""
     lines = without_blocks(text).split("\n")
     for number, (above, line) in enumerate(zip(lines, lines[1:]), start=2):
         in_list = re.match(r"\s*([-*]|\d+\.) |  ", above) and re.match(r"(-|\d+\.) ", line)

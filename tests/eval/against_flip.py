@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""against_flip.py SCORE_PICTURES: FLIP against its definition (Andersson et al. 2020, 67 pixels a degree), written here
+"""against_flip.py SCORE_PICTURES: FLIP against its definition (Andersson et al. 2020, 67 pixels a degree), written
 plainly with full two-dimensional kernels."""
 import json
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the scripts of this folder share."""
+"""Shared by the scripts of this folder."""
 import importlib.util
 import os
 import sys
@@ -17,7 +17,7 @@ def need_numpy():
 
 
 def load_scorer(path):
-    """score.py as a module, or None where it is not there."""
+    """Returns score.py as a module, or None if it is not there."""
     if not os.path.exists(path):
         return None
     sys.dont_write_bytecode = True

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""eval_ablate.py TRIM3R: `trim3r eval --ablate` on the built-in room, small: which rows, what each of them is, the table."""
+"""eval_ablate.py TRIM3R: `trim3r eval --ablate` on the built-in room, small: the rows and their settings, and the
+table."""
 import csv
 import json
 import math
@@ -28,7 +29,7 @@ def scores(row):
 
 
 def cells(text):
-    """{(scene, ablation): cells} of a Markdown table, and its keeps."""
+    """Returns {(scene, ablation): cells} of a Markdown table, and its keeps."""
     lines = [[cell.strip() for cell in line.strip("|\n").split("|")] for line in text.splitlines()]
     check(all(len(line) == len(lines[0]) for line in lines), "a table has as many cells in every line")
     check(lines[0][:2] == ["scene", "ablation"] and set("".join(lines[1])) == {"-"}, "a heading")
@@ -41,13 +42,13 @@ def cells(text):
 
 
 def tells(cell, psnr, ssim):
-    """Whether a cell is these figures, which were themselves rounded (to 4 and 5 places) before."""
+    """Whether a cell shows these figures, which were already rounded to 4 and 5 places."""
     shown = [float(part) for part in cell.split(" / ")]
     return abs(shown[0] - float(psnr)) < 0.0052 and abs(shown[1] - float(ssim)) < 0.00052
 
 
 def what_each_row_is(room, one):
-    """Every row against the evaluation with that setting, where an option for it exists."""
+    """Compares each row with the evaluation by the option for its setting, if there is one."""
     rows = rows_of(*one, "--ablate", "--keep", ",".join(map(str, KEEPS)))
     check([(r["ablation"], r["keep"]) for r in rows] == [(n, k) for n in NAMES for k in KEEPS], "all, in order")
     by = {(r["ablation"], r["keep"]): r for r in rows}
@@ -76,7 +77,7 @@ def what_each_row_is(room, one):
         check(by["no-adaptation", keep]["psnr"] < full["psnr"] - 3, "adapting is worth much")
         check(by["no-adaptation", keep]["holes"] > full["holes"], "and fills holes")
         check(by["no-refinement", keep]["psnr"] < full["psnr"] - 1, "so is refining")
-        # with 10 % of all clusters kept, 5 % in all are the same share of each, whatever their order
+        # with 10 % of all clusters kept, 5 % in all are the same share of each, in any order
         check((scores(by["paper-random-clusters", keep]) != scores(paper)) == (keep > 10), "the paper's order")
     check(scores(by["n-5", 30]) != scores(by["n-20", 30]), "N")
     check(scores(by["no-redundancy", 5]) != scores(by["full", 5]), "redundancy counts at small budgets")
@@ -87,7 +88,7 @@ def what_each_row_is(room, one):
 
 
 def closed_forms(one):
-    """Without adaptation the head `analytic` is the head `none`; what has no weights has no mask to hide."""
+    """Without adaptation the head `analytic` is the head `none`; a head without weights has no mask to hide."""
     for refine in ("0", "1"):
         rows = rows_of(*one, "--keep", "100,10", "--ablate=no-adaptation", "--head", "analytic", "--refine", refine)
         none = rows_of(*one, "--keep", "100,10", "--head", "none", "--refine", refine)

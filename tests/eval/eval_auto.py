@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """eval_auto.py TRIM3R [SHARED_DATA]: `--auto` takes neither too few Gaussians nor too many: what it loses against all points
 in a view that it has not seen, and the share of the points that it takes, on the built-in room and on drawn scenes of
-`trim3r stress`; with SHARED_DATA on recorded training scenes instead. Held to what was measured; docs/study/auto.md tells where
+`trim3r stress`; with SHARED_DATA on recorded training scenes instead. Held to what was measured; docs/study/results.md tells where
 that is not what was asked for."""
 import json
 import os
@@ -35,7 +35,7 @@ def rows(*command):
 
 
 class Choice:
-    """The Gaussians that `--auto` took of a view's points, and the loss of PSNR."""
+    """The number of Gaussians that `--auto` took of a view's points, and the loss of PSNR."""
 
     def __init__(self, whole, chosen):
         self.share = chosen["gaussians"] / whole["gaussians"] * 100

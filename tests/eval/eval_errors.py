@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""eval_errors.py TRIM3R: every wrong use of `trim3r eval` says what and where, with the right exit status."""
+"""eval_errors.py TRIM3R: every wrong use of `trim3r eval` gives a message with the place, and the right exit status."""
 import os
 import resource
 import sys
@@ -14,7 +14,7 @@ INPUT, USAGE, BUDGET = 1, 2, 3
 
 
 def refuse(status, *words_and_arguments):
-    """refuse(STATUS, "word", ..., [arguments]): stderr has every word and stdout nothing that looks like a score."""
+    """refuse(STATUS, "word", ..., [arguments]): expects every word on stderr, and nothing like a score on stdout."""
     *words, arguments = words_and_arguments
     result = run(trim3r, "eval", *arguments, expect=status)
     for word in words:
@@ -69,7 +69,6 @@ with tempfile.TemporaryDirectory() as folder:
     refuse(INPUT, "deep.png", ["--planar", f"{folder}/deep.png", "--size", "8x8", "--keep", "10"])
     refuse(INPUT, "none.png", ["--planar", f"{folder}/none.png", "--keep", "10"])
 
-    # nothing can be written below a file
     below = f"{room}/below"
     refuse(INPUT, below, [*one, "--keep", "10", "--csv", below])
     refuse(INPUT, room, [*one, "--keep", "10", "--images", below])

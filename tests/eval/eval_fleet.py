@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""eval_fleet.py TRIM3R SNAKEFILE: the workflow over a folder of recordings: its tables are those of the program called
-by hand; what fails is tried again, the rest goes on, and a second call does what is left; a changed bit is an error; jobs
-that go through a submit command, as on a cluster, make the same tables; the program is found."""
+"""eval_fleet.py TRIM3R SNAKEFILE: the workflow over a folder of recordings: its tables equal those of the program
+called by hand; failed jobs are tried again while the rest goes on, and a second call does the remaining work; a
+changed bit is an error; jobs submitted by a command, as on a cluster, make the same tables; the program is found."""
 import csv
 import json
 import os
@@ -60,7 +60,7 @@ def work(folder, fails, *settings, results="results", how=("-c", "2")):
 
 
 def on_a_cluster(folder):
-    """The same tables through a submit command, what dies being tried again."""
+    """Makes the same tables through a submit command; jobs that die are tried again."""
     met = [f"{folder}/recordings/{name}.mcap.met" for name in ("a", "b", "late/b")]
     for path in met:
         os.remove(path)
@@ -76,7 +76,7 @@ def on_a_cluster(folder):
         submitted = file.read().splitlines()
     check(all(line.startswith("-c 1 --mem 1000 ") for line in submitted), f"what jobs ask for: {submitted}")
     count = {rule: sum(f".{rule}." in line for line in submitted) for rule in ("eval", "replay", "report", "scores")}
-    # Snakemake's process within the job retries what died, or submits it again
+    # Snakemake's process within the job retries a dead job, or submits it again
     check(3 <= count.pop("eval") <= 6 and all(map(os.path.exists, met)), f"each eval dies once: {submitted}")
     check(count == {"replay": 3, "report": 1, "scores": 0}, f"tables are merged here: {submitted}")
 

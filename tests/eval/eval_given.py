@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""eval_given.py TRIM3R: points that are given: by pictures (`--allocate given --importance`), and by rivals (`+head`),
-on the built-in room. Which points were retained shows in scenes of the head `none`, which leaves points where they are."""
+"""eval_given.py TRIM3R: given points: by pictures (`--allocate given --importance`), and by rivals (`+head`), on the
+built-in room. Scenes of the head `none`, which leaves points in place, show the retained points."""
 import json
 import os
 import sys
@@ -38,7 +38,7 @@ def given(folder, room, pictures, *more):
 
 
 def pictures_choose(folder, room):
-    """16 bits: exactly the brightest points, in the order of views and rows."""
+    """Checks 16 bits: exactly the brightest points, in the order of views and rows."""
     every = build(room, *BARE, "--keep", "100", out=f"{folder}/every.ply")
     check(len(every) == 2 * SIDE * SIDE, "the room has depth everywhere")
     importance = random.permutation(65536)[:len(every)].astype(numpy.uint16).reshape(2, SIDE, SIDE)
@@ -85,7 +85,7 @@ def no_more_than_needed(folder, room, names):
 
 
 def levels_are_spread(folder, room, every):
-    """8 bits: whole levels first; within a level evenly, not row by row."""
+    """Checks 8 bits: whole levels first; within a level evenly, not row by row."""
     ground = numpy.zeros((SIDE, SIDE), numpy.uint8)
     ground[:, SIDE // 2:] = 200
     ground[:8, :8] = 201
@@ -127,7 +127,7 @@ def errors(folder, room, names):
 
 
 def rivals_choose(folder, room):
-    """X+head: the points of X and no others. A head that leaves points as they are makes the very scene of X; a disc
+    """Checks X+head: exactly the points of X. A head that leaves points in place makes the same scene as X; a disc
     is wider at the same place."""
     for method in ("trim3r", *RIVALS):
         for keep in (3, 25, 100):
@@ -145,7 +145,7 @@ def rivals_choose(folder, room):
 
 
 def another_head_ranks(folder, room):
-    """--mask-head: the points are those of the scene that the other head makes, whichever head then works on them."""
+    """Checks --mask-head: the points are those of the other head's scene, for any head that then works on them."""
     def chosen(head, *more):
         options = ["--head", head, "--refine", "0", "--keep", "10", "--method", "pup+head"]
         return build(room, *options, *more, out=f"{folder}/masked.ply")[:, :3]

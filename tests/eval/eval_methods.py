@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""eval_methods.py TRIM3R: how `trim3r eval` takes methods and ablations: what it refuses, and --views and --scene with
-them."""
+"""eval_methods.py TRIM3R: methods and ablations of `trim3r eval`: refusals, and --views and --scene with them."""
 import json
 import sys
 import tempfile
@@ -13,7 +12,7 @@ INPUT, USAGE, BUDGET = 1, 2, 3
 
 
 def refuse(status, *words_and_arguments):
-    """refuse(STATUS, "word", ..., [arguments]): stderr has every word."""
+    """refuse(STATUS, "word", ..., [arguments]): expects every word on stderr."""
     *words, arguments = words_and_arguments
     result = run(trim3r, "eval", *arguments, expect=status)
     for word in words:

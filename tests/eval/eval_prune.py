@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""eval_prune.py TRIM3R: `build` and `eval` with `--prune`: a pixel-aligned scene made elsewhere, which here is the
-unpruned scene of the built-in room, pruned by trim3r and by its rivals."""
+"""eval_prune.py TRIM3R: `build` and `eval` with `--prune`: a pixel-aligned scene made elsewhere, here the unpruned
+scene of the built-in room, pruned by trim3r and by its rivals."""
 import json
 import os
 import sys
@@ -17,8 +17,8 @@ CONTEXT = ["--context", "0,2"]
 CASE = [*CONTEXT, "--target", "1"]
 BARE = ["--head", "none", "--refine", "0", "--keep", "100"]
 SCORES = ("gaussians", "psnr", "ssim", "sharp", "holes", "context_psnr", "perceptual")
-# Means are rounded to other depth steps than they were measured in, and at the edges of things a mean of the other view
-# may stand before a pixel's own: the same points but for few
+# Means are rounded to other depth steps than the measured ones, and at edges a mean of the other view may be in front
+# of a pixel's own, so a few points differ.
 NEAR_DB = 0.6
 FAINT = -4.0  # logit of an opacity of 0.018
 
@@ -48,7 +48,7 @@ def evaluate(*arguments):
 
 
 def exact_counts(folder, room, theirs, ply):
-    """The budget is of the file's Gaussians, whatever retains points or Gaussians."""
+    """The budget refers to the file's Gaussians, for every way of retaining points or Gaussians."""
     count = len(ply.rows)
     text = [room, *CONTEXT, "--prune", theirs]
     for method in ("trim3r", "trim3r+head", "trim3r+finetune", "random", "eagles+finetune"):
@@ -62,7 +62,7 @@ def exact_counts(folder, room, theirs, ply):
     check(plain["hash"] == small["hash"] and plain["gaussians"] == 333, "whatever the arena")
     check(numpy.array_equal(*(Ply(f"{folder}/{name}.ply").rows for name in ("full", "min"))), "the same file")
 
-    # three Gaussians a pixel, as pixelSplat has them: more than there are pixels
+    # three Gaussians a pixel, as in pixelSplat: more than there are pixels
     triple = ply.write(f"{folder}/triple.ply", numpy.tile(ply.rows, (3, 1)))
     told = build(room, *CONTEXT, "--prune", triple, "--keep", "10%", out=f"{folder}/less.ply")
     check(told["gaussians"] == (3 * count + 5) // 10, "percents are of the file's Gaussians")
@@ -100,7 +100,8 @@ def as_good_as_direct(folder, room, theirs, ply):
 
 
 def moved_cameras(folder, room, ply):
-    """The recording's last views, turned against the first ones; and a set that other views than its own prune."""
+    """The recording's last views, rotated against the first ones; and a set that is pruned by other views than its
+    own."""
     context, case = ["--context", "3,5"], ["--context", "3,5", "--target", "4"]
     build(room, *context, *BARE, out=f"{folder}/last.ply")
     direct = evaluate(room, *case, "--keep", "10")[0]
@@ -150,7 +151,7 @@ def unseen_do_not_count(folder, room, theirs, ply):
 
 
 def without_depth(folder, room, theirs, by):
-    """Source views alone, as such networks have them: pictures and poses."""
+    """Checks source views alone, as such networks provide them: pictures and poses."""
     model, views = f"{folder}/model", f"{folder}/views"
     run(trim3r, "build", room, "--context", "0,1,2", "--keep", "5", "--colmap", model)
     camera = [line.split() for line in open(f"{model}/sparse/0/cameras.txt") if line[0] != "#"][0]
@@ -221,7 +222,7 @@ def errors(folder, room, theirs, ply):
 with tempfile.TemporaryDirectory() as folder:
     room, theirs = f"{folder}/room.mcap", f"{folder}/first.ply"
     run(trim3r, "room", "--size", f"{SIDE}x{SIDE}", "-o", room)
-    # with its frame named: what is put beside it later does not move that
+    # its frame is named, so that a file added next to it later does not move it
     build(room, *CONTEXT, *BARE, "--comments", out=theirs)
     ply = Ply(theirs)
     check(len(ply.rows) == 2 * SIDE * SIDE, "the room has depth everywhere")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""eval_refused.py TRIM3R: of several cases those whose frames are refused are left out, told with their reason and
-counted, on one process and on several; alone each is an error; where nothing is left the exit status is 1."""
+"""eval_refused.py TRIM3R: of several cases those with refused frames are omitted, reported with their reason and
+counted, with one process and with several; alone each is an error; if none is left the exit status is 1."""
 import csv
 import json
 import os
@@ -16,10 +16,10 @@ from png import png
 
 trim3r = os.path.abspath(sys.argv[1])
 SIDE = 64
-UNLIKE = ("scene", "build_ms", "render_ms")  # between runs on two recordings
+UNLIKE = ("scene", "build_ms", "render_ms")  # columns that differ between runs on two recordings
 NO_DEPTH, IN_PLACE, BESIDE = 3, 4, 5  # frames: without depth; where frame 0 was; where NO_DEPTH was
 MEASURED = [((0, 2), 1), ((1, BESIDE), 2)]
-NO_PAIR = ((0, IN_PLACE), 1)  # as far as stereo goes
+NO_PAIR = ((0, IN_PLACE), 1)  # not for stereo
 
 
 def wall(shift):
@@ -31,7 +31,7 @@ def wall(shift):
 
 
 def recorded(name, triplets):
-    """Frames beside each other, a pixel of the wall's a tenth of a unit."""
+    """Records frames side by side, at multiples of the wall's pixel."""
     frames = []
     os.makedirs("wall", exist_ok=True)
     for i, place in enumerate([0, 2, 4, 6, 0, 6]):
@@ -59,7 +59,7 @@ def named(case):
 
 
 def goes_on(recording, alone, refused, reasons, *options):
-    """The refused cases, in their order, and nothing else is left out: the rest is as it is without them."""
+    """Checks the refused cases, in order; all other cases are as without them."""
     options = ["--keep", "40,10", "--refine", 1, *options]
     call = [trim3r, "eval", recording, *options]
     plain = json.loads(run(trim3r, "eval", alone, *options, "--csv", "alone.csv", "--json").stdout)

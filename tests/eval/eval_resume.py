@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""eval_resume.py TRIM3R: `trim3r eval` on several processes gives the rows of one; a table cut off anywhere is made
-whole by --resume, without making again what stands in it; tables of other times or columns are refused."""
+"""eval_resume.py TRIM3R: `trim3r eval` on several processes gives the rows of one; --resume completes a table that
+was cut off anywhere, without making its rows again; tables that are older or have other columns are refused."""
 import csv
 import os
 import sys

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """eval_room.py TRIM3R SCORE.PY: `trim3r eval` on the built-in room, small: rows, columns, masks, pictures, and the
-independent scorer's figures on the written pictures (where the scorer is there)."""
+independent scorer's figures of the written pictures (if the scorer is there)."""
 import csv
 import json
 import os
@@ -36,7 +36,7 @@ def read_csv(path):
 
 
 def check_scores(row, target, render, mask, psnr):
-    """The row's figures, from the pictures alone."""
+    """Computes the row's figures from the pictures alone."""
     error = ((target.astype(float) - render) ** 2)[mask].mean()
     near(float(row[psnr]), 10 * numpy.log10(255**2 / error) if error > 0 else 99, 0.02, psnr)
     if scorer is not None:
@@ -213,7 +213,7 @@ def evaluate_heads(folder, room):
 
 
 def evaluate_rivals(folder, room):
-    """Every method: exact counts, the unpruned scene at 100 %, a row of its own with pictures and times."""
+    """Checks every method: exact counts, the unpruned scene at 100 %, a row with pictures and times."""
     rivals = ["random", "eagles", "lightgaussian", "pup", "efficientgs"]
     methods = ["trim3r", *rivals, "trim3r+finetune", *(f"{rival}+finetune" for rival in rivals)]
     keeps = [100, 30, 5]

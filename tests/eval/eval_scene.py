@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""eval_scene.py TRIM3R: `trim3r eval --scene` gives a file the scores of what `render` draws from it, with
+"""eval_scene.py TRIM3R: `trim3r eval --scene` gives a file the scores of the views that `render` draws from it, with
 its harmonics."""
 import json
 import os
@@ -20,13 +20,13 @@ def rows(*options):
 
 
 def drawn(scene, frame):
-    """PSNR over all pixels of what `render` draws."""
+    """Returns the PSNR over all pixels of a view that `render` draws."""
     run(trim3r, "render", scene, "room.mcap", "--view", frame, "-o", "view.png")
     return json.loads(run(trim3r, "diff", "view.png", f"pictures/{frame}/target.png", "--json", expect=1).stdout)["psnr"]
 
 
 def with_harmonics(path, out):
-    """The scene with colours of degree 1 that change from view to view."""
+    """Writes the scene with colours of degree 1 that change from view to view."""
     with open(path, "rb") as file:
         header, body = file.read().split(b"end_header\n", 1)
     names = [line.split()[-1] for line in header.split(b"\n") if line.startswith(b"property")]

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""eval_stereo.py TRIM3R: scenes from colours alone: the built-in room, with and without the depth it was recorded with;
-more views; pairs that cannot be matched, and what is said of them."""
+"""eval_stereo.py TRIM3R: scenes from colours alone: the built-in room, with and without its recorded depth; more
+views; pairs that cannot be matched, and the message about them."""
 import csv
 import json
 import os
@@ -14,7 +14,8 @@ from checks import check, done, run
 TRIM3R = os.path.abspath(sys.argv[1])
 INPUT, USAGE = 1, 2
 STEREO = ["--depth", "stereo"]
-# PSNR of the room's middle view in dB, by percent kept, where its depth covers: measured less 0.5. With depth 31.9, 30.9.
+# PSNR of the room's middle view in dB, by percent kept, where its depth covers: measured minus 0.5. With depth 31.9,
+# 30.9.
 FLOORS = {"100": 28.33 - 0.5, "10": 28.45 - 0.5}
 
 
@@ -32,7 +33,7 @@ def rows_of(*words):
 
 
 def posed_folder(name, frames):
-    """A folder as import reads it, without depth: (picture, rotation w x y z and translation world to camera)."""
+    """Writes a folder for import, without depth: (picture, rotation w x y z and translation world to camera)."""
     os.mkdir(name)
     listed = []
     for i, (picture, q, t) in enumerate(frames):
@@ -49,7 +50,7 @@ def posed_folder(name, frames):
 
 
 def room_frames(room):
-    """Pictures and poses of the room's frames, by way of COLMAP's model."""
+    """Returns pictures and poses of the room's frames, read from COLMAP's model."""
     indices = range(5)
     trim3r("build", room, "--context", ",".join(map(str, indices)), "--gaussians", 100, "--head", "none", "--refine", 0,
            "--colmap", "model")
@@ -99,7 +100,7 @@ def colours_alone(frames):
 
 
 def flat_triplets(recording):
-    """The same, with a triplet."""
+    """Makes the same with a triplet."""
     with open("flat/transforms.json", encoding="utf-8") as file:
         root = json.load(file)
     root["trim3r_triplets"] = [{"context": [0, 2], "target": 1}]

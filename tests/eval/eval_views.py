@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""eval_views.py TRIM3R: `trim3r eval --views` takes the frames that its help promises, makes scenes of them, and says
-which; a recording with too few is told."""
+"""eval_views.py TRIM3R: `trim3r eval --views` takes the frames that its help describes, makes scenes of them, and
+reports them; a recording with too few is reported."""
 import csv
 import json
 import math
@@ -26,7 +26,7 @@ def refuse(status, words, *arguments):
 
 
 def made_recording(folder):
-    """Frames along x and turned about the vertical, 2 m before a wall; frame 5 has no depth."""
+    """Makes frames along x, rotated about the vertical, 2 m before a wall; frame 5 has no depth."""
     made = f"{folder}/made"
     os.mkdir(made)
     random = numpy.random.default_rng(1)
@@ -80,7 +80,7 @@ def the_room(folder):
         name = f"{row['target']}/trim3r_analytic_refine-0_views-10_10.png"
         check(row["picture"] == name and os.path.exists(f"{folder}/ten/{name}"), f"a name of its own: {row['picture']}")
         check(os.path.exists(f"{folder}/ten/{row['target']}/context_j.png"), "all context views are written")
-    # a table goes on where it was cut off
+    # a truncated table is continued
     one = (*quick, "--context", "0,2", "--target", "1")
     run(trim3r, "eval", *many, "--resume")
     with open(table, newline="", encoding="utf-8") as file:

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The program with the learned head in floats: whatever network is asked for, the float head in the file that
- * T3R_FLOAT_HEAD names gives the outputs, rounded only to their own 16 bits. All before and behind is the runtime's,
- * so a score beside the program's own tells what quantization costs.
+/* The program with the learned head in floats: for any requested network, the float head in the file named by
+ * T3R_FLOAT_HEAD gives the outputs, rounded only to their 16 bits. Everything else is the runtime's, so the difference
+ * of its score to the program's is the cost of quantization.
  *
  * The linker puts the functions below before the runtime's: --wrap=t3r_head_learned, --wrap=t3r_network_points. One
  * thread, as the library's heads run. */

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""floors.py TRIM3R TRIM3R_FLOAT SHARED_DATA: what the shipped heads reach on real scenes of the test split at 256x256,
-held to what is promised of them and to what was measured.
+"""floors.py TRIM3R TRIM3R_FLOAT SHARED_DATA: the shipped heads on real scenes of the test split at 256x256, against
+their guarantees and the measured values.
 
-A scene, a handful of cases, for each claim: two minutes instead of the two hours of tools/study/scripts/results."""
+A scene with a few cases for each claim: two minutes instead of the two hours of tools/study/scripts/results."""
 import csv
 import json
 import os
@@ -16,22 +16,23 @@ from checks import check, done, run, skip
 TRIM3R, TRIM3R_FLOAT = map(os.path.abspath, sys.argv[1:3])
 DATA = os.path.abspath(sys.argv[3])
 FLOAT_HEAD = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "quant", "heads", "small.safetensors")
-SLACK = 0.25  # dB below what was measured: a head trained anew may lose so much on a few cases, no more
+SLACK = 0.25  # dB below the measured value: the most that a newly trained head may lose on a few cases
 
-# Novel views of `small`, default passes, 10 % kept: triplets (first context, second, target), PSNR in dB promised
-# of the whole scene, and measured over these triplets. Of the rooms' eleven triplets, an easy, a middling and the two
-# hardest.
+# Novel views of `small`, default passes, 10 % kept: triplets (first context, second, target), the guaranteed PSNR in dB
+# of the whole scene, and the measured one over these triplets. Of the rooms' eleven triplets, an easy, a middling and
+# the two hardest.
 NOVEL = {
     "hololens_b": (((0, 2, 1), (3, 5, 4), (6, 8, 7), (9, 11, 10)), 22.3, 27.45),
     "icl_livingroom_synth": (((0, 3, 1), (8, 11, 9), (13, 16, 14), (14, 19, 17)), 26.6, 27.47),
     "icl_livingroom_noisy_synth": (((0, 4, 2), (0, 3, 1), (1, 4, 3)), 28.8, 37.00),
 }
-# Of the shelf all triplets count, at 40 to 5 % kept, over which the learned head is level with the analytic one: 0.02 dB
-# behind it. It led by 0.15 dB before holes were bridged, which lifted both by 0.4 dB, and by 0.04 with 300 SuperClusters.
+# On the shelf all triplets count, at 40 to 5 % kept, over which the learned head is level with the analytic one: 0.02
+# dB below it. It was 0.15 dB above before holes were bridged, which raised both by 0.4 dB, and 0.04 above with 300
+# SuperClusters.
 LEVEL = 0.05  # dB
-# Every seventh of the 80 colour frames of the test scenes, and the PSNR that is promised of all 80 and was measured of
-# these, by percent kept: `small` with 2 passes on a plane. The eleven measured within 0.05 dB of all (36.70 and
-# 34.37), so the promise stands for them without a margin.
+# Every seventh of the 80 colour frames of the test scenes; the PSNR guaranteed for all 80 and the one measured on
+# these, by percent kept: `small` with 2 passes on a plane. The eleven are within 0.05 dB of all (36.70 and 34.37), so
+# the guarantee applies to them without a margin.
 PLANAR = (
     ("icl_livingroom_synth", "130.jpg"), ("icl_livingroom_synth", "20.jpg"), ("icl_livingroom_synth", "80.jpg"),
     ("clip_nyu_2", "1.png"), ("clip_kitti_0", "0.png"), ("clip_scannet_0", "2.png"), ("strecha_fountain", "0004.jpg"),

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""page.py TRIM3R [FOLDER]: the page of `trim3r eval --html` in a headless Chromium, on a phone: the scores of the run, every
-picture there, errors at a touch; no errors, no requests. With FOLDER, what it looks like goes there."""
+"""page.py TRIM3R [FOLDER]: the page of `trim3r eval --html` in a headless Chromium, on a phone: the scores of the
+run, every picture present, error maps at a touch; no errors, no requests. With FOLDER, screenshots go there."""
 import csv
 import os
 import sys

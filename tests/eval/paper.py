@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """paper.py TRIM3R TOOLS/PAPER DATA: `tools/study/scripts/paper --quick` on the recorded scenes: every part has its table, cells are the
-means of eval's rows, what was measured is not measured again, and a run cut off goes on."""
+means of eval's rows, and what was measured is not measured again."""
 import csv
 import glob
 import json
 import os
 import re
+import shutil
 import statistics
 import sys
 import tempfile
@@ -26,7 +27,7 @@ METHODS = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs")
 
 
 def tables(text):
-    """{heading: its tables, each a list of rows of cells}"""
+    """Returns {heading: its tables, each a list of rows of cells}."""
     found = {}
     for section in text.split("## ")[1:]:
         blocks = re.findall(r"(?:^\|.*\n)+", section + "\n", re.M)
@@ -46,7 +47,7 @@ def filled(rows):
 def rows_of(cache, pattern):
     (path,) = glob.glob(f"{cache}/*/{pattern}")
     with open(path, newline="", encoding="utf-8") as file:
-        return path, list(csv.DictReader(file))
+        return list(csv.DictReader(file))
 
 
 def tells(cell, row):
@@ -60,7 +61,7 @@ def check_quality(cache, found):
     check(list(rows) == [(s, m) for s in (*SCENES, "mean of the scenes") for m in METHODS], "a row a scene and method")
     check(found["Quality against budget"][0][0] == ["scene", "method", "0 %", "90 %"], "shares pruned across")
     for scene in SCENES:
-        measured = {(r["method"], r["keep"]): r for r in rows_of(cache, f"{scene}.first.*.csv")[1]}
+        measured = {(r["method"], r["keep"]): r for r in rows_of(cache, f"{scene}.*.quality.*.csv")}
         for method in METHODS:
             tells(rows[scene, method][0], measured[method, "100"])
             tells(rows[scene, method][1], measured[method, "10"])
@@ -73,17 +74,16 @@ def check_quality(cache, found):
 
 def check_others(cache, found):
     rows = {(s, m): cells for s, m, cells in filled(found["With fine-tuning"][0])}
-    tuned = {r["method"]: r for r in rows_of(cache, "apc_shelf.tuned.*.csv")[1]}
     for method in METHODS:
-        tells(rows["apc_shelf", f"{method}+finetune"][0], tuned[f"{method}+finetune"])
-        check(("apc_shelf", method) in rows, "with what was not fine-tuned beside it")
+        tells(rows["apc_shelf", f"{method}+finetune"][0], rows_of(cache, f"apc_shelf.*.{method}.tuned.*.csv")[0])
+    check(("apc_shelf", "trim3r") in rows, "with what was not fine-tuned beside it")
     views = {(s, n): cells for s, n, cells in filled(found["More input views"][0])}
     check(list(views) == [(s, n) for s in SCENES for n in ("2", "3")], "input views")
-    _, three = rows_of(cache, "hololens_b.3.0.*.csv")
+    three = rows_of(cache, "hololens_b.*.3-views.*.csv")
     tells(views["hololens_b", "3"][0], three[0])
     check(len(three[0]["context"].split(",")) == 3, "of three frames")
     build, slow, frames = found["Latency and frames a second"]
-    timed = [rows_of(cache, f"{s}.timed.*.csv")[1] for s in SCENES]
+    timed = [rows_of(cache, f"{s}.*.timed.*.csv") for s in SCENES]
     ours = statistics.median(float(r["render_ms"]) for rows in timed for r in rows
                              if (r["method"], r["keep"]) == ("trim3r", "10"))
     near(float(frames[2][2]), 1000 / ours, 0.51, "frames a second")
@@ -118,10 +118,10 @@ def check_trained_heads(folder, call, cache, heads):
         with open(f"{folder}/heads/{name}.json", "w", encoding="utf-8") as file:
             json.dump(told, file)
     printed = run(*call, "masks", "transfer").stdout
-    found = tables(printed)
-    rows = check_masks(found, ("eagles",))
-    _, shipped = rows_of(cache, "hololens_b.masks.*.csv")
-    _, own = rows_of(cache, "hololens_b.retrained.eagles.t3w.*.csv")
+    masks, kinds = tables("## a\n" + printed)["a"]
+    rows = check_masks({"Our head on others' points": [masks]}, ("eagles",))
+    shipped = rows_of(cache, "hololens_b.*.masks.*.csv")
+    own = rows_of(cache, "hololens_b.*.retrained.eagles.t3w.*.csv")
     check([(r["method"], r["head"], r["settings"]) for r in own] == [("eagles+head", "eagles", "mask-head-small")],
           "its head on the points that it was trained for")
     tells(rows["hololens_b", "eagles+head, retrained"][0], own[0])
@@ -129,54 +129,43 @@ def check_trained_heads(folder, call, cache, heads):
     for text in ("`eagles`: from the shipped `tiny`, 7 steps of 4", "points of eagles", "`rooms`: `tiny` from nothing",
                  "points of trim3r; made-up rooms\n", "made-up and recorded scenes (hololens_a)"):
         check(text in printed, f"how it was trained: {text}")
-    kinds = [(s, k) for s, k, _ in filled(found["Other kinds of scenes"][0])]
+    kinds = [(s, k) for s, k, _ in filled(kinds)]
     check(kinds == [(s, k) for s in (*SCENES, "room") for k in ("small, shipped", "made-up rooms")], f"kinds: {kinds}")
 
 
 with tempfile.TemporaryDirectory() as folder:
     cache, out = f"{folder}/cache", f"{folder}/out"
     os.mkdir(out)
-    call = (sys.executable, "-B", paper, "--quick", "--program", trim3r, "--cache", cache, "--heads", f"{folder}/heads")
-    first = run(*call, "--write", out)
-    check(re.search(r"\d+ tables to be made, about \d+ min on \d+ processors", first.stderr), "what it will take")
-    found = tables(first.stdout)
-    check("Other kinds of scenes" not in found, "no heads, no rows")
+    shutil.copy(os.path.join(os.path.dirname(paper), "..", "..", "..", "docs", "study", "paper.md"), out)
+    call = (sys.executable, "-B", paper, "--quick", "--program", trim3r, "--cache", cache, "--heads", f"{folder}/heads", "--pages", out)
+    first = run(*call, "--write")
+    check("paper: 1 measured" in first.stderr, "what is going on")
+    with open(f"{out}/paper.md", encoding="utf-8") as file:
+        found = tables(file.read())
     check_quality(cache, found)
     check_others(cache, found)
     check_masks(found, ())
-    check("No head was retrained" in first.stdout, "and that says so")
-    with open(f"{out}/paper.md", encoding="utf-8") as file:
-        check(tables(file.read()) == found, "paper.md is what was printed")
     for picture in ("paper.svg", "paper-scales.svg"):
         xml.dom.minidom.parse(f"{out}/{picture}")
 
-    # a truncated table is continued, the others stay
-    path, rows = rows_of(cache, "apc_shelf.first.*.csv")
-    with open(path, encoding="utf-8") as file:
-        lines = file.readlines()
-    os.remove(path)
-    with open(os.path.join(os.path.dirname(path), "new." + os.path.basename(path)), "w", encoding="utf-8") as file:
-        file.writelines(lines[:6])
+    os.remove(glob.glob(f"{cache}/*/apc_shelf.*.quality.*.csv")[0])
     again = run(*call, "quality")
-    check("1 tables to be made" in again.stderr, f"the others are kept: {again.stderr}")
-    with open(path, encoding="utf-8") as file:
-        check(file.readlines()[:6] == lines[:6], "rows that stood are not made again")
-    check(tables(again.stdout)["Quality against budget"] == found["Quality against budget"], "the same table")
+    check("paper: 1 measured" in again.stderr and "2 measured" not in again.stderr, f"the others are kept: {again.stderr}")
+    check(tables("## a\n" + again.stdout)["a"] == found["Quality against budget"], "the same table")
 
     # heads of other scenes
     head = f"{folder}/mine.t3w"
     heads = os.path.join(os.path.dirname(paper), "..", "..", "..", "quant", "heads")
     run(trim3r, "quantize", f"{heads}/tiny.safetensors", "--name", "mine", "-o", head)
-    rows = tables(run(*call, "transfer", "--head-of", f"indoor={head}").stdout)["Other kinds of scenes"][0]
+    rows = tables("## a\n" + run(*call, "transfer", "--head-of", f"indoor={head}").stdout)["a"][0]
     check([(s, k) for s, k, _ in filled(rows)] ==
           [(s, k) for s in (*SCENES, "room") for k in ("small, shipped", "indoor")], "heads")
-    tells(list(filled(rows))[1][2][1], rows_of(cache, "hololens_b.head.mine.t3w.*.csv")[1][1])
+    tells(list(filled(rows))[1][2][1], rows_of(cache, "hololens_b.*.head.mine.t3w.*.csv")[1])
 
     for words, *wrong in (("heads of tools/study/train/retrain", "transfer"), ("no part is called", "speed"),
-                          ("--write takes all parts", "views", "--write"),
+                          ("no part transfer", "transfer", "--write"),
                           ("is not KIND=FILE.t3w", "--head-of", "indoor"),
-                          ("is not KIND=FILE.t3w", "--head-of", "indoor=absent.t3w"),
-                          ("with commas between", "--tuned-pruned", "50")):
+                          ("is not KIND=FILE.t3w", "--head-of", "indoor=absent.t3w")):
         check(words in run(*call, *wrong, expect=2).stderr, f"{wrong}: {words}")
     check_trained_heads(folder, call, cache, heads)
     check("absent is not there" in run(*call, "--program", "absent", expect=1).stderr, "a missing program is told")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""prune_scene.py TRIM3R DATA: a real scene that an optimiser made, of no pixels' grid, and pictures of it: two of them and
-the file are pruned, the third is met. bulba.ply is a thing of 7 cm; the cameras are made up."""
+"""prune_scene.py TRIM3R DATA: a real scene of an optimiser, with no pixel grid, and pictures of it: two of them and
+the file are pruned, the third is compared. bulba.ply is an object of 7 cm; the cameras are made up."""
 import json
 import os
 import sys
@@ -46,7 +46,7 @@ with tempfile.TemporaryDirectory() as folder:
         check(row["gaussians"] == (GAUSSIANS * row["keep"] + 50) // 100, f"exactly so many of the file's: {row}")
     near(psnr["random", 100], psnr["eagles", 100], 0, "100 % is the file itself")
     check(psnr["random", 100] > 60, "of which the pictures are")
-    # what is kept is made anew of two pictures, without harmonics: 34.5, 32.1 and 31.0 dB; eagles keeps 27.1 and 18.9,
+    # the result is made from two pictures, without harmonics: 34.5, 32.1 and 31.0 dB; eagles gives 27.1 and 18.9,
     # random 18.6 and 15.3
     for keep, least, ahead in ((100, 34, None), (20, 31.5, 3), (10, 29.5, 8)):
         check(psnr["trim3r", keep] > least, f"trim3r at {keep} %: {psnr}")

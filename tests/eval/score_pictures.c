@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* score_pictures TARGET.png RENDER.png [MASK.png]: the measures of two PNG files, as JSON. For the scripts beside. */
+/* score_pictures TARGET.png RENDER.png [MASK.png]: prints the measures of two PNG files as JSON, for the scripts of
+ * this folder. */
 #include <stdio.h>
 #include <stdlib.h>
 

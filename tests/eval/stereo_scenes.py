@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """stereo_scenes.py TRIM3R SHARED_DATA: what colours alone reach on real scenes at 256x256, held to what was measured:
-rooms, a fountain, a drive forward. tools/study/scripts/stereo_results compares with other methods."""
+rooms, a fountain, a drive forward. tools/study/scripts/colours compares with other methods."""
 import csv
 import json
 import os

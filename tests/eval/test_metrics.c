@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The measures at values that follow from their definitions. */
+/* The measures on pictures whose values follow from the definitions. */
 #include <math.h>
 #include <string.h>
 
@@ -79,14 +79,14 @@ TEST(test_sharp_is_a_ratio_of_gradients)
     assert_near(metric_sharp(b, a, NULL, SIDE, SIDE), 3 / 1e-9, 1);
 }
 
-/* Black against white has no feature but a luminance step of 100: 100^0.7, spread over the upper part of the range
- * that reaches to pure green against pure blue. */
+/* Black against white has no feature, only a luminance step of 100: 100^0.7, in the upper part of the range, which
+ * ends at pure green against pure blue. */
 TEST(test_flip_of_black_and_white)
 {
     uint8_t black[PIXELS * 3], white[PIXELS * 3];
     memset(black, 0, sizeof black);
     memset(white, 255, sizeof white);
-    double largest = pow(203.43, 0.7); /* Hunt-adjusted HyAB of green and blue, two decimals suffice */
+    double largest = pow(203.43, 0.7); /* Hunt-adjusted HyAB of green and blue, to two decimals */
     double expected = 0.95 + 0.05 * (pow(100, 0.7) - 0.4 * largest) / (0.6 * largest);
     assert_near(metric_flip(black, white, NULL, SIDE, SIDE), expected, 1e-4);
     assert_near(metric_flip(white, black, NULL, SIDE, SIDE), expected, 1e-4);

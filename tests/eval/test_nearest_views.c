@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The rule of `eval --views`: distances of views, the median depth, which frames are taken. */
+/* The rule of `eval --views`: distances of views, the median depth, the chosen frames. */
 #include <math.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #define ONE_Q32 (INT64_C(1) << 32)
 #define ONE_Q30 (INT32_C(1) << 30)
 
-/* At x world units, looking `degrees` to the right of +z. */
+/* Returns a place at x world units, looking `degrees` to the right of +z. */
 static view_place place_at(double x, double degrees)
 {
     double half = degrees * acos(-1) / 360;
@@ -39,7 +39,7 @@ TEST(test_distance)
     t3r_camera rolled = {.rotation_q30 = {0, 0, 0, ONE_Q30}};
     view_place e = view_place_of(&rolled);
     assert_true(view_distance(&a, &e, 2) == 0);
-    /* as far apart as positions can be */
+    /* the largest possible distance of positions */
     view_place least = a, most = a;
     least.position_q32[0] = 1 - (INT64_C(1) << 62);
     most.position_q32[0] = (INT64_C(1) << 62) - 1;
@@ -53,14 +53,14 @@ TEST(test_median_depth)
     for (int i = 0; i < 8; i++) {
         bytes[6 * (i / 2) + 2 * (i % 2)] = (uint8_t)(steps[i / 2][i % 2] & 255);
         bytes[6 * (i / 2) + 2 * (i % 2) + 1] = (uint8_t)(steps[i / 2][i % 2] >> 8);
-        bytes[6 * (i / 2) + 4] = 77; /* beside the picture */
+        bytes[6 * (i / 2) + 4] = 77; /* outside the picture */
     }
     t3r_frame frame = {.depth = bytes,
                        .depth_width = 2,
                        .depth_height = 4,
                        .depth_stride_bytes = 6,
                        .depth_unit_q40 = UINT64_C(1) << 38};
-    assert_true(view_median_depth(&frame) == 250); /* the lower middle one of 500 1000 3000 65535 */
+    assert_true(view_median_depth(&frame) == 250); /* the lower median of 500 1000 3000 65535 */
     frame.depth_height = 2;
     assert_true(view_median_depth(&frame) == 125);
     memset(bytes, 0, sizeof bytes);
@@ -76,12 +76,12 @@ TEST(test_nearest_frames)
                            place_at(0, 20), place_at(0.2, 90), place_at(0.1, 0)};
     const uint32_t count = sizeof places / sizeof places[0];
     uint32_t context[8] = {0, 3};
-    /* by a depth of 2: 4 (0.35), 1 and 3 (0.5), 5 (1.4), 0 (2); 6 has no depth */
+    /* at depth 2: 4 (0.35), 1 and 3 (0.5), 5 (1.4), 0 (2); 6 has no depth */
     places[6].usable = false;
     assert_int_equal(nearest_views(places, count, 2, 2, 5, context, 2), 5);
     const uint32_t expected[] = {0, 3, 4, 1, 5};
     assert_memory_equal(context, expected, sizeof expected);
-    /* a far scene: turned cameras come last; the first of equal ones */
+    /* a far scene: rotated cameras come last; of equal ones the first */
     assert_int_equal(nearest_views(places, count, 2, 1000, 8, context, 0), 5);
     const uint32_t turned[] = {1, 3, 0, 4, 5};
     assert_memory_equal(context, turned, sizeof turned);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The process pool: order, the same from one process and from several, failures, a worker that dies. */
+/* The process pool: order, equal results with one process and several, failures, a worker that dies. */
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +24,7 @@ static void wait_ms(long ms)
     nanosleep(&(struct timespec){.tv_nsec = ms * 1000000}, NULL);
 }
 
-/* Every item sends as many parts as its remainder by three; early ones take longest. */
+/* Sends item % 3 parts; early items take longest. */
 static int make(void *context, uint32_t item, process_pool_line *line)
 {
     plan *p = context;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Depth from a scene's means: which mean a pixel gets, and in which steps. */
+/* Depth from a scene's means: the mean that each pixel gets, and its steps. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 #define FOCAL 20.0
 #define EXPONENT 2 /* a scene unit is four world units */
 
-/* A scene and the camera that looks at it: a quarter turn to the left about y, away from the world's origin. */
+/* A scene and its camera: a quarter turn to the left about y, away from the world's origin. */
 typedef struct stage {
     t3r_gaussian gaussians[MOST];
     scene_file scene;
@@ -103,7 +103,7 @@ TEST(nearest_wins)
     }
 }
 
-/* The mean of a surface nearest to the pixel's centre is used, but none from behind the surface. */
+/* The surface's mean nearest to the pixel's centre is used, and no mean behind the surface. */
 TEST(surface_is_sampled_at_the_centre)
 {
     const double behind[] = {1.04, 1.08}, found[] = {1.04, 1};

@@ -160,7 +160,7 @@ TEST(test_means_group_by_settings)
     assert_string_equal(means[2].context, "mean");
     assert_true(means[2].value[EVALUATION_PSNR] == 30);
     assert_string_equal(means[2].picture, "");
-    rows[2].wavelet = "haar"; /* beside "a", db2 */
+    rows[2].wavelet = "haar"; /* next to "a", db2 */
     assert_int_equal(evaluation_means(rows, 5, false, means), 4);
     rows[2].wavelet = "db2";
     rows[2].ablation = "k-5"; /* next to "a", without ablation */

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""ar.py TRIM3R AR_LOOP: a line and a view for every frame; what the view drawn ahead shows is nearer to the frame that
-then comes than the frame before it is; what is wrong with a source is told."""
+"""ar.py TRIM3R AR_LOOP: a line and a view for every frame; the view drawn ahead is nearer to the next frame than the
+current frame is; errors of a source are reported."""
 import math
 import subprocess
 import tempfile
@@ -11,7 +11,7 @@ from common import EXAMPLE, room
 
 SIDE, FRAMES = 256, 6
 HEADING = b"P6\n256 256\n255\n"
-VIEW_DB, SHOWN = 20.5, 0.95  # measured: 21.4 and 0.98; the poses are 17 mm beside what was foreseen
+VIEW_DB, SHOWN = 20.5, 0.95  # measured: 21.4 and 0.98; the poses are 17 mm from the predicted ones
 
 
 def psnr(view, frame, shown):
@@ -26,7 +26,7 @@ with tempfile.TemporaryDirectory() as folder:
     check(ended.stderr.decode().splitlines() == [f"frame {i}: shown" for i in range(FRAMES)], ended.stderr)
     views = ended.stdout.split(HEADING)[1:]
     check([len(view) for view in views] == [3 * SIDE * SIDE] * FRAMES, "a picture a frame")
-    for i in range(1, FRAMES - 1):  # of the first frame no motion is known
+    for i in range(1, FRAMES - 1):  # the first frame has no motion yet
         view, frame, last = views[i], colours[i + 1], colours[i]
         shown = [p for p in range(0, len(view), 3) if view[p:p + 3] != bytes(3)]  # one view leaves the edges black
         ahead, stale, share = psnr(view, frame, shown), psnr(last, frame, shown), 3 * len(shown) / len(view)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts of this folder share; the program is their first argument, the example their second."""
+"""Shared by the scripts of this folder; the program is their first argument, the example their second."""
 import os
 import pathlib
 import sys
@@ -12,7 +12,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def room(path, side, frames):
-    """The built-in recording, and the samples of its colour and depth images."""
+    """Makes the built-in recording; returns the samples of its colour and depth images."""
     run(TRIM3R, "room", "--size", f"{side}x{side}", "--frames", frames, "--unchunked", "-o", path)
     with open(path, "rb") as file:
         found = list(mcap_read.messages(file.read()))
@@ -23,6 +23,7 @@ def room(path, side, frames):
 
 
 def without_crc(data):
-    """Of a recording without chunks. The CRC of the data section stands in the record DataEnd, opcode 15, four bytes long; 0: there is none."""
+    """Removes the CRC of the data section, for a recording without chunks: it is in the record DataEnd, opcode 15,
+    four bytes long; 0 means none."""
     at = data.rindex(b"\x0f" + (4).to_bytes(8, "little"))
     return data[:at + 9] + bytes(4) + data[at + 13:]

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""replay.py TRIM3R REPLAY_TEST: a recording passes against what was written down of it, and fails with one bit of one
-sample changed, with a digit changed of what was written down, cut, longer, or another one."""
+"""replay.py TRIM3R REPLAY_TEST: a recording passes against the results stored with it, and fails with one bit of a
+sample changed, with a digit of the results changed, truncated, extended, or with another recording."""
 import tempfile
 
 from checks import check, done, run
@@ -18,7 +18,7 @@ def write(path, data):
 
 
 def changed(data, sample, bit):
-    """One bit of a message's bytes."""
+    """Flips one bit of a message's bytes."""
     at = data.index(sample[0]) + sample[1]
     return data[:at] + bytes([data[at] ^ 1 << bit]) + data[at + 1:]
 

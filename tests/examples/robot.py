@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""robot.py TRIM3R ROBOT_LOOP ROBOT_SMALL COMPILER SOURCE: how far the way is clear, by what the recording's depth says,
-with much room and with little; no room is an error of the compiler; the robot's own code neither allocates nor uses
-floats."""
+"""robot.py TRIM3R ROBOT_LOOP ROBOT_SMALL COMPILER SOURCE: the free distance agrees with the recording's depth, with
+much memory and with little; too little memory is an error of the compiler; the robot's own code neither allocates
+nor uses floats."""
 import re
 import struct
 import subprocess
@@ -25,7 +25,7 @@ def compiled(*flags):
 
 
 def nearest(depth):
-    """Millimetres, in the middle third."""
+    """Returns millimetres in the middle third."""
     steps = struct.unpack(f"<{SIDE * SIDE}H", depth)
     middle = range(SIDE // 3, 2 * SIDE // 3)
     return min(steps[y * SIDE + x] for y in middle for x in middle)
@@ -44,7 +44,7 @@ with tempfile.TemporaryDirectory() as folder:
             check(abs(float(line[3]) - there) <= METRES, f"{line[0]}: {there:.3f} m by the recording")
     with open(f"{folder}/room.mcap", "rb") as file:
         data = file.read()
-    with open(f"{folder}/dark.mcap", "wb") as file:  # of the first frame nothing is measured
+    with open(f"{folder}/dark.mcap", "wb") as file:  # the first frame has no measurement
         file.write(without_crc(data.replace(depths[0], bytes(len(depths[0])))))
     lines = run(EXAMPLE, f"replay:{folder}/dark.mcap").stdout.splitlines()
     check([line.split()[1] for line in lines] == ["0:", "2:", "4:"] and "depth" in lines[0], lines)

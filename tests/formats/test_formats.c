@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every format of scene files: what is written reads back within the steps of the format, cut and damaged files are
- * refused with a reason. */
+/* Every format of scene files: written scenes read back within the format's steps; cut and damaged files are refused
+ * with a reason. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ enum { COUNT = 700, SETS = 300 };
 static const struct format {
     const char *suffix;
     double position, scale, colour, opacity, harmonic; /* the most that may differ: scene units, a share, of 1, of 1 */
-    uint32_t degree;                                   /* that is kept */
+    uint32_t degree;                                   /* degree that the format keeps */
 } formats[] = {
     {".ply", 1e-5, 1e-4, 1e-4, 1e-4, 2e-4, 3}, {".compressed.ply", 4e-3, 2e-2, 3e-3, 3e-3, 0.017, 3},
     {".splat", 1e-5, 3e-2, 3e-3, 3e-3, 0, 0},  {".spz", 1e-5, 4e-2, 5e-3, 3e-3, 0.064, 3},
@@ -31,7 +31,7 @@ static const struct format {
 #endif
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
-/* As many bytes of a file are tried at most. */
+/* Cuts tried per file, at most. */
 enum { TRIED = 1500 };
 /* One in FAR_EVERY Gaussians is far away, FAR in all. */
 enum { FAR = 3, FAR_EVERY = 100 };
@@ -51,8 +51,8 @@ static double share(uint32_t *seed)
     return *seed / 4294967296.0;
 }
 
-/* A helix, so that the order of a file can be undone: x of each Gaussian is its own. Harmonics are of SETS kinds, since
- * .sog shares them. */
+/* Makes a helix, whose x coordinates identify the Gaussians, so that a changed order can be undone. Harmonics are of
+ * SETS kinds, since .sog shares them. */
 static void make_scene(scene_file *scene, uint32_t degree)
 {
     uint32_t seed = 5;
@@ -94,7 +94,7 @@ static double world(const scene_file *scene, uint32_t index, int axis)
            ldexp(scene->gaussians[index].position_q20[axis], scene->frame.exponent - 20);
 }
 
-/* The Gaussian of `b` that lies where `index` of `a` does. */
+/* Returns the Gaussian of `b` at the place of Gaussian `index` of `a`. */
 static uint32_t find(const scene_file *a, uint32_t index, const scene_file *b)
 {
     uint32_t best = 0;
@@ -242,7 +242,7 @@ TEST(read_back)
     }
 }
 
-/* With --up each format has y up; those of other axes read it as y down, as ever. */
+/* With --up each format has y up; without it, formats with other axes still read as y down. */
 TEST(turn_up)
 {
     for (int k = 0; k < FORMATS; k++) {
@@ -261,7 +261,7 @@ TEST(turn_up)
     }
 }
 
-/* A .glb whose one node is another; free() it. */
+/* Returns a .glb whose one node is replaced; free() it. */
 static uint8_t *with_node(const uint8_t *bytes, size_t count, const char *node, size_t *size)
 {
     static const char ours[] = "{\"mesh\":0}";
@@ -281,7 +281,7 @@ static uint8_t *with_node(const uint8_t *bytes, size_t count, const char *node, 
     return out;
 }
 
-/* Positions, shapes and harmonics go together: a node that turns, doubles and moves, and the same done by hand. */
+/* A node that turns, doubles and moves positions, shapes and harmonics equals the same change made directly. */
 TEST(nodes_of_glb)
 {
     const struct format doubled = {".glb", 1e-4, 1e-3, 1e-4, 1e-4, 4e-4, 3};
@@ -293,8 +293,8 @@ TEST(nodes_of_glb)
     must_write(path, &scene, 0);
     uint8_t *bytes = t3r_file_bytes(path, SIZE_MAX, &count, error, sizeof error);
     assert_non_null(bytes);
-    /* half a turn about y is x, z to -x, -z, in the file's axes as in the scene's, which are half a turn about z apart
-     */
+    /* half a turn about y maps x, z to -x, -z in the file's axes and in the scene's, which differ by half a turn about
+     * z */
     uint8_t *with = with_node(bytes, count,
                               "{\"mesh\":0,\"rotation\":[0,1,0,0],\"scale\":[2,2,2],\"translation\":[1,2,3 ]}", &size);
     assert_int_equal(scene_file_parse("scene.glb", with, size, 0, &moved, error, sizeof error), 0);
@@ -335,7 +335,7 @@ static int parse(const char *suffix, const uint8_t *bytes, size_t count, char er
 {
     char name[64];
     snprintf(name, sizeof name, "scene%s", suffix);
-    /* exactly as long as it is, so that a sanitizer sees the byte behind */
+    /* exactly its length, so that a sanitizer sees a read past the end */
     uint8_t *copy = malloc(count + (count == 0));
     assert_non_null(copy);
     memcpy(copy, bytes, count);
@@ -383,7 +383,7 @@ TEST(refuse_every_cut)
     }
 }
 
-/* Whatever byte changes, a scene or a reason comes out. */
+/* Any changed byte gives a scene or a reason. */
 TEST(survive_every_byte)
 {
     char error[256];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Nodes of a .glb: translations, rotations and uniform scales move the Gaussians, all else is refused with a reason. */
+/* Nodes of a .glb: translations, rotations and uniform scales move the Gaussians; everything else is refused with a
+ * reason. */
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
@@ -10,7 +11,7 @@
 
 #define Q "0.7071067811865476"
 
-/* A placement of mesh 0 by these nodes: 0, or -1. */
+/* Places mesh 0 by these nodes; 0, or -1. */
 static int place(const char *nodes, glb_placement *out, char error[256])
 {
     char text[2048];
@@ -24,7 +25,7 @@ static int place(const char *nodes, glb_placement *out, char error[256])
     return result;
 }
 
-/* Where (3, 5, 7) goes. */
+/* Checks where (3, 5, 7) goes. */
 static void check_point(const char *nodes, double x, double y, double z)
 {
     glb_placement to;
@@ -52,7 +53,7 @@ TEST(moves)
     check_point("[{\"mesh\": 0}]", 3, 5, 7);
     check_point("[{\"mesh\": 0, \"translation\": [1, 2, 3]}]", 4, 7, 10);
     check_point("[{\"mesh\": 0, \"scale\": [2, 2, 2]}]", 6, 10, 14);
-    /* a quarter about y: x y z to z y -x */
+    /* a quarter turn about y: x y z to z y -x */
     check_point("[{\"mesh\": 0, \"rotation\": [0, " Q ", 0, " Q "]}]", 7, 5, -3);
     /* first the scale, then the rotation, then the translation */
     check_point("[{\"mesh\": 0, \"translation\": [1, 2, 3], \"scale\": [2, 2, 2], \"rotation\": [0, " Q ", 0, " Q "]}]",
@@ -69,7 +70,7 @@ TEST(goes_up_the_tree)
                 15, 10, -6);
     /* unequal scales that cancel each other */
     check_point("[{\"scale\": [2, 1, 4], \"children\": [1]}, {\"mesh\": 0, \"scale\": [0.5, 1, 0.25]}]", 3, 5, 7);
-    /* a node beside it */
+    /* a node next to it */
     check_point("[{\"translation\": [9, 9, 9], \"children\": [1]}, {\"mesh\": 7}, {\"mesh\": 0}]", 3, 5, 7);
 }
 

@@ -15,7 +15,7 @@ static int32_t noise(int32_t most)
     return (int32_t)(seed % (2 * (uint32_t)most + 1)) - most;
 }
 
-/* Associated Legendre function without the sign of Condon and Shortley, by its recurrences. */
+/* Returns the associated Legendre function without the Condon-Shortley sign, by its recurrences. */
 static double legendre(int l, int m, double x)
 {
     double before = 0, now = 1;
@@ -30,7 +30,7 @@ static double legendre(int l, int m, double x)
     return now;
 }
 
-/* The real harmonic of degree l and order m, from its definition in angles. */
+/* Returns the real harmonic of degree l and order m, from its definition in angles. */
 static double harmonic(int l, int m, const double d[3])
 {
     const int order = m < 0 ? -m : m;
@@ -40,7 +40,7 @@ static double harmonic(int l, int m, const double d[3])
         ratio /= i;
     }
     const double size = sqrt((2 * l + 1) / (4 * M_PI) * ratio) * legendre(l, order, d[2]);
-    const double sign = order % 2 == 1 ? -1 : 1; /* the sign that 3D Gaussian Splatting has */
+    const double sign = order % 2 == 1 ? -1 : 1; /* the sign used by 3D Gaussian Splatting */
     return m == 0 ? size : sign * M_SQRT2 * size * (m > 0 ? cos(order * angle) : sin(order * angle));
 }
 
@@ -86,7 +86,7 @@ TEST(agrees_with_float64)
     }
 }
 
-/* One coefficient at a time: none stands in the place of another. */
+/* Sets one coefficient at a time, which shows that no two are swapped. */
 TEST(has_the_order_of_the_files)
 {
     static const int32_t directions[][3] = {{3, 5, 7}, {-2, 9, 4}, {1, -1, 1}, {6, 2, -8},

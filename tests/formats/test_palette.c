@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Palettes: rows that differ keep rows of their own as long as there is room; means are those of their rows. */
+/* Palettes: different rows stay separate while there is room; shared rows are the means of their members. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 
 enum { COUNT = 3000, STRIDE = 48, WIDTH = PALETTE_WIDTH_MOST };
 
-/* Rows of `sets` kinds, each number of -most..most; a row's unused numbers are another's. */
+/* Makes rows of `sets` kinds with numbers in -most..most. */
 static int16_t *make_rows(uint32_t sets, int most)
 {
     int16_t *numbers = malloc(COUNT * STRIDE * sizeof *numbers);
@@ -23,7 +23,7 @@ static int16_t *make_rows(uint32_t sets, int most)
     return numbers;
 }
 
-/* The largest difference of a number to its palette's. */
+/* Returns the largest difference between a number and its palette's. */
 static double farthest(const int16_t *numbers, const palette *made)
 {
     double most = 0;
@@ -54,7 +54,7 @@ TEST(keeps_what_there_is_room_for)
     }
 }
 
-/* Squared differences of numbers to their palette's, in the mean. */
+/* Returns the mean squared difference between numbers and their palette's. */
 static double mean_square(const int16_t *numbers, const palette *made)
 {
     double sum = 0;
@@ -67,7 +67,8 @@ static double mean_square(const int16_t *numbers, const palette *made)
     return sum;
 }
 
-/* Without room for all: so many rows, each the mean of what it stands for, and far nearer than one mean for all. */
+/* Without room for all rows: the palette is full, each entry is its members' mean, and errors are far smaller than
+ * with one mean for all. */
 TEST(shares_what_is_alike)
 {
     int16_t *numbers = make_rows(40, 5000), *near = make_rows(COUNT, 100); /* forty crowds */

@@ -9,7 +9,7 @@
 
 #define COUNT 2000u
 
-/* Gaussian i: a disc of radius `radius[i]`, turned, four times as wide as high, nearly flat. */
+/* Makes Gaussian i a disc of radius `radius[i]`, rotated, four times as wide as high, nearly flat. */
 static void make_scene(scene_file *scene, const double *radius, uint32_t count, int exponent)
 {
     *scene = (scene_file){.frame = {.exponent = exponent}, .count = count};
@@ -46,8 +46,8 @@ TEST(test_bins)
     scene_file scene;
     splat_scales list[2];
     for (uint32_t i = 0; i < COUNT; i++) {
-        radius[0][i] = 1.1 * exp2(i % 8);       /* eight octaves' beginnings */
-        radius[1][i] = i == 0 ? 1e-6 : 1.1 / 4; /* one that stands alone widens nothing */
+        radius[0][i] = 1.1 * exp2(i % 8);       /* the beginnings of eight octaves */
+        radius[1][i] = i == 0 ? 1e-6 : 1.1 / 4; /* a single small one widens nothing */
     }
     for (int s = 0; s < 2; s++) {
         make_scene(&scene, radius[s], COUNT, 0);
@@ -64,8 +64,8 @@ TEST(test_bins)
         assert_int_equal(counts[b], b >= 8 && b % 4 == 0 ? COUNT / 8 : 0);
     }
     scale_bins_fill(&bins, &list[1], counts);
-    assert_int_equal(counts[0], COUNT); /* what is less, too */
-    /* what is more */
+    assert_int_equal(counts[0], COUNT); /* lower values included */
+    /* higher values included */
     scale_bins narrow = scale_bins_of(&list[1], 1);
     assert_int_equal(narrow.count, 1);
     scale_bins_fill(&narrow, &list[0], counts);

@@ -6,7 +6,7 @@
 #include "scene/scene_turn.h"
 #include "test.h"
 
-/* The sum of the harmonics in a direction. */
+/* Returns the sum of the harmonics in a direction. */
 static double seen(double rest[HARMONICS_REST_MOST][3], const double direction[3])
 {
     double values[HARMONICS_REST_MOST], sum = 0;
@@ -67,7 +67,7 @@ TEST(turns_all_alike)
     }
 }
 
-/* Not only between axes. */
+/* Angles other than between axes. */
 TEST(turns_by_any_angle)
 {
     static const double rotations[][4] = {
@@ -100,7 +100,7 @@ TEST(points_up)
     assert_int_equal(scene_up_named(""), SCENE_UP_UNKNOWN);
 }
 
-/* From a file to a scene and back nothing changes; without --up, x is right, y down and z forward in a scene. */
+/* Reading and writing a file changes nothing; without --up, a scene has x right, y down and z forward. */
 TEST(knows_the_axes_of_formats)
 {
     const double point[3] = {1, 2, 3}, rub[3] = {1, -2, -3}, luf[3] = {-1, -2, 3}, rbu[3] = {1, 3, 2},

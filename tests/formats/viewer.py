@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""viewer.py TRIM3R VIEWER [FOLDER]: a folder of pictures with poses becomes a scene by two commands. PlayCanvas's SuperSplat
-viewer, whose page and code lie in VIEWER, opens it in a headless Chromium and shows what trim3r draws from the same place.
-With FOLDER, what it looks like goes there."""
+"""viewer.py TRIM3R VIEWER [FOLDER]: two commands make a scene of a folder of pictures with poses. PlayCanvas's
+SuperSplat viewer, whose page and code lie in VIEWER, opens the scene in a headless Chromium and shows what trim3r draws
+from the same place. With FOLDER, screenshots go there."""
 import functools
 import http.server
 import json
@@ -21,7 +21,7 @@ TRIM3R, VIEWER = sys.argv[1:3]
 looks = sys.argv[3] if len(sys.argv) > 3 else None
 SIDE, FIELD = 256, 60  # pixels; degrees from edge to edge
 LEAST = 22  # dB between the two pictures; a camera that is off by a degree has 17
-FORMATS = (".ply", ".compressed.ply", ".sog")  # that the viewer opens
+FORMATS = (".ply", ".compressed.ply", ".sog")  # formats that the viewer opens
 program = browser.find()
 if program is None:
     skip("there is no Chromium (tools/setup --tests installs it)")
@@ -33,14 +33,14 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
 
 
 def served(folder):
-    """The folder on the loopback address: its server and its address."""
+    """Serves the folder on the loopback address; yields the server's address."""
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=folder))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     return server, f"http://127.0.0.1:{server.server_address[1]}"
 
 
 def own_folder(folder):
-    """Pictures with poses, as a user has them of COLMAP; here of the built-in room."""
+    """Writes pictures with poses as a user of COLMAP has them, here of the built-in room."""
     run(TRIM3R, "room", "--frames", 3, "-o", f"{folder}/room.mcap")
     run(TRIM3R, "build", f"{folder}/room.mcap", "--context", "0,1,2", "--head", "none", "--refine", 0, "--gaussians", 9,
         "--colmap", f"{folder}/own")
@@ -48,7 +48,7 @@ def own_folder(folder):
 
 
 def look_at(eye, target):
-    """Camera to world, as transforms.json has it (x right, y up, z backward), where y of the world points down."""
+    """Returns camera to world as in transforms.json (x right, y up, z backward); the world's y points down."""
     back = [a - b for a, b in zip(eye, target)]
     size = math.sqrt(sum(a * a for a in back))
     back = [a / size for a in back]
@@ -59,7 +59,7 @@ def look_at(eye, target):
 
 
 def ours(scene, eye, target, picture):
-    """What trim3r draws of the scene."""
+    """Renders the scene with trim3r."""
     focal = SIDE / 2 / math.tan(math.radians(FIELD / 2))
     with open(picture + ".json", "w", encoding="utf-8") as file:
         json.dump({"fl_x": focal, "fl_y": focal, "cx": SIDE / 2, "cy": SIDE / 2, "w": SIDE, "h": SIDE,
@@ -69,7 +69,7 @@ def ours(scene, eye, target, picture):
 
 
 def settings(eye, target):
-    """The viewer's own file of settings. It shows a .ply turned by half a turn about z, so that y points up."""
+    """Returns the viewer's settings. It turns a .ply by half a turn about z, so that y points up."""
     def turned(point):
         return [-point[0], -point[1], point[2]]
     off = {"enabled": False}
@@ -83,10 +83,10 @@ def settings(eye, target):
 
 
 def theirs(page, address, ending, picture):
-    """What the viewer shows of the scene."""
+    """Takes a screenshot of the scene in the viewer."""
     page.open(f"{address}/index.html?content=scene{ending}&webgl&noui&nofx&noanim")
     page.wait("window.isDrawn === true")
-    time.sleep(1)  # it sorts what it drew first
+    time.sleep(1)  # the viewer sorts what it drew first
     page.shot(picture)
     return picture
 

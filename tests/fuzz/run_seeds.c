@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* run_seeds [FOLDER...]: a fuzz target without a fuzzer, for the build with sanitizers. Runs every file of the folders,
- * each also with some bytes changed, and strings of random bytes: the same ones each time. */
+/* run_seeds [FOLDER...]: runs a fuzz target without a fuzzer, for the build with sanitizers, on every file of the
+ * folders, each also with some bytes changed, and on random bytes: the same ones each time. */
 #include <dirent.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -19,7 +19,7 @@ static uint32_t random_below(uint32_t bound)
     return (uint32_t)((state >> 33) % bound);
 }
 
-/* Gives the target a copy of exactly so many bytes, so that sanitizers notice a read beyond them. */
+/* Gives the target a copy of exactly its bytes, so that sanitizers notice a read beyond them. */
 static void run(const uint8_t *data, size_t size)
 {
     uint8_t *copy = malloc(size > 0 ? size : 1);
@@ -31,7 +31,7 @@ static void run(const uint8_t *data, size_t size)
     free(copy);
 }
 
-/* Runs the file as it is, with a few changed bytes, and truncated. */
+/* Runs the file unchanged, with a few changed bytes, and truncated. */
 static void run_file(const char *path)
 {
     static uint8_t data[MOST_FILE_BYTES], changed[MOST_FILE_BYTES];

@@ -41,7 +41,7 @@ DRIVER_INCLUDES = [ROOT / "runtime" / "include", ROOT / "runtime", ROOT / "platf
 
 
 def difference(got, expected):
-    """None, or a sentence that names the first line that differs."""
+    """Returns None, or a sentence that names the first line that differs."""
     got, expected = got.splitlines(), expected.splitlines()
     for here, there in zip(got, expected):
         if here != there:
@@ -91,7 +91,7 @@ def check_build(arguments):
 
 
 def replay(program, way=()):
-    """What is written down of the built-in recording: its own hash, and what `trim3r replay --json` says of it."""
+    """Returns the hash of the built-in recording and the output of `trim3r replay --json`."""
     with tempfile.TemporaryDirectory(prefix="trim3r-golden-") as folder:
         recording = pathlib.Path(folder) / "room.mcap"
         made = json.loads(output_of(program, "room", "--json", "-o", recording))

@@ -3,7 +3,8 @@
  * "configuration stage hash". It uses the runtime, the room and a shipped head alone, so that it builds wherever
  * they do.
  *
- * What must not matter can be varied: --arena min|full|ten, --tasks plain|reverse, --workers 1..8 of those tasks,
+ * Options vary everything without influence: --arena min|full|ten, --tasks plain|reverse, --workers 1..8 of those
+ * tasks,
  * --moved (the arena is copied to another place and attached again between any two calls). */
 #include <inttypes.h>
 #include <stdbool.h>
@@ -23,20 +24,20 @@ enum { MOST_WIDTH = 128, MOST_HEIGHT = 96, MOST_PIXELS = MOST_WIDTH * MOST_HEIGH
 
 typedef struct configuration {
     const char *name;
-    uint32_t frame_width, frame_height; /* as captured */
-    uint32_t width, height;             /* working size */
+    uint32_t frame_width, frame_height; /* captured */
+    uint32_t width, height;             /* working */
     t3r_pixel_format format;
     t3r_distortion distortion;
     t3r_wavelet wavelet;
-    uint32_t levels, clusters; /* 0 = as many as the points ask for */
+    uint32_t levels, clusters; /* 0: chosen by the number of points */
     t3r_allocation allocate;
     t3r_head head;
     uint32_t gaussians;
     bool holes;
-    uint32_t bits; /* of a learned head's weights, made up here, and activations; 0 = the shipped one, or no learned */
+    uint32_t bits; /* bits of a made-up learned head's weights and activations; 0: the shipped head, or none */
     t3r_depth depth;
-    bool unadapted; /* splats stay as small as pixels */
-    bool displaced; /* views but the first stand where they are not said to, so that alignment moves them */
+    bool unadapted; /* splats as small as pixels */
+    bool displaced; /* all views but the first have wrong poses, which alignment corrects */
 } configuration;
 
 static const configuration configurations[] = {
@@ -74,11 +75,11 @@ typedef struct variation {
     arena_size arena;
     bool reverse_tasks;
     uint32_t workers;
-    uint32_t cpu; /* T3R_CPU_...: the features whose loops are taken */
+    uint32_t cpu; /* T3R_CPU_...: features whose kernels are used */
     bool moved;
 } variation;
 
-/* Ten times what the largest configuration asks for; two, so that one can move to the other. */
+/* Ten times the largest configuration's arena; two arenas, so that one can move to the other. */
 enum {
     ARENA_ROOM =
         10 * T3R_FULL_BYTES_(T3R_SHAPE_(96, 96, 2, 2 * 96 * 96, 300, 96, 96, T3R_HEAD_COLUMN_BYTES, 1, 4, 1, 1, 0, 0))
@@ -95,7 +96,7 @@ static int level(int value)
     return value < 0 ? 0 : value > 255 ? 255 : value;
 }
 
-/* Any deterministic coding will do: both sides of every comparison are made by this one. */
+/* Any deterministic coding will do: both sides of every comparison use this one. */
 static void luma_and_chroma(const uint8_t *pixel, uint8_t *y, uint8_t *u, uint8_t *v)
 {
     int r = pixel[0], g = pixel[1], b = pixel[2];
@@ -104,7 +105,7 @@ static void luma_and_chroma(const uint8_t *pixel, uint8_t *y, uint8_t *u, uint8_
     *v = (uint8_t)level(128 + (112 * r - 94 * g - 18 * b) / 256);
 }
 
-/* The room's colours in the pixel format of a camera. */
+/* Converts the room's colours to the camera's pixel format. */
 static void encode(t3r_frame *frame)
 {
     uint32_t width = frame->width, height = frame->height;
@@ -151,7 +152,7 @@ static void encode(t3r_frame *frame)
     frame->stride_bytes[1] = width;
 }
 
-/* Depth as a sensor gives it: single pixels, small blobs and one large area without a measurement. */
+/* Depth like a sensor's: single pixels, small blobs and one large area without a measurement. */
 static void encode_depth(t3r_frame *frame, bool holes)
 {
     uint32_t width = frame->width, height = frame->height;
@@ -169,7 +170,7 @@ static void encode_depth(t3r_frame *frame, bool holes)
     frame->depth_unit_q40 = ROOM_DEPTH_UNIT_Q40;
 }
 
-/* A lens on the pinhole pictures of the room: not what a lens would show, but every path of the undistortion. */
+/* Puts a lens on the room's pinhole pictures: they show no true distortion, but take every path of the undistortion. */
 static void put_lens(t3r_camera *camera, t3r_distortion distortion)
 {
     static const int32_t coefficients_q24[T3R_DISTORTION_COUNT][5] = {
@@ -186,9 +187,9 @@ typedef struct run {
     const char *step; /* "add_view", "reconstruct", ... */
     t3r_runtime *rt;
     size_t arena_bytes;
-    uint32_t here;          /* which of the two arenas holds the state */
-    const uint8_t *weights; /* NULL but for the learned head */
-    uint8_t *made;          /* they were made up */
+    uint32_t here;          /* index of the arena that holds the state */
+    const uint8_t *weights; /* NULL except for the learned head */
+    uint8_t *made;          /* made up; to be freed */
     size_t weights_bytes;
 } run;
 
@@ -202,7 +203,8 @@ static void on_stage_hash(void *user, t3r_stage stage, uint64_t hash)
     print_hash(user, t3r_stage_name(stage), hash);
 }
 
-/* The last task first, workers in turn: nobody may lean on one worker doing everything, or on the order. */
+/* Runs the last task first, by the workers in turn: results must not depend on the order, or on one worker running
+ * all. */
 static void run_in_reverse(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
                            void *context)
 {
@@ -275,7 +277,7 @@ static t3r_status begin_run(run *r, bool stream)
     if (r->arena_bytes > sizeof arenas[0]) {
         return T3R_ERR_ARENA;
     }
-    /* whatever the memory held before must not matter either */
+    /* the memory's earlier contents must not matter either */
     memset(arenas[0], r->ways.arena == ARENA_MIN ? 0xff : 0, r->arena_bytes);
     r->here = 0;
     r->step = "init";
@@ -286,7 +288,7 @@ static t3r_status begin_run(run *r, bool stream)
     return status == T3R_OK ? t3r_set_ablation(r->rt, &(t3r_ablation){.unadapted = c->unadapted}) : status;
 }
 
-/* Frame `index` of the room as the configuration's camera takes it. */
+/* Makes frame `index` of the room as the configuration's camera captures it. */
 static void capture(const configuration *c, uint32_t index, t3r_frame *frame, t3r_camera *camera)
 {
     *frame = (t3r_frame){.format = c->format, .width = c->frame_width, .height = c->frame_height};
@@ -307,7 +309,7 @@ static t3r_status add_view(run *r, uint32_t index)
     return status == T3R_OK ? t3r_add_view(r->rt, &frame, &camera) : status;
 }
 
-/* Importances in blobs, with ties, one plane for both views; rows have a gap. */
+/* Builds with importances in blobs, with ties; one plane for both views; rows have a gap. */
 static t3r_status build(run *r, uint32_t rebudgeted, t3r_scene *scene)
 {
     enum { GAP = 3 };
@@ -326,7 +328,7 @@ static t3r_status build(run *r, uint32_t rebudgeted, t3r_scene *scene)
     return rebudgeted != 0 ? t3r_rebuild(r->rt, &request, scene) : t3r_reconstruct(r->rt, &request, scene);
 }
 
-/* Draws the view between the context views and prints what the caller sees of it. */
+/* Draws the view between the context views and prints the hashes of the outputs. */
 static t3r_status draw(run *r, const char *step)
 {
     static uint8_t view[MOST_PIXELS * 3];
@@ -384,7 +386,7 @@ static int run_configuration(const configuration *c, variation ways)
     return status == T3R_OK ? 0 : failed(&r, status);
 }
 
-/* A stream with two keyframes at hand: the map in each step, and a view of it in the end. */
+/* A stream with two live keyframes: hashes of the map after each step, and of a view of the final map. */
 static const configuration streamed = {.name = "stream",
                                        .frame_width = 128,
                                        .frame_height = 96,

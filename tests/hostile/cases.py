@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hostile files: each a name, what kind of input it is, what writes it, and words that its refusal must say ("" where any
-will do, None where it may also be read)."""
+"""Hostile files: for each a name, the kind of input, a function that writes it, and words that its refusal must
+contain ("" for any, None if it may also be read)."""
 import gzip
 import json
 import os
@@ -15,7 +15,7 @@ CASES = []
 
 
 def case(kind, name, why=""):
-    """The function below gives the file's bytes, or makes a folder at the path that it takes."""
+    """Adds a case: the decorated function returns the file's bytes, or makes a folder at the path that it gets."""
     def note(make):
         CASES.append((kind, name, why, make))
         return make
@@ -30,7 +30,7 @@ def given(kind, name, data, why=""):
 
 
 def filled(codec, mib, chunks=1, others=()):
-    """Chunks of one image each, of that many MiB of zeros."""
+    """Returns chunks of one image each, of that many MiB of zeros."""
     out = [f.channels()]
     for _ in range(chunks):
         head = f.image(10**9, 4096, 4096, data=b"", data_bytes=mib * MIB)
@@ -42,13 +42,13 @@ def filled(codec, mib, chunks=1, others=()):
 
 
 def attachment(mib):
-    """What no frame needs: bytes that let chunks unpack to more."""
+    """Returns a record that no frame needs; its bytes allow chunks to unpack to more."""
     return f.record(9, struct.pack("<QQ", 0, 0) + f.text("a") + f.text("b") + struct.pack("<Q", mib * MIB) + bytes(mib * MIB) +
                     struct.pack("<I", 0))
 
 
 def poses(count):
-    """A chunk of as many poses, each the same bytes."""
+    """Returns a chunk of `count` poses, each of the same bytes."""
     unit = f.message(4, 10**9, f.pose(10**9))
     return f.mcap(f.channels(), attachment(6), f.chunk("lz4", f.lz4_repeated(unit, count), len(unit) * count))
 
@@ -66,7 +66,7 @@ given("recording", "chunk-lies-less.mcap", f.mcap(f.chunk("zstd", f.zstd([(0, 9 
 given("recording", "chunk-of-2^63.mcap", f.mcap(f.chunk("lz4", b"abcd", 1 << 63)), "may unpack to")
 given("recording", "chunk-uncompressed-lies.mcap", f.mcap(f.chunk("", b"abcd", 1 << 40)), "uncompressed_size")
 given("recording", "chunk-in-chunk.mcap",
-      lambda: f.mcap(f.chunk("", *[(c := f.chunk("", b"", 0)), len(c)])), "may not stand in a chunk")
+      lambda: f.mcap(f.chunk("", *[(c := f.chunk("", b"", 0)), len(c)])), "may not be in a chunk")
 given("recording", "chunk-crc.mcap", f.mcap(f.chunk("", f.channels(), len(f.channels()), 7)), "CRC")
 given("recording", "zstd-size-of-2^62.mcap", f.mcap(f.chunk("zstd", f.zstd([b"abc"], 1 << 62), 3)))
 given("recording", "record-of-2^63.mcap", f.mcap(f.record(5, b"", 1 << 63)), "past the file's end")
@@ -111,7 +111,7 @@ given("recording", "escapes-in-schema.mcap",
 
 
 def bag(*messages, kind="tf2_msgs/msg/TFMessage", topic="/tf"):
-    """Two frames without poses, and messages of another topic."""
+    """Returns two frames without poses, and messages of another topic."""
     return f.mcap(f.channels(names=("image", "camera_info")), f.channel(9, topic, kind), *[f.message(9, 10**9, m) for m in messages],
                   *[f.message(1, 10**9 + i, f.image(10**9 + i)) + f.message(2, 10**9 + i, f.camera_info(10**9 + i)) for i in (0, 1)])
 
@@ -144,7 +144,7 @@ given("recording", "escapes-in-compression.mcap", f.mcap(f.chunk(f.ESCAPE, b"", 
 
 
 
-# --- files that are none ---------------------------------------------------------------------------------------------
+# --- other files -----------------------------------------------------------------------------------------------------
 
 
 @case("path", "pipe.mcap", "not a regular file")
@@ -340,7 +340,7 @@ def circle(path):
 
 
 def colmap(path, cameras=f.colmap_cameras(), images=f.colmap_images()):
-    """A model of COLMAP in text or bytes."""
+    """Writes a model of COLMAP in text or binary."""
     os.makedirs(f"{path}/sparse/0")
     for name, content in (("cameras", cameras), ("images", images)):
         binary = isinstance(content, bytes)
@@ -404,7 +404,7 @@ def colmap_pipe(path):
 
 
 def dense(path, data):
-    """A model with one dense map."""
+    """Writes a model with one dense map."""
     colmap(path)
     for name, content in (("images/a.png", f.png(16, 16)), ("stereo/depth_maps/a.png.geometric.bin", data)):
         os.makedirs(os.path.dirname(f"{path}/{name}"))
@@ -428,7 +428,7 @@ def long_map(path):
 
 
 def pose_files(path, pose="1 0 0 0 0 1 0 0 0 0 1 0", lens="20 0 8 0 20 8 0 0 1", name="0"):
-    """A folder of one pose, as ScanNet has them."""
+    """Writes a folder of one pose, in ScanNet's form."""
     for folder, file, content in (("pose", f"{name}.txt", pose), ("intrinsic", "intrinsic_color.txt", lens)):
         os.makedirs(f"{path}/{folder}")
         with open(f"{path}/{folder}/{file}", "w", encoding="utf-8") as text:
@@ -466,7 +466,7 @@ def far_depth(path):
 
 
 def seven_scenes(path, pose, name="frame-0"):
-    """A sequence of one frame, as 7-Scenes has them."""
+    """Writes a sequence of one frame, in 7-Scenes' form."""
     os.makedirs(path)
     for file, content in (("camera-intrinsics.txt", b"20 0 8 0 20 8 0 0 1"), (f"{name}.pose.txt", pose), (f"{name}.color.png", f.png(16, 16))):
         with open(f"{path}/{file}", "wb") as out:
@@ -491,7 +491,7 @@ def many_poses(path):
 
 
 def record3d(path, depth=b"", **changes):
-    """A folder of one frame, as Record3D has them."""
+    """Writes a folder of one frame, in Record3D's form."""
     os.makedirs(f"{path}/rgbd")
     for name, content in (("0.png", f.png(16, 16)), ("0.depth", depth)):
         with open(f"{path}/rgbd/{name}", "wb") as file:
@@ -536,7 +536,8 @@ def many_record3d_poses(path):
 
 
 def exr_depth(path, depth):
-    """A folder of one frame, as nerfstudio has them, whose depth is OpenEXR. Builds without the library refuse it."""
+    """Writes a folder of one frame, in nerfstudio's form, whose depth is OpenEXR. Builds without the library refuse
+    it."""
     os.makedirs(path)
     for name, content in (("0.png", f.png(16, 16)), ("0.exr", depth)):
         with open(f"{path}/{name}", "wb") as file:
@@ -619,7 +620,7 @@ given("points", "deep-shape.npy", f.npy_head("(" * 4000 + "1"), "")
 
 
 def colliding(count):
-    """Texts that share the low bits of their FNV-1a hashes, by search."""
+    """Finds texts that share the low bits of their FNV-1a hashes."""
     found = {}
     for i in range(1 << 20):
         text, value = b"%x" % i, 2166136261

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bytes of every format that trim3r reads, right or wrong as asked: the standard library alone."""
+"""Bytes of every format that trim3r reads, right or wrong as requested; uses only the standard library."""
 import io
 import json
 import struct
@@ -143,7 +143,7 @@ def lz4(head, byte, count):
 
 
 def lz4_repeated(unit, times):
-    """Returns an LZ4 frame of so many times the same bytes, at least 19 of them."""
+    """Returns an LZ4 frame of the same bytes repeated `count` times, at least 19 of them."""
     out = struct.pack("<I", 0x184D2204) + b"\x40\x70"
     out += bytes([xxh32(b"\x40\x70") >> 8 & 255])
     while times:
@@ -159,7 +159,7 @@ def lz4_repeated(unit, times):
 
 
 def xxh32(data):
-    """xxHash of fewer than 16 bytes."""
+    """Computes xxHash of fewer than 16 bytes."""
     mask, p1, p2, p3, p5 = 0xFFFFFFFF, 2654435761, 2246822519, 3266489917, 374761393
     h = (p5 + len(data)) & mask
     for byte in data:
@@ -202,7 +202,7 @@ def gaussians(count, stride=None, **more):
 
 
 def webp(width, height):
-    """The head of a lossless picture without its texels."""
+    """Returns the head of a lossless picture without its texels."""
     data = b"\x2f" + struct.pack("<I", width - 1 | height - 1 << 14) + bytes(27)
     return b"RIFF" + struct.pack("<I", 12 + len(data)) + b"WEBPVP8L" + struct.pack("<I", len(data)) + data
 
@@ -314,7 +314,7 @@ def channel(number, topic, kind):
 
 
 def frame(i, **wrong):
-    """The four messages of frame i; a message of `wrong` in the place of the right one."""
+    """Returns the four messages of frame i; one from `wrong` replaces the right one."""
     stamp = i * 33 * 10**6 + 10**9
     right = {"camera_info": camera_info(stamp), "pose": pose(stamp, (0.01 * i, 0, 0)),
              "depth": image(stamp, encoding="16UC1", data=struct.pack("<H", 1500) * 256), "image": image(stamp)}
@@ -348,7 +348,7 @@ def npy_head(shape, kind="<f4", order="False"):
 
 
 def deflated(head, byte, count):
-    """Raw deflate of head and `count` bytes, its CRC and length."""
+    """Returns raw deflate of head and `count` bytes, its CRC and length."""
     packer, crc, out, block = zlib.compressobj(9, zlib.DEFLATED, -15), zlib.crc32(head), [], bytes([byte]) * (1 << 20)
     out.append(packer.compress(head))
     for start in range(0, count, 1 << 20):
@@ -396,11 +396,11 @@ def safetensors(header, data=b"", length=None):
 
 
 def colmap_cameras(width=16):
-    """cameras.bin with one pinhole camera."""
+    """Returns cameras.bin with one pinhole camera."""
     return struct.pack("<QIiQQ4d", 1, 7, 1, width, 16, 20, 20, 8, 8)
 
 
 def colmap_images(count=1, name="a.png", points=0, rotation=(1, 0, 0, 0)):
-    """Returns images.bin with so many images, all with the same bytes."""
+    """Returns images.bin with `count` images, all of the same bytes."""
     one = struct.pack("<I7dI", 1, *rotation, 0, 0, 0, 7) + name.encode() + b"\0" + struct.pack("<Q", points)
     return struct.pack("<Q", count) + one * count

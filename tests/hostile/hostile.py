@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every command that reads, over files that were made to hurt it: each is read or refused with one line that names it, in
-3 seconds of the processor and 512 MB, and nothing of its text reaches the terminal raw.
+"""Every command that reads, with hostile files: each is read or refused with one line that names it, in 3 seconds of
+processor time and 512 MB, and none of its text reaches the terminal unescaped.
 
-hostile.py TRIM3R [--table]
+hostile.py TRIM3R [--table] [--write]
+
+--table prints what each file took and how it was refused, --write puts the summary into docs/study/hostile.md.
 """
+import collections
 import os
+import pathlib
 import re
 import resource
 import subprocess
@@ -14,25 +18,14 @@ import tempfile
 from cases import CASES
 import formats
 
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools", "study", "scripts"))
+from measured import table, write_block  # noqa: E402
+
 SECONDS, MEGABYTES = 3.0, 512
 TRIM3R = os.path.abspath(sys.argv[1])
-TABLE = "--table" in sys.argv[2:]
+TABLE, WRITE = ("--table" in sys.argv[2:]), ("--write" in sys.argv[2:])
 RAW = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f]|[\u2028-\u202e\u2066-\u2069]")
-PAGE = """# Hostile files
-
-Files that were made to hurt their readers, and what every command that reads them did. The test `hostile` makes them anew
-and holds each command to 3 seconds of the processor and 512 MB, to one line of text, and to text without control
-characters. [SECURITY](../../SECURITY.md) has the limits that they break.
-
-Seconds and megabytes are those of the command that took most; exit statuses are one a command. 0 is read, 1 is refused. The
-message is that of the first refusal. The machine is a shared x86-64 of two cores. This page is what
-
-```sh not-run: it is the test of these files, which takes a minute
-python3 tests/hostile/hostile.py build/release/trim3r --table > docs/study/hostile.md
-```
-
-prints.
-"""
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "study" / "hostile.md"
 failures = []
 
 
@@ -75,7 +68,7 @@ def limit():
 
 
 def run(command):
-    """Status, output, errors, seconds of the processor, megabytes."""
+    """Returns status, output, errors, seconds of processor time, megabytes."""
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         # pylint: disable=subprocess-popen-preexec-fn
         process = subprocess.Popen([TRIM3R, *command], stdin=subprocess.DEVNULL, stdout=out, stderr=err, preexec_fn=limit)
@@ -104,7 +97,7 @@ def check_run(name, command, why, ended):
         check(RAW.search(text) is None, f"{what}: raw {RAW.search(text)} in its {stream}: {text[:200]!r}")
     if status != 0:
         lines = message.strip().split("\n")
-        most = 2 if command[0] == "capture" else 1  # what a frame lacks, then what that means
+        most = 2 if command[0] == "capture" else 1  # what a frame lacks, then the consequence
         check(len(lines) <= most and all(line.startswith(f"trim3r {command[0]}: ") for line in lines),
               f"{what}: not one line: {message[:300]!r}")
         check(out == b"", f"{what}: output beside an error: {out[:100]!r}")
@@ -116,7 +109,7 @@ def check_run(name, command, why, ended):
 
 
 def check_case(kind, name, why, path):
-    """Runs all commands; the worst of each, and the first refusal."""
+    """Runs all commands; returns the maxima, and the first refusal."""
     worst, ended = [0.0, 0.0], []
     refusal = ""
     for command in commands(kind, path, "out/it"):
@@ -141,7 +134,7 @@ def size_text(path):
 
 
 def make_good():
-    """Makes the good files that hostile files are read with."""
+    """Makes the valid files that are read together with hostile ones."""
     for command in (("room", "-o", "room.mcap", "--frames", "3", "--size", "64x64"),
                     ("build", "room.mcap", "--context", "0,2", "--gaussians", "40", "-o", "room.ply")):
         subprocess.run([TRIM3R, *command], check=True, capture_output=True)
@@ -159,7 +152,7 @@ def make_good():
 
 
 def place(kind, name, make):
-    """Makes the file or folder in a process of its own, because its memory would count for processes started later."""
+    """Makes the file or folder in a separate process, because its memory would count for processes started later."""
     path = f"pictures/{name}" if kind == "picture" else name
     child = os.fork()
     if child == 0:
@@ -175,11 +168,36 @@ def place(kind, name, make):
 
 
 def check_arguments():
-    """Names on the command line, which a shell takes from folders of others."""
+    """Checks names on the command line, which a shell takes from other people's folders."""
     for name in (f"{formats.ESCAPE}.mcap", "line\nbreak.ply", b"\xff.mcap"):
         ended = run(("info", name))
         check(ended[0] == 2 and ended[1] == b"", f"{name!r}: status {ended[0]}")
         check(RAW.search(ended[2].decode("utf-8", "replace")) is None, f"{name!r}: raw in {ended[2]!r}")
+
+
+def report(rows):
+    if TABLE:
+        print("| input | size | s | MB | exit status | message |\n|---|---:|---:|---:|---|---|")
+        for _, name, size, worst, ended, refusal in rows:
+            refusal = refusal.split(": ", 1)[-1].replace("|", "\\|")
+            statuses = " ".join(str(status) for status in ended)
+            print(f"| `{name}` | {size} | {worst[0]:.2f} | {worst[1]:.0f} | {statuses} | {refusal[:200] or 'read'} |")
+    if WRITE:
+        write_block(PAGE, "hostile", summary(rows))
+    print(f"{len(rows)} files")
+
+
+def summary(rows):
+    """Yields a row a kind of file: how many there are, how many every command refused, and the worst of them."""
+    kinds = collections.defaultdict(list)
+    for kind, name, _, worst, ended, _ in rows:
+        kinds[kind].append((name, worst, 0 not in ended))
+    lines = []
+    for kind, found in kinds.items():
+        slowest, largest = (max(found, key=lambda row, i=i: row[1][i]) for i in (0, 1))
+        lines.append([kind, str(len(found)), str(sum(refused for *_, refused in found)), f"{slowest[1][0]:.2f}", f"`{slowest[0]}`",
+                      f"{largest[1][1]:.0f}", f"`{largest[0]}`"])
+    return table(("read as", "files", "refused by all", "most s", "by", "most MB", "by"), lines)
 
 
 def main():
@@ -190,18 +208,9 @@ def main():
         path = place(kind, name, make)
         size = size_text(path)
         worst, ended, refusal = check_case(kind, name, why, path)
-        rows.append((name, size, worst, ended, refusal))
+        rows.append((kind, name, size, worst, ended, refusal))
         subprocess.run(["rm", "-rf", path], check=True)
-    if TABLE:
-        print(PAGE)
-        print("| input | size | s | MB | exit status | message |\n|---|---:|---:|---:|---|---|")
-        for name, size, worst, ended, refusal in rows:
-            refusal = refusal.split(": ", 1)[-1].replace("|", "\\|")
-            statuses = " ".join(str(status) for status in ended)
-            print(f"| `{name}` | {size} | {worst[0]:.2f} | {worst[1]:.0f} | {statuses} | {refusal[:200] or 'read'} |")
-    else:
-        slowest, largest = max(rows, key=lambda row: row[2][0]), max(rows, key=lambda row: row[2][1])
-        print(f"{len(rows)} files; slowest {slowest[0]}, {slowest[2][0]:.2f} s; largest {largest[0]}, {largest[2][1]:.0f} MB")
+    report(rows)
 
 
 with tempfile.TemporaryDirectory() as work:

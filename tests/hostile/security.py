@@ -14,7 +14,7 @@ failures = []
 
 
 def value(text):
-    """The number of a #define: a shifted or plain integer."""
+    """Returns the number of a #define: a shifted or plain integer."""
     text = re.sub(r"U?INT(?:32|64)_C\((\d+)\)", r"\1", text.split("/*")[0]).strip()
     match = re.fullmatch(r"\(?(\d+)(?: << (\d+))?\)?", text)
     return int(match[1]) << int(match[2] or 0)

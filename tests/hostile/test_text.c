@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Text of others: what is cleaned, what stays, and that reasons and messages are. */
+/* Foreign text: which characters are replaced and which are kept, and that reasons and messages are cleaned. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""trim3r import, info and room as a user meets them: outputs, messages, exit statuses, and nothing left behind.
+"""trim3r import, info and room for users: outputs, messages, exit statuses, and no partial files.
 
 commands.py TRIM3R DATA
 """
@@ -45,7 +45,7 @@ def scene(folder, count=3, change=None):
 
 
 def refused(name, folder, expected, *options):
-    """Exit status 1, one line that says what is expected, no recording and no partial one."""
+    """Expects exit status 1, one line with the reason, and neither a complete nor a partial recording."""
     target = f"{work}/out/{name}.mcap"
     os.makedirs(os.path.dirname(target), exist_ok=True)
     status, out, error = run("import", folder, "-o", target, *options)
@@ -76,7 +76,7 @@ def test_good_folder():
     check(info["streams"][0]["last_ns"] == 2 * 10**9 // 30, "stamps 1/30 s apart")
     status, out, _ = run("info", target)
     check(status == 0 and "--context 0,2 --target 1" in out and "3 frames" in out, "info as text")
-    # the same again gives the same bytes, over the old file
+    # a second run gives the same bytes, over the old file
     with open(target, "rb") as file:
         before = file.read()
     run("import", folder, "-o", target)
@@ -184,7 +184,7 @@ def test_info_refuses():
 
 
 def test_stereo_pair():
-    """Checks two views: the triplet's context names the one that is not the target twice."""
+    """Checks two views: the triplet's context names the non-target one twice."""
     def pair(top):
         top.update(trim3r_triplets=[{"context": [1, 1], "target": 0}])
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Folders that others make: the room, written as each kind of folder, is imported as it is: the same pictures, depth,
-intrinsics and poses. What a folder lacks or holds in vain is told.
+"""Folders from other programs: the room, written as each kind of folder, is imported with the same pictures, depth,
+intrinsics and poses. Missing or unused contents are reported.
 
 folders.py TRIM3R
 """
@@ -55,7 +55,7 @@ def pictures(path, colour="{}.png", depth=None):
 
 
 def imported(path, *options):
-    """The report, and the recording."""
+    """Imports the folder; returns the report and the recording."""
     target = f"{path}.mcap"
     status, out, error = run("import", path, "-o", target, "--json", *options)
     check(status == 0, f"{path} {options}: {error}")
@@ -69,7 +69,7 @@ def refused(path, why, *options):
 
 
 def same(name, got, depth=True):
-    """The room again: poses and intrinsics to the rounding of the file and of fixed point."""
+    """Checks that it is the room: poses and intrinsics up to the rounding of the file and of fixed point."""
     for what in ("image", "depth") if depth else ("image",):
         check(np.array_equal(got.get(what, []), ROOM[what]), f"{name}: {what}")
     check(depth or "depth" not in got, f"{name}: there is depth")
@@ -78,7 +78,6 @@ def same(name, got, depth=True):
         check(off < most, f"{name}: {what} is off by {off}")
 
 
-# --- transforms.json -------------------------------------------------------------------------------------------------
 
 
 def transforms(path, depth_key="depth_file_path", change=None, **top):
@@ -123,12 +122,11 @@ def test_nerfstudio():
     refused(transforms("no_unit", "depth_path"), "integer_depth_scale: missing")
 
 
-# --- COLMAP ----------------------------------------------------------------------------------------------------------
 
 
 def colmap_lists():
-    """(number, model, sides, parameters) of a camera, and (number, quaternion, translation, camera, name) of images, in
-    an order of their own."""
+    """Returns (number, model, sides, parameters) of a camera, and (number, quaternion, translation, camera, name) of
+    images, in another order."""
     k = ROOM["camera_info"][0]
     camera = (7, 1, (WIDTH, HEIGHT), (k[0, 0], k[1, 1], k[0, 2] + 0.5, k[1, 2] + 0.5))
     images = []
@@ -208,7 +206,7 @@ def test_pictures_without_pose():
 
 
 def test_stereo_of_colmap():
-    """Checks that build without depth says what it needs, and makes a scene with it."""
+    """Checks that build without depth names the missing depth, and makes a scene by stereo."""
     path = colmap("stereo")
     imported(path)
     arguments = ("build", "stereo.mcap", "--context", "0,1", "--gaussians", "50", "-o", "stereo.ply")
@@ -243,7 +241,7 @@ def test_colmap_refusals():
 
 
 def test_colmap_itself():
-    """Checks what COLMAP writes from this text, if it is installed."""
+    """Checks COLMAP's output for this text, if it is installed."""
     if shutil.which("colmap") is None:
         print("without COLMAP's own files: colmap is not there")
         return
@@ -255,7 +253,6 @@ def test_colmap_itself():
         same(f"COLMAP's own {form}", imported(f"{path}/sparse/{number}")[1], depth=False)
 
 
-# --- pose texts ------------------------------------------------------------------------------------------------------
 
 
 def matrix_text(m):
@@ -263,7 +260,7 @@ def matrix_text(m):
 
 
 def pose_files(path, depth=True, lens=True):
-    """Writes the files as ScanNet's exporter does."""
+    """Writes the files like ScanNet's exporter."""
     pictures(path, "color/{}.png", "depth/{}.png" if depth else None)
     for i, pose in enumerate(ROOM["pose"]):
         write(f"{path}/pose/{i}.txt", matrix_text(pose))
@@ -305,7 +302,7 @@ def test_lost_poses():
 
 
 def test_depth_of_another_lens():
-    """Depth of half the size, through a lens 1.25 times as wide: a plane keeps its distance, and an edge its place."""
+    """Depth of half the size, with a lens 1.25 times as wide: a plane keeps its distance, and an edge its place."""
     path = pose_files("wide")
     k = ROOM["camera_info"][0]
     width, height = WIDTH // 2, HEIGHT // 2
@@ -340,8 +337,8 @@ def test_pose_file_refusals():
 
 
 def test_depth_from_beside():
-    """A depth camera 4 cm to the right of the colour camera, both a step ahead of the device: a plane at 2 m moves by
-    its disparity."""
+    """A depth camera 4 cm to the right of the colour camera, both one step in front of the device: a plane at 2 m
+    moves by its disparity."""
     path = pose_files("beside")
     k = ROOM["camera_info"][0]
     colour, beside = np.eye(4), np.eye(4)
@@ -362,7 +359,7 @@ def test_depth_from_beside():
 
 
 def seven_scenes(path, lens=True):
-    """Writes a sequence like 7-Scenes: all in one folder, with 65535 where nothing was measured."""
+    """Writes a sequence like 7-Scenes: one folder, with 65535 for missing depth."""
     pictures(path, "frame-{:06d}.color.png")
     for i, pose in enumerate(ROOM["pose"]):
         depth = np.array(ROOM["depth"][i])
@@ -386,11 +383,10 @@ def test_seven_scenes():
     same("a sequence below its lens", imported(seven_scenes("sequences/seq-01", False))[1] | {"depth": ROOM["depth"]})
 
 
-# --- dense maps of COLMAP --------------------------------------------------------------------------------------------
 
 
 def dense(path, ending="geometric", change=lambda data: data):
-    """Writes depth as COLMAP's patch_match_stereo does, in the room's lengths."""
+    """Writes depth like COLMAP's patch_match_stereo, in the room's lengths."""
     path = colmap(path, "sparse", colmap_binary)
     for i in range(FRAMES):
         metres = (ROOM["depth"][i] * UNIT).astype("<f4")
@@ -420,12 +416,11 @@ def test_dense_depth():
         refused(f"dense_{name}", why)
 
 
-# --- pictures that cannot be read ------------------------------------------------------------------------------------
 
 
 def test_unreadable():
-    """One bad picture is named and left out, with its triplets; only the depth is left out if that is bad. All bad:
-    refused."""
+    """One unreadable picture is named and left out, with its triplets; if only the depth is unreadable, only that is
+    left out. All unreadable: refused."""
     triplets = [{"context": [0, 2], "target": 1}, {"context": [0, 1], "target": 2}]
     jpeg = b"\xff\xd8\xff\xe0\0\x10JFIF\0\1\1\0\0\1\0\1\0\0"
     for name, content, why in (("cut", picture(ROOM["image"][1])[:900], "PNG: "), ("jpeg", jpeg, "JPEG: "), ("none", None, "No such file")):
@@ -457,7 +452,6 @@ def test_unreadable():
     check(imported(path)[0]["left_out"] == ["pose/1.txt: there is no picture of that name"], "a pose without its picture")
 
 
-# --- Record3D --------------------------------------------------------------------------------------------------------
 
 
 def record3d(path, as_exr=False, packed=False, change=None):
@@ -500,11 +494,10 @@ def test_record3d():
     check(report["left_out"] == ["more_poses/rgbd/3.jpg: No such file or directory"], f"more poses: {report}")
 
 
-# --- OpenEXR ---------------------------------------------------------------------------------------------------------
 
 
 def steps_of(lengths, unit):
-    """Floats of 32 bits in steps: halves to even, what is no length 0."""
+    """Rounds floats of 32 bits to steps: halves to even; other than positive lengths become 0."""
     steps = np.rint(lengths.astype(np.float32).astype(float) / unit)
     return np.where((steps >= 1) & (steps <= 65535), steps, 0).astype(np.uint16)
 
@@ -519,7 +512,7 @@ def metres_of(depth, kind="<f4"):
 
 
 def with_exr(path, place="depth/{:05d}", kind="<f4"):
-    """The folder's depth pictures, as OpenEXR in their place."""
+    """Replaces the folder's depth pictures by OpenEXR."""
     for i, depth in enumerate(ROOM["depth"]):
         os.remove(f"{path}/{place.format(i)}.png")
         write(f"{path}/{place.format(i)}.exr", exr(metres_of(depth, kind)))
@@ -532,7 +525,7 @@ def to_exr(content):
 
 
 def without_exr():
-    """Checks that a build without the library says what to install, and reads everything except depth."""
+    """Checks that a build without the library names the package to install, and reads everything except depth."""
     report, got = imported(record3d("no_library", True))
     same("Record3D without OpenEXR", got, depth=False)
     check("Debian: libopenexr-dev" in report["remarks"][0], f"without OpenEXR: {report}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames of a recording as arrays, and pictures as files: what the scripts of this folder share. Needs numpy."""
+"""Frames of a recording as arrays, and pictures as files, for the scripts of this folder. Needs numpy."""
 
 import struct
 
@@ -68,7 +68,7 @@ def matrix(q, t):
 
 
 def read(path):
-    """{topic: [message, ...]} of a recording without compression."""
+    """Returns {topic: [message, ...]} of a recording without compression."""
     with open(path, "rb") as file:
         data = file.read()
     out, readers = {}, {"image": image, "depth": image, "pose": pose, "camera_info": intrinsics}
@@ -87,7 +87,7 @@ def picture(pixels):
 
 
 def exr(numbers):
-    """OpenEXR of one channel, of half or float as the array has them: lines without compression."""
+    """Writes OpenEXR of one channel, half or float like the array, as lines without compression."""
     height, width = numbers.shape
     half = numbers.dtype == np.float16
 

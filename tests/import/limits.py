@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What import takes, build, replay and eval can use: values each side of every limit of platform/mcap/reader_limits.h, through
-the program.
+"""Recordings that import accepts work in build, replay and eval: values on both sides of every limit of
+platform/mcap/reader_limits.h, through the program.
 
 limits.py TRIM3R
 """
@@ -48,7 +48,7 @@ def folder(name, width=16, height=16, position=0.0, top=None):
 
 
 def taken(what, path, *options):
-    """Import, and then everything that uses the recording."""
+    """Imports, and then runs every command that uses the recording."""
     recording, scene = f"{path}.mcap", f"{path}.ply"
     for command in (["import", path, "-o", recording, *options], ["info", recording],
                     ["build", recording, "--context", "0,1", "--gaussians", "20", "-o", scene],

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""trim3r import of pointmaps that NumPy wrote, made of the built-in room's depth: every step comes back exactly, poses and
-intrinsics come from where they should, and files that are not right are refused by name.
+"""trim3r import of pointmaps that NumPy wrote, made of the built-in room's depth: every step is exact, poses and
+intrinsics come from the right source, and wrong files are refused by name.
 
 pointmaps.py TRIM3R
 """
@@ -24,11 +24,10 @@ from program import run
 SIDE, FRAMES = 96, 4
 
 
-# --- folders ---------------------------------------------------------------------------------------------------------
 
 
 def points(room):
-    """Pointmaps in the first camera's frame, as the networks give them: float32."""
+    """Returns pointmaps in the first camera's frame, in float32 like a network's."""
     first, maps = np.linalg.inv(room["pose"][0]), []
     for depth, camera, k in zip(room["depth"], room["pose"], room["camera_info"]):
         z = depth / 1000.0
@@ -39,7 +38,7 @@ def points(room):
 
 
 def folder(name, room, posed=True, **fields):
-    """The room's pictures; transforms.json unless posed is None, its frames with fields[key][i]."""
+    """Writes the room's pictures, with transforms.json unless posed is None; its frames have fields[key][i]."""
     path = f"{work}/{name}"
     os.makedirs(path)
     frames = []
@@ -137,7 +136,7 @@ def test_one_file(room, maps):
              extrinsic=np.linalg.inv(relative)[None, :, :3].astype(np.float32), intrinsic=k[None].astype(np.float32))
     _, got = imported("vggt", bare, "--pointmaps", f"{work}/vggt.npz", *unit)
     same("vggt", got, room)
-    # poses from the points: with the picture's intrinsics, and against a folder with wrong ones
+    # poses from the points: with the picture's intrinsics, replacing those of a wrong folder
     np.savez(f"{work}/points.npz", pts3d=maps)
     numbers = ",".join(repr(float(x)) for x in (k[0, 0, 0], k[0, 1, 1], k[0, 0, 2], k[0, 1, 2]))
     report, got = imported("points", bare, "--pointmaps", f"{work}/points.npz", "--intrinsics", numbers, *unit)
@@ -156,7 +155,7 @@ def test_one_file(room, maps):
     for i in range(FRAMES):
         off = np.abs(relative[i] - np.linalg.inv(got["pose"][0]) @ got["pose"][i]).max()
         check(off < 1e-3, f"noisy: pose of frame {i} is {off} off")
-    # the unit chosen: a power of two that gives the median 4096 to 8192 steps
+    # the chosen unit: a power of two for which the median is 4096 to 8192 steps
     report, got = imported("unit", bare, "--pointmaps", f"{work}/vggt.npz")
     unit = report.get("depth_unit", 0)
     median = np.median(np.stack(got["depth"]))
@@ -175,7 +174,7 @@ def test_one_file(room, maps):
 
 
 def test_one_world(room, maps):
-    """Frames 0 and 1 have pointmaps, 2 and 3 the folder's poses alone."""
+    """Frames 0 and 1 have pointmaps, 2 and 3 only the folder's poses."""
     def some(name, **arrays):
         path = folder(name, room, pointmap_path=[f"{i}.npz" for i in range(FRAMES)], **MM)
         edit(path, lambda i, frame: frame.pop("pointmap_path") if i >= 2 else None)
@@ -189,7 +188,7 @@ def test_one_world(room, maps):
         refused(options[0], ["estimate-colour does not go with pointmaps"], *options[1:], "--poses", "estimate-colour")
     _, got = imported("some", path)
     check(all(np.abs(got["pose"][i] - room["pose"][i]).max() < 1e-6 for i in range(FRAMES)), "some: poses are the folder's")
-    # poses of the points' frame beside the folder's: another world, unless they agree
+    # poses of the points' frame next to the folder's: another world, unless they agree
     relative = [np.linalg.inv(room["pose"][0]) @ p for p in room["pose"]]
     check(np.abs(room["pose"][0] - np.eye(4)).max() > 0.01, "the room's first pose is not the origin")
     refused(some("other", poses=relative), ["2.png: its pose is the folder's", "of 0.png is in its points' frame"])
@@ -215,7 +214,8 @@ def test_options_of_pointmaps_alone(room, _):
 
 
 def test_larger_pictures(room, maps):
-    """Intrinsics are the pictures'; the maps have half their sides. Cropped to the maps' size, all is the room's."""
+    """Intrinsics refer to the pictures; the maps have half their sides. Cropped to the maps' size, everything is the
+    room's."""
     k = room["camera_info"][0]
     large = dict(room, image=[rgb.repeat(2, 0).repeat(2, 1) for rgb in room["image"]],
                  camera_info=[np.diag([2, 2, 1]) @ k + [[0, 0, 0.5], [0, 0, 0.5], [0, 0, 0]] for k in room["camera_info"]])
@@ -273,7 +273,7 @@ def test_refusals(room, maps):
     refused(path, ["no point", "confident enough"], "--pointmaps", file, "--min-confidence", "2")
     np.savez(file, pts3d=np.random.default_rng(1).normal(size=maps.shape).astype(np.float32))
     refused(path, ["do not lie on the pixels' rays"], "--pointmaps", file, "--poses", "estimate")
-    # cut off, changed, foreign
+    # truncated, changed, foreign
     np.savez(file, pts3d=maps)
     with open(file, "rb") as f:
         whole = f.read()

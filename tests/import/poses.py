@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""--poses estimate as a user meets it: pictures without poses become a recording whose poses are right and stay what they
-are, build estimates those of its context views, and what cannot work is refused with a reason.
+"""--poses estimate for users: pictures without poses become a recording with correct poses that later commands keep,
+build estimates the poses of its context views, and impossible cases are refused with a reason.
 
 poses.py TRIM3R
 """
@@ -30,7 +30,7 @@ def good(*arguments):
 
 
 def folder(name, room, depth=True, **top):
-    """The room's pictures and lens, no poses."""
+    """Writes the room's pictures and lens, without poses."""
     path = f"{work}/{name}"
     os.makedirs(path)
     frames = []
@@ -57,7 +57,7 @@ def degrees(a, b):
 
 
 def close(name, poses, room, turn, share, scale=None):
-    """Rotations within `turn` degrees, places within `share` of the distance from the first camera."""
+    """Checks rotations within `turn` degrees, positions within `share` of the distance from the first camera."""
     for i, (got, known) in enumerate(zip(relative(poses), relative(room["pose"]))):
         place = got[:3, 3] * (scale or 1)
         far = np.linalg.norm(known[:3, 3])
@@ -130,7 +130,7 @@ def test_build(room):
     check([p["frame"] for p in colour["poses"]] == [0, 1] and not colour["poses"][1]["by_depth"], f"colour: {colour}")
     close("build, colour", [matrix(p["rotation"], p["position"]) for p in colour["poses"]],
           {"pose": room["pose"][:2]}, 0.6, 0.06)
-    # a recording once more, with poses: what build makes of the first is what it makes of the second as it is
+    # a recording imported again, with poses: build makes the same of both
     good("import", recording, "--poses", "estimate", "-o", f"{work}/posed.mcap")
     first, second = read(recording), read(f"{work}/posed.mcap")
     for name in ("image", "depth", "camera_info"):
@@ -154,7 +154,7 @@ def test_build(room):
 
 
 def kept_without_pose(name, source, room, left, why):
-    """All frames are there, and all but that one have their poses."""
+    """Checks that all frames are there, and all except the left-out one have their poses."""
     target = f"{work}/kept_{left}.mcap"
     report = good("import", source, "--poses", "estimate", "-o", target)
     check((report["frames"], report["posed_frames"]) == (FRAMES, FRAMES - 1), f"{name}: {report}")

@@ -76,7 +76,7 @@ TEST(tracks_hold_a_little_at_their_ends)
     pose_track_sort(&track);
     static const struct {
         int64_t stamp;
-        double x; /* NAN: none */
+        double x; /* NAN: no pose */
     } cases[] = {{100 * MS, 3},      {150 * MS, 2}, {200 * MS, 1},      {80 * MS, 3},
                  {80 * MS - 1, NAN}, {220 * MS, 1}, {220 * MS + 1, NAN}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -110,7 +110,7 @@ TEST(trees_compose_up_down_and_across)
     assert_null(add(&tree, "map", "base", false, 100 * MS, turned(0, 10, 0, 0)));
     assert_null(add(&tree, "base", "left", true, 0, turned(0, 0, 1, 0)));
     assert_null(add(&tree, "base", "right", true, 0, turned(M_PI / 2, 0, -1, 0)));
-    assert_null(add(&tree, "lonely", "left", true, 0, turned(0, 5, 5, 5))); /* another parent: not taken */
+    assert_null(add(&tree, "lonely", "left", true, 0, turned(0, 5, 5, 5))); /* another parent: refused */
     assert_null(transform_tree_finish(&tree));
     assert_int_equal(tree.refused, 1);
     rigid out, expected = turned(0, 5, 1, 0);
@@ -119,7 +119,7 @@ TEST(trees_compose_up_down_and_across)
     expected = turned(0, -5, -1, 0);
     assert_true(transform_tree_lookup(&tree, frame(&tree, "left"), frame(&tree, "map"), 50 * MS, 0, &out));
     near_rigid(&out, &expected);
-    /* across: what moves above both does not count, so any time will do */
+    /* across: motion above both does not matter, so any time will do */
     expected = turned(M_PI / 2, 0, -2, 0);
     assert_true(transform_tree_lookup(&tree, frame(&tree, "left"), frame(&tree, "right"), INT64_C(1) << 60, 0, &out));
     near_rigid(&out, &expected);

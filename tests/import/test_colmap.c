@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* COLMAP models: every camera model becomes the right lens or is refused by name; what a text may contain and what
- * not, with the number of the wrong line. */
+/* COLMAP models: every camera model becomes the right lens or is refused by name; allowed and refused texts, with the
+ * number of the wrong line. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,7 +39,7 @@ static void refuse_text(reader read, const char *text, const char *why)
     }
 }
 
-/* Parameters 500, 510 (where there are two focal lengths), 320, 240, then 0.01, 0.02 ... */
+/* Makes parameters 500, 510 (for two focal lengths), 320, 240, then 0.01, 0.02 ... */
 static const char *make(const char *name, posed_intrinsics *out)
 {
     double parameters[COLMAP_PARAMETERS_MOST];
@@ -97,7 +97,7 @@ TEST(test_models)
     assert_null(colmap_intrinsics(colmap_model_of_name("FULL_OPENCV"), full, 640, 480, &lens));
     assert_true(lens.coefficients[3] == 0.4 && lens.coefficients[4] == 0.5);
     assert_null(colmap_model_of_name("PINHOLE "));
-    for (int32_t id = -1; id <= 12; id++) { /* numbers and names are from one list */
+    for (int32_t id = -1; id <= 12; id++) { /* numbers and names come from one list */
         assert_int_equal(colmap_model_of_id(id) != NULL, id >= 0 && id <= 11);
     }
     assert_ptr_equal(colmap_model_of_id(5), colmap_model_of_name("OPENCV_FISHEYE"));

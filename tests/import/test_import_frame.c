@@ -20,7 +20,7 @@ static void write_picture(scratch *s, const char *name, const picture *p)
     }
 }
 
-/* Red counts columns, green rows; depth's steps count both. */
+/* Red counts columns, green rows; depth steps count both. */
 static void write_ramps(scratch *s, uint32_t width, uint32_t height, uint32_t depth_width, uint32_t depth_height)
 {
     picture colour = {width, height, 3, 8, calloc((size_t)width * height, 3)};
@@ -147,7 +147,7 @@ TEST_WITH(test_depth_of_another_resolution, scratch_setup, scratch_teardown)
         }
     }
     import_buffers_free(&buffers);
-    /* without a size both stay as they are */
+    /* without a size both keep theirs */
     assert_int_equal(import_frame(s->directory, &frame, NULL, 0, 0, &buffers, &out, error, sizeof error), 0);
     assert_int_equal(out.width * 1000 + out.height, 240160);
     assert_int_equal(out.depth_width * 1000 + out.depth_height, 120080);

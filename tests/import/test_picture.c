@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures: what is written is read back, what is damaged is refused. */
+/* Pictures: written ones are read back, damaged ones are refused. */
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>

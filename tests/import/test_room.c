@@ -35,7 +35,7 @@ static uint64_t shot_hash(const uint8_t *rgb, const uint16_t *depth, size_t pixe
     return t3r_hash_u16s(t3r_hash_bytes(T3R_HASH_START, rgb, pixels * 3), depth, pixels);
 }
 
-/* Colour, then depth, for each frame; 256x256, seed 1. A change here changes every later golden hash. */
+/* Checks colour, then depth, for each frame; 256x256, seed 1. A change here changes every later golden hash. */
 TEST(test_golden_frames)
 {
     static const uint64_t golden[ROOM_FRAMES] = {UINT64_C(0xeadf6d423bc46517), UINT64_C(0x4c6d2227cda114a9),
@@ -99,7 +99,7 @@ static void rotate(const double q[4], const double v[3], double out[3])
     }
 }
 
-/* Pixels of a projected into b by a's depth and both poses: how many land, how many of those find their own depth
+/* Pixels of a projected into b by a's depth and both poses: how many arrive, how many of them find their own depth
  * (within 15 mm), and how well the colours agree. */
 typedef struct agreement {
     double landed, same_depth, colour_error;
@@ -192,10 +192,10 @@ TEST(test_seeds_sizes_and_frames)
     room_frame(3, 64, 48, 2, b, other);
     assert_memory_equal(depth, other, sizeof depth);
     assert_memory_not_equal(a, b, sizeof a);
-    /* the same picture without asking for depth */
+    /* the same picture without depth */
     room_frame(3, 64, 48, 1, b, NULL);
     assert_memory_equal(a, b, sizeof a);
-    /* the default frames have six poses, and no later one stands still */
+    /* the default frames have six poses, and no later one is stationary */
     for (uint32_t i = 1; i < 70; i++) {
         for (uint32_t k = i < ROOM_FRAMES ? 0 : i - 1; k < i; k++) {
             t3r_camera p, q;

@@ -104,7 +104,7 @@ TEST(test_every_rotation_survives)
             double column[3], axis[3] = {c == 0, c == 1, c == 2};
             turn(q, axis, column);
             for (int r = 0; r < 3; r++) {
-                /* 3e-4 too long: within what is accepted, and taken out again */
+                /* 3e-4 too long: accepted, and normalised */
                 m[r * 3 + c] = column[r] * 1.0003;
             }
         }

@@ -56,7 +56,7 @@ TEST_WITH(test_association, scratch_setup, scratch_teardown)
     assert_true(folder.depth_unit == 1 / 5000.0);
     assert_string_equal(folder.frames[0].image, "rgb/a.png");
     assert_string_equal(folder.frames[1].image, "rgb/b.png");
-    /* 8 ms away and 10 ms; 21 ms and 42 ms; 20 ms */
+    /* distances: 8 ms and 10 ms; 21 ms and 42 ms; 20 ms */
     assert_string_equal(folder.frames[0].depth, "depth/a.png");
     assert_null(folder.frames[1].depth);
     assert_string_equal(folder.frames[2].depth, "depth/c.png");

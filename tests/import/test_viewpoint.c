@@ -44,7 +44,7 @@ TEST(reads_a_pose)
     assert_int_equal(v->camera.cx_q16, 100 << 16); /* from the corner to the first pixel's centre */
     assert_int_equal(v->camera.cy_q16, (127 << 16) / 2);
     assert_true(v->camera.position_q32[0] == INT64_C(1) << 32 && v->camera.position_q32[2] == INT64_C(3) << 32);
-    /* y up, z backward against y down, z forward: half a turn around x */
+    /* y up, z backward versus y down, z forward: half a turn around x */
     assert_true(abs(v->camera.rotation_q30[0]) < 2 && abs(abs(v->camera.rotation_q30[1]) - ONE_Q30) < 2);
     viewpoint_list_free(&list);
 }

@@ -50,7 +50,7 @@ static int64_t requantized(int64_t acc, const t3r_convolution *l, uint32_t outpu
 /* The kind of kernel that runs a layer. */
 typedef enum layer_kind { CONVOLVE, DEPTHWISE, PACKED } layer_kind;
 
-/* Makes a block of so many activations a pixel: columns, or strips in `rows` runs. */
+/* Makes a block of `places` activations a pixel: columns, or strips in `rows` runs. */
 static t3r_block make_block(layer_kind kind, uint32_t places, uint32_t rows, uint64_t *seed)
 {
     if (kind == PACKED) {
@@ -190,7 +190,7 @@ const char *check_depthwise(const t3r_kernels *kernels, uint64_t *seed)
     return check_layer(kernels, seed, DEPTHWISE);
 }
 
-/* Plain C has none. */
+/* Plain C has no packed kernels. */
 const char *check_convolve_packed(const t3r_kernels *kernels, uint64_t *seed)
 {
     return kernels->convolve_packed == NULL ? NULL : check_layer(kernels, seed, PACKED);

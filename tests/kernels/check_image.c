@@ -136,7 +136,7 @@ const char *check_blur_row(const t3r_kernels *kernels, uint64_t *seed)
     kernels->blur_row(row, width, out);
     for (int64_t x = 0; x < width; x++) {
         uint32_t sum = 12;
-        for (int64_t a = -2; a <= 2; a++) { /* a box twice */
+        for (int64_t a = -2; a <= 2; a++) { /* a box of five samples, applied twice */
             for (int64_t b = -2; b <= 2; b++) {
                 int64_t place = x + a + b;
                 sum += row[place < 0 ? 0 : place >= width ? width - 1 : place];

@@ -10,7 +10,7 @@ typedef struct sample_case {
     t3r_sample sample;
     uint32_t first, end, room;
     int16_t *centre;
-    int32_t want[T3R_CLUSTER_SAMPLE]; /* the distances then */
+    int32_t want[T3R_CLUSTER_SAMPLE]; /* the distances after adding the centre */
     uint64_t sum;
 } sample_case;
 
@@ -77,7 +77,7 @@ const char *check_nearest(const t3r_kernels *kernels, uint64_t *seed)
     }
     const t3r_neighbours neighbours = {guarded_take(room * sizeof *neighbours.index, 4)};
     const uint32_t points = (uint32_t)unit_between(seed, 0, POINTS);
-    const int64_t most = unit_random(seed) % 3 == 0 ? 2 : T3R_FEATURE_MOST; /* near together: many are equally far */
+    const int64_t most = unit_random(seed) % 3 == 0 ? 2 : T3R_FEATURE_MOST; /* close together: many are equally far */
     int16_t(*feature)[T3R_DIMENSIONS] = guarded_take(points * sizeof *feature, 2);
     uint16_t *nearest = guarded_take(points * sizeof *nearest, 2);
     for (uint32_t k = 0; k < count; k++) {

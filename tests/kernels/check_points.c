@@ -5,7 +5,7 @@
 
 __extension__ typedef __int128 int128;
 
-/* Makes a turn about an axis with few bits, or any entries of at most 1: no check needs a true rotation. */
+/* Makes a rotation about an axis with few bits, or any entries of at most 1: no check needs a true rotation. */
 static void make_pinhole(t3r_pinhole *p, uint64_t *seed)
 {
     const bool plain = unit_random(seed) % 2 == 0;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Projection, blending, scattering and solving. Plain C is judged in doubles by the tests of the rasterizer and of
- * refinement; here a variant must have its bits, and blending goes pixel by pixel. */
+/* Projection, blending, scattering and solving. The tests of the rasterizer and of refinement judge plain C in
+ * doubles; here a variant must give the same bits, and blending is checked pixel by pixel. */
 #include "checks.h"
 #include "core/fixed.h"
 #include "guarded.h"
 
 enum { SIDE = T3R_TILE_SIDE, COUNT = 40 };
 
-/* Rows of a rotation, a camera's centre and its lens. */
+/* Makes the rows of a rotation, a camera's centre and its lens. */
 static t3r_projection any_projection(uint64_t *seed)
 {
     t3r_projection p = {.fx_q16 = (int32_t)any_value(seed, 1 << 16, 1 << 28),
@@ -38,8 +38,8 @@ static t3r_projection any_projection(uint64_t *seed)
     return p;
 }
 
-/* Makes a Gaussian as in scenes, in units about as large as the scene; each bit of `unusual` makes it less usual: a
- * mean anywhere, any size, a needle. */
+/* Makes a Gaussian like a scene's, in units about as large as the scene. Each bit of `unusual` adds an unusual
+ * property: a mean anywhere, any size, a needle. */
 static t3r_gaussian any_gaussian(uint64_t *seed, const t3r_projection *p, uint64_t unusual)
 {
     const bool anywhere = (unusual & 1) != 0, any_size = (unusual & 2) != 0, needle = (unusual & 4) != 0;
@@ -156,7 +156,7 @@ static t3r_tile_splat any_splat(uint64_t *seed)
     return s;
 }
 
-/* Makes a tile as it is after some splats. */
+/* Makes a tile in which some splats have been blended. */
 static void any_tile(uint64_t *seed, t3r_tile *tile)
 {
     memset(tile, 0, sizeof *tile);
@@ -283,7 +283,7 @@ const char *check_solve(const t3r_kernels *kernels, uint64_t *seed)
         }
         sums[i].area = (uint32_t)any_value(seed, 1, (1 << 28) - 1);
     }
-    for (int pass = 0; pass < 2; pass++) { /* the second goes on from the first's corrections */
+    for (int pass = 0; pass < 2; pass++) { /* the second pass continues with the first one's corrections */
         memcpy(want, corrections, count * sizeof *want);
         kernels->solve(sums, count, corrections);
         t3r_solve_c(sums, count, want);

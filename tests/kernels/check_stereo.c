@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Places of rays, census, its costs, the paths' rows, and who wins. */
+/* Places of rays, census, its costs, the paths' rows, and the choice of disparities. */
 #include "checks.h"
 #include "core/fixed.h"
 #include "guarded.h"
@@ -16,7 +16,7 @@ static t3r_ray_map any_map(uint64_t *seed, int64_t most_a, int64_t most_b)
         map.offset_q16[i] = (int32_t)any_value(seed, -most, most);
     }
     for (int i = 0; i < 3; i++) {
-        /* a third of 2^57 for each of the three products; usually with z much smaller, or x and y */
+        /* a third of 2^57 for each of the three products; usually z, or x and y, is much smaller */
         const int64_t share = (INT64_C(1) << 57) / 3 >> unit_between(seed, 0, 12);
         const int64_t turn = T3R_MIN(share / most_a, 1 << 30), slope = T3R_MIN(share / most_b, 1 << 30);
         map.turn_q30[i] = (int32_t)any_value(seed, -turn, turn);
@@ -380,7 +380,7 @@ const char *check_winner_row(const t3r_kernels *kernels, uint64_t *seed)
 {
     const uint32_t width = 1 + any_length(seed, 60), count = 16 * (uint32_t)unit_between(seed, 1, 16);
     const uint32_t right = (uint32_t)T3R_MATCH_RIGHT(width, count);
-    const int64_t most = unit_random(seed) % 2 ? 3 : 2000; /* many are equal, or few */
+    const int64_t most = unit_random(seed) % 2 ? 3 : 2000; /* many equal values, or few */
     uint8_t *luma = guarded_take(width, 1);
     int16_t *sums = guarded_take((size_t)width * count * 2, 2);
     const t3r_winner_row row = {width,

@@ -53,7 +53,8 @@ const char *check_split_row(const t3r_kernels *kernels, uint64_t *seed)
     return NULL;
 }
 
-/* `to` changed by one row, or by two that may overlap: MADE is the sample that it becomes of to, a and b. */
+/* Checks that `to` changes by one row, or by two that may overlap; MADE is the expected sample, a function of to, a
+ * and b. */
 #define LIFT(NAME, CALL, MADE)                                                                                         \
     const char *check_##NAME(const t3r_kernels *kernels, uint64_t *seed)                                               \
     {                                                                                                                  \
@@ -135,7 +136,7 @@ const char *check_db2_join(const t3r_kernels *kernels, uint64_t *seed)
     return lows[0] == first ? NULL : "the first sample differs";
 }
 
-/* Coefficients within the bounds of wavelet_texture.c. */
+/* Makes coefficients within the bounds of wavelet_texture.c. */
 static int16_t *coefficients(uint64_t *seed, size_t count, int64_t most)
 {
     int16_t *row = guarded_take(count * 2, 2);
@@ -180,7 +181,7 @@ const char *check_texture_coarse(const t3r_kernels *kernels, uint64_t *seed)
     return NULL;
 }
 
-/* Adding to what is there, or not. */
+/* Checks with or without adding to the previous contents. */
 static const char *check_spread(const t3r_kernels *kernels, uint64_t *seed, bool add)
 {
     const uint32_t count = any_length(seed, MOST);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A check for each entry of the table: makes an input from the seed, random or of the largest values, runs the entry
- * in guarded buffers and compares with a straightforward reference, or with plain C where a test in doubles checks
- * plain C. */
+/* A check for each entry of the table of kernels. It makes a random or extreme input from the seed, runs the entry in
+ * guarded buffers and compares with a straightforward reference, or with plain C where a test in doubles checks plain
+ * C. */
 #ifndef T3R_TESTS_KERNEL_CHECKS_H
 #define T3R_TESTS_KERNEL_CHECKS_H
 
@@ -38,7 +38,6 @@ typedef struct checked_entry {
 } checked_entry;
 extern const checked_entry checked_entries[];
 extern const size_t checked_entries_count;
-/* NULL: there is none. */
 const checked_entry *checked_entry_named(const char *name);
 
 /* All variants of this build, followed by NULL. A table chosen by exactly these features contains the variant. */
@@ -48,14 +47,14 @@ typedef struct checked_variant {
 } checked_variant;
 extern const checked_variant checked_variants[];
 
-/* 0, 1 and small lengths often, else up to `most`. */
+/* Returns 0, 1 or a small length often, else up to `most`. */
 static inline uint32_t any_length(uint64_t *seed, uint32_t most)
 {
     const uint32_t small = most < 40 ? most : 40;
     return (uint32_t)unit_between(seed, 0, unit_random(seed) % 2 ? small : most);
 }
 
-/* low..high, its ends often. */
+/* Returns a number in low..high, often an end. */
 static inline int64_t any_value(uint64_t *seed, int64_t low, int64_t high)
 {
     switch (unit_random(seed) % 8) {

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""cross_kernels.py ROUNDS EMULATOR COMPILER FLAG...: the kernels' variants for another processor or by another compiler,
-compared with plain C, so many seeds of each; EMULATOR is `none` for this processor. Exit 0: the same bits; 77: skipped, a
-tool is absent.
+"""cross_kernels.py ROUNDS EMULATOR COMPILER FLAG...: compares the kernels' variants for another processor or by another
+compiler with plain C, ROUNDS seeds of each; EMULATOR is `none` for this processor. Exit 0: the same bits; 77: skipped,
+a tool is absent.
 """
 import pathlib
 import subprocess

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Buffers that detect accesses beyond them: each ends or begins at an inaccessible page, and the bytes next to it on
- * its own pages are checked afterwards. */
+/* Buffers that detect accesses outside them: each ends or begins at an inaccessible page, and the neighbouring bytes
+ * on its own pages are checked afterwards. */
 #ifndef T3R_TESTS_GUARDED_H
 #define T3R_TESTS_GUARDED_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Compares entries of a table of kernels by their checks, seed by seed. */
+/* Compares entries of a table of kernels with their references, seed by seed. */
 #ifndef T3R_TESTS_KERNEL_JUDGE_H
 #define T3R_TESTS_KERNEL_JUDGE_H
 
@@ -7,7 +7,7 @@
 
 #include "checks.h"
 
-/* The seeds from `first` on. */
+/* Consecutive seeds. */
 typedef struct judged_seeds {
     uint64_t first, rounds;
 } judged_seeds;
@@ -18,11 +18,11 @@ const char *judge_at(const t3r_kernels *kernels, const checked_entry *entry, uin
 /* Returns the first error and its seed; NULL: none in all rounds. */
 const char *judge(const t3r_kernels *kernels, const checked_entry *entry, judged_seeds seeds, uint64_t *seed);
 
-/* Runs the same for each variant whose features the processor has, with exactly these features. Writes errors to
+/* Runs judge() for each variant whose features the processor has, with exactly these features. Writes errors to
  * stderr; *tested: the number of variants. */
 bool judge_variants(uint32_t processor, judged_seeds seeds, uint32_t *tested);
 
-/* Likewise one entry, under the name of what the table was chosen for. */
+/* Runs judge() for one entry; errors name the features that the table was chosen for. */
 bool judge_named(const t3r_kernels *kernels, const checked_entry *entry, judged_seeds seeds, const char *name);
 
 /* Wrong entries: each must be found. */

@@ -40,7 +40,7 @@ TEST(features_are_named)
     assert_string_equal(text, "none");
     t3r_cpu_describe(T3R_CPU_AVX2 | T3R_CPU_VNNI, text, sizeof text);
     assert_string_equal(text, "avx2 vnni");
-    t3r_cpu_describe(UINT32_MAX, text, 6); /* cut to fit */
+    t3r_cpu_describe(UINT32_MAX, text, 6); /* truncated */
     assert_string_equal(text, "sse4.");
     t3r_cpu_describe(t3r_cpu_features(), text, sizeof text);
     for (char *c = text; *c != '\0'; c++) {

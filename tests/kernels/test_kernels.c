@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every entry of the table of kernels, in plain C and in each variant that this processor has: random and largest
- * values, odd lengths, buffers anywhere next to forbidden pages. A variant that fails is named with its input's
- * seed; `test_kernels ENTRY SEED` runs that one again. `test_kernels --rounds N FIRST` tries N seeds from FIRST on
- * of each. */
+/* Every entry of the table of kernels, in plain C and in each variant that this processor has: random and extreme
+ * values, odd lengths, buffers next to inaccessible pages. A failure names the variant and its input's seed;
+ * `test_kernels ENTRY SEED` repeats it. `test_kernels --rounds N FIRST` tries N seeds of each from FIRST on. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

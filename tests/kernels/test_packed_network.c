@@ -41,7 +41,7 @@ static void run_points(const t3r_network *net, const picture *p, uint32_t y, uin
     }
 }
 
-/* Rows begin..end - 1. Returns whether the layers were packed. */
+/* Runs rows begin..end - 1. Returns whether the layers were packed. */
 static bool run(const t3r_kernels *kernels, const void *weights, const picture *p, uint32_t begin, uint32_t end,
                 size_t more, uint64_t *seed, outputs out)
 {
@@ -66,7 +66,7 @@ static bool run(const t3r_kernels *kernels, const void *weights, const picture *
     return net.strips != NULL;
 }
 
-/* Packed is the layer itself. */
+/* Packs by keeping the layer itself. */
 static void keep_layer(const t3r_convolution *layer, uint32_t rows, void *packed)
 {
     assert_in_range(sizeof *layer, 1, t3r_packed_bytes(rows, layer->taps / rows, layer->outputs));
@@ -90,7 +90,7 @@ static void convolve_bytes(const t3r_convolution *layer, const void *packed, con
     }
 }
 
-/* The tables in turn: with strips of 16 bits, of what this processor has best, and of bytes in plain C. */
+/* Returns a table: in turn with 16-bit strips, with this processor's best, and with byte strips in plain C. */
 static t3r_kernels table_of(uint32_t round)
 {
     t3r_kernels kernels = t3r_kernels_c;

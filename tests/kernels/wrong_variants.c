@@ -36,7 +36,7 @@ static void takes_the_last(const t3r_centres *centres, const t3r_neighbours *nei
                            const int16_t (*feature_q11)[T3R_DIMENSIONS], uint16_t guess, uint16_t *nearest)
 {
     t3r_nearest_c(centres, neighbours, points, feature_q11, guess, nearest);
-    for (uint32_t i = 0; i < points; i++) { /* of equally near ones */
+    for (uint32_t i = 0; i < points; i++) {
         for (uint32_t k = nearest[i] + 1u; k < centres->count; k++) {
             bool same = centres->half_norm[k] == centres->half_norm[nearest[i]];
             for (uint32_t d = 0; d < T3R_DIMENSIONS; d++) {

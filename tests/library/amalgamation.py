@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""amalgamation.py [--all]: tools/amalgamate writes the same two files every time, each compiler takes them in one call,
-and what they build has the bits of the library.
+"""amalgamation.py [--all]: tools/amalgamate writes the same two files every time, each compiler accepts them in one
+call, and programs with them have the library's bits.
 
 gcc links a consumer with them. With --all, gcc and clang link the golden driver: every stage's hash. clang for
-WebAssembly links a consumer that Node.js runs, and arm-none-eabi-gcc links one for a Cortex-M7. A compiler that is not
-here is named.
+WebAssembly links a consumer that Node.js runs, and arm-none-eabi-gcc links one for a Cortex-M7. A missing compiler is
+named.
 """
 import functools
 import pathlib
@@ -29,7 +29,7 @@ WebAssembly.instantiate(fs.readFileSync(process.argv[1])).then(({ instance }) =>
 
 
 def check_same_files(folder):
-    """Two runs, with another order of Python's sets."""
+    """Compares two runs with different orders of Python's sets."""
     said = [amalgamate(folder / name, seed) for name, seed in (("made", "1"), ("again", "2"))]
     check(said[0] == said[1] and len(re.findall(r"CRC-32 [0-9a-f]{8}$", said[0], flags=re.M)) == 2,
           f"two runs differ: {said}")
@@ -40,7 +40,7 @@ def check_same_files(folder):
 
 
 def compile_one(made, compiler, *flags):
-    """One call, without a warning; the object."""
+    """Compiles in one call, without a warning; returns the object."""
     words, target = compiler.split(), made / (re.sub(r"\W+", "_", compiler) + ".o")
     run(*words, "-std=c11", *WARNINGS, *flags, "-c", made / "trim3r.c", "-o", target)
     return target
@@ -69,7 +69,7 @@ def check_golden(made, compiler):
 
 
 def consumer_of(made, compiler, *flags):
-    """The consumer without a C library, linked with the two files in one call."""
+    """Compiles and links the consumer without a C library and the two files in one call."""
     words, program = compiler.split(), made / (re.sub(r"\W+", "_", compiler) + ".elf")
     memory = made / f"{program.stem}_memory.c"
     memory.write_text('#include "memory.h"\n')

@@ -28,7 +28,7 @@ WRITER = ROOT / "tools" / "packaging" / "write_bill.cmake"
 
 
 def lacks(bill):
-    """What SPDX 2.3 asks for and the bill has not."""
+    """Returns the fields required by SPDX 2.3 that the bill lacks."""
     parts = {"": [bill], "creationInfo": [bill.get("creationInfo", {})],
              **{name: bill.get(name, []) for name in ("packages", "relationships")}}
     found = [f"{name} without {field}" for name, fields in REQUIRED.items() for part in parts[name] for field in fields
@@ -43,14 +43,14 @@ def lacks(bill):
 
 
 def related(bill, kind, of="SPDXRef-Package"):
-    """The packages at the other end of such relations of a package; NONE as it is."""
+    """Returns the packages at the other end of a package's relations of that kind; NONE unchanged."""
     packages = {part["SPDXID"]: part for part in bill["packages"]}
     return [packages.get(part["relatedSpdxElement"], "NONE") for part in bill["relationships"]
             if part["relationshipType"] == kind and part["spdxElementId"] == of]
 
 
 def loaded(*paths):
-    """The libraries that files load themselves."""
+    """Returns the libraries that files load directly."""
     said = [run("readelf", "--dynamic", "--wide", path).stdout for path in paths if path.suffix != ".a"]
     return set(re.findall(r"\(NEEDED\).*\[(.*)\]", "".join(said)))
 
@@ -60,7 +60,7 @@ def listed(bill):
 
 
 def version_here(name):
-    """That of pkg-config, where it knows the package."""
+    """Returns pkg-config's version, if it knows the package."""
     said = subprocess.run(["pkg-config", "--modversion", name], capture_output=True, text=True, check=False)
     return said.stdout.strip() if said.returncode == 0 else None
 
@@ -96,7 +96,7 @@ def check_bill(name, bill, paths):
 
 
 def find_what_is_planted(bill, path):
-    """A field that is taken away, a library that is left out and one too many."""
+    """A removed field, an omitted library and an extra one."""
     for name, fields in REQUIRED.items():
         for field in fields:
             planted = copy.deepcopy(bill)
@@ -112,7 +112,7 @@ def find_what_is_planted(bill, path):
 
 
 def written(folder, file, heads, **environment):
-    """What the script writes of one file and heads."""
+    """Returns the script's output for one file and heads."""
     output = folder / "planted.spdx.json"
     words = {"OUTPUT": output, "PACKAGE": "planted", "COMPONENT": "program", "VERSION": "1.0", "FILES": file,
              "HEADS": heads, "NEEDS": "", "KNOWN": "libz|zlib|9.9", "READELF": "readelf"}
@@ -123,7 +123,7 @@ def written(folder, file, heads, **environment):
 
 
 def check_writer(folder):
-    """A program that loads a library, and what its bill then says; the same twice, but for a date that is asked for."""
+    """Checks the bill of a program that loads a library: it is reproducible, except for a requested date."""
     source, program, head = folder / "main.c", folder / "program", folder / "zero.c"
     source.write_text("int main(void) { return 0; }\n")
     head.write_text("one[] = {\n" + ",".join("0" * 12) + ",1,2,0,0,9,\n};\n") # a CRC that begins with zeros

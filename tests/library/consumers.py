@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""consumers.py BUILD: the build folder is installed, and programs elsewhere use what lies there: by find_package with the
-static and the shared library, and by pkg-config. Each prints the same hash. The shared library exports what trim3r.h
-declares and nothing else."""
+"""consumers.py BUILD: the build folder is installed, and programs elsewhere use the installed files: by find_package
+with the static and the shared library, and by pkg-config. Each prints the same hash. The shared library exports
+exactly the declarations of trim3r.h."""
 import os
 import pathlib
 import re
@@ -64,7 +64,7 @@ def main():
         installed, moved = folder / "first", folder / "moved"
         for component in ("dev", "shared"):
             run("cmake", "--install", build, "--prefix", installed, "--component", component)
-        shutil.move(installed, moved)  # what is installed may be moved
+        shutil.move(installed, moved)  # the installation can be moved
         by_cmake(moved, folder)
         by_pkg_config(moved, folder)
         header = (proof.RUNTIME / "include" / "trim3r.h").read_text()

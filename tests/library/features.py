@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""features.py [--each]: a library without a feature says so wherever it is asked for, and has the bits of the whole one
-in all else.
+"""features.py [--each]: a library without a feature reports it for every call that needs it, and otherwise has the bits
+of the complete library.
 
-The two files of tools/amalgamate are compiled whole and without any feature; with --each also without each, and CMake
-builds and installs a library without any. features_driver.c asks for every feature.
+The two files of tools/amalgamate are compiled complete and without any feature; with --each also without each, and
+CMake builds and installs a library without any. features_driver.c uses every feature.
 """
 import os
 import pathlib
@@ -20,7 +20,7 @@ BITS = {name: 1 << at for at, name in enumerate(FEATURES)}
 
 
 def lines_of(driver, *words):
-    """What the driver prints of the library that the words give the compiler."""
+    """Returns the driver's output with a library compiled with these arguments."""
     run("cc", "-std=c11", "-O0", *WARNINGS, HERE / "features_driver.c", CONSUMERS / "scene.c", *words, "-o", driver)
     return run(driver).stdout.splitlines()
 
@@ -31,7 +31,7 @@ def of_two_files(folder, left_out):
 
 
 def of_cmake(folder):
-    """A library without any feature, installed; pkg-config knows what is left out."""
+    """Checks an installed library without any feature; pkg-config lists the missing ones."""
     build, installed = folder / "build", folder / "installed"
     run("cmake", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DT3R_TOOLS=OFF",
         "-DT3R_SHARED=OFF", *(f"-DT3R_WITH_{name.upper()}=OFF" for name in FEATURES))
@@ -41,18 +41,18 @@ def of_cmake(folder):
     return lines_of(folder / "driver_cmake", *run("pkg-config", "--cflags", "--libs", "trim3r-heads").stdout.split())
 
 
-# The features that a line of the driver needs, where it is not called as its feature is.
+# The features that a line of the driver needs, unless it has its feature's name.
 NEEDS = {"align": {"comparison"}, "planes": {"stereo"}, "warm": {"streams"}, "loss": {"refinement", "extras"},
          **dict.fromkeys(("allocations", "wavelets", "workers", "lenses"), {"extras"})}
-# Features that go with comparison.
+# Features that depend on comparison.
 OF_VIEWS = {"stereo", "streams"}
 
 
 def expected(whole, left_out):
-    """The whole library's lines, changed where something is left out, and nowhere else."""
+    """Returns the complete library's lines, changed only where a feature is left out."""
     left_out = {*left_out, *(OF_VIEWS if "comparison" in left_out else ())}
     features = sum(bit for name, bit in BITS.items() if name not in left_out)
-    passes = 0 if "refinement" in left_out else 4 if "extras" in left_out else 8 # only fitted passes are eight
+    passes = 0 if "refinement" in left_out else 4 if "extras" in left_out else 8 # only fitted passes are 8
     lines = [f"features {features:02x}, {passes} passes of refinement"]
     for line in whole[1:]:
         name, call = re.match(r"(\w+)(, a call)?", line).groups()
@@ -78,7 +78,7 @@ def main():
         if "--each" in sys.argv:
             check(of_cmake(folder) == reduced[0], "CMake's library without any feature is another")
     hashes = {line.split()[-1] for line in whole if re.fullmatch(r"\w+: [0-9a-f]{16}", line)}
-    same_bits = {"workers", "warm", "align"}  # poses that agree stay
+    same_bits = {"workers", "warm", "align"}  # poses that agree are unchanged
     scenes = [line for line in whole[1:] if ", a call:" not in line]
     check(len(hashes) == len(scenes) - len(same_bits),
           f"the whole library builds not all scenes, or two alike: {whole}")

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* features_driver: a line for each feature, of a scene that uses it, and a line of a call that needs it. A library
- * without a feature prints "unsupported" there, and what any other prints in all the other lines. */
+/* features_driver: prints a line for each feature, of a scene that uses it, and a line of a call that needs it. A
+ * library without a feature prints "unsupported" there, and all other lines unchanged. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,7 +13,8 @@ static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[4 << 20];
 static t3r_config plain_config(void)
 {
     t3r_config config = t3r_default_config(SCENE_SIDE, SCENE_SIDE, 1, SCENE_BUDGET);
-    config.refine = config.fit_widths = config.align = 0; /* on by default where the library has what they need */
+    config.refine = config.fit_widths = config.align =
+        0; /* on by default if the library has the features that they need */
     return config;
 }
 
@@ -72,7 +73,7 @@ static void print_call(const char *name, t3r_status status)
     printf("%s, a call: %s\n", name, status == T3R_ERR_UNSUPPORTED ? "unsupported" : t3r_error_text(status));
 }
 
-/* A black picture with a depth everywhere, and its camera. */
+/* Makes a black picture with depth everywhere, and its camera. */
 static t3r_frame black_frame(t3r_camera *camera)
 {
     static uint8_t colour[SCENE_SIDE * SCENE_SIDE * 3], depth[SCENE_SIDE * SCENE_SIDE * 2];
@@ -95,7 +96,7 @@ static t3r_frame black_frame(t3r_camera *camera)
     return frame;
 }
 
-/* Of a lens that distorts a little. */
+/* Adds slight distortion to a camera. */
 static t3r_camera wide_angle(t3r_camera camera)
 {
     camera.distortion = T3R_DISTORTION_RADTAN;
@@ -111,7 +112,7 @@ static t3r_status add_wide_angle(t3r_runtime *rt)
     return t3r_add_view(rt, &frame, &camera);
 }
 
-/* A line where a keyframe of such a lens is refused and the map is not as before. */
+/* Prints a line for a refused keyframe of such a lens, after which the map has changed. */
 static void print_lost_keyframe(void)
 {
     static uint8_t before[sizeof arena];
@@ -132,7 +133,7 @@ static void print_lost_keyframe(void)
     }
 }
 
-/* Of a runtime that has no views. */
+/* Prints lines of a runtime without views. */
 static void print_calls(void)
 {
     const t3r_config config = plain_config();

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""flash.py [--each | --update]: what features take of a Cortex-M7's flash, as docs/library.md has it.
+"""flash.py [--each | --update]: the features' use of a Cortex-M7's flash, as in docs/library.md.
 
-The two files of tools/amalgamate, compiled for size and linked with a firmware that calls every function of trim3r.h but
-t3r_set_cpu(), whole and without any feature; with --each also without each. A row may be off by 2 %: that much another
-version of the compiler makes. --update writes the table.
+The two files of tools/amalgamate, compiled for size and linked with a firmware that calls every function of trim3r.h
+except t3r_set_cpu(), complete and without any feature; with --each also without each. A row may differ by 2 %, the
+effect of another compiler version. --update writes the table.
 """
 import pathlib
 import re
@@ -25,7 +25,7 @@ TOLERANCE = 0.02
 
 
 def caller():
-    """A firmware that names every function."""
+    """Writes a firmware that calls every function."""
     names = [name for name in proof.public_functions() if name != "t3r_set_cpu"]
     rows = "".join(f"    (function *){name},\n" for name in names)
     return ('#include "memory.h"\n#include "trim3r.h"\n\ntypedef void function(void);\n'
@@ -41,7 +41,7 @@ def bytes_of(folder, left_out):
 
 
 def table_of(sizes):
-    """The page's rows: without each feature that was measured, without all of them, and the whole."""
+    """Returns the page's rows: without each measured feature, without all of them, and complete."""
     whole, plain, *without_one = sizes
     rows = [f"| {name} | `T3R_WITH_{name.upper()}`, `T3R_FEATURE_{name.upper()}` | {whole - size:,} |\n"
             for name, size in zip(FEATURES, without_one)]
@@ -54,7 +54,7 @@ def figures(table):
 
 
 def alike(shown, measured, whole):
-    """Whether each figure is the measured one, within so much of it and a thousandth of the library."""
+    """Whether each figure equals the measured one within this share of it and a thousandth of the library."""
     return len(shown) == len(measured) and all(
         abs(a - b) <= TOLERANCE * b + whole / 1000 for a, b in zip(shown, measured))
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""interface.py LIBRARY: programs and the library agree on the structs of trim3r.h, or the program is told.
+"""interface.py LIBRARY: programs and the library agree on the structs of trim3r.h, or the program gets an error.
 
 The structs are the same with short enumerations and without, for gcc and clang. A program with short ones uses the
-library and gets its hash. A program compiled with another layout, or with other features, gets a status of its own from
-every call by which it may start, and nothing is written.
+library and gets its hash. A program compiled with another layout, or with other features, gets a specific status from
+every call with which it may start, and nothing is written.
 """
 import pathlib
 import re
@@ -23,7 +23,7 @@ SHORT = ("-fshort-enums", "-fno-short-enums")
 COMPILERS = {"x86-64": (["gcc"], ["clang"]),
              "Cortex-M55": (["arm-none-eabi-gcc", "-mcpu=cortex-m55", "-ffreestanding"],
                             ["clang", "--target=arm-none-eabi", "-mcpu=cortex-m55", "-ffreestanding"])}
-# What another version of the header could have.
+# Differences that another version of the header could have.
 PLANTED = {
     "a field more": ("typedef struct t3r_config {", "typedef struct t3r_config {\n    uint32_t planted;"),
     "a wider field": ("uint32_t rgb_stride_bytes;", "uint64_t rgb_stride_bytes;"),
@@ -34,7 +34,7 @@ ENUM = ("typedef uint32_t t3r_head;", "typedef enum t3r_planted { T3R_PLANTED } 
 
 
 def header(folder, change=None):
-    """A folder with the headers, one change made in one of them."""
+    """Copies the headers to a folder, and changes one of them."""
     shutil.copytree(INCLUDE, folder)
     if change:
         texts = {path: path.read_text() for path in folder.glob("*.h")}
@@ -45,7 +45,7 @@ def header(folder, change=None):
 
 
 def layout(include, compiler, short, folder):
-    """The constants of interface_layout.c."""
+    """Returns the constants of interface_layout.c."""
     made = folder / "layout.o"
     run(*compiler, "-std=c11", "-w", short, "-I", include, "-c", HERE / "interface_layout.c", "-o", made)
     run("objcopy", "-O", "binary", "--only-section=.rodata*", "-I", "elf32-little" if "arm" in " ".join(compiler) else
@@ -58,7 +58,7 @@ def layouts(include, compilers, folder):
 
 
 def fields_of(text):
-    """[type, field] of every struct that the header lays out, in its order."""
+    """Returns [type, field] for every struct in the header, in order."""
     text = re.sub(r"/\*.*?\*/", "", text, flags=re.S)
     for name, body in re.findall(r"^typedef struct (\w+) \{$(.*?)^\} \1;$", text, flags=re.M | re.S):
         for declaration in re.sub(r"\[\w*\]", "", body).split(";"):
@@ -68,7 +68,7 @@ def fields_of(text):
 
 
 def check_rows():
-    """Each struct and each field has its row in trim3r_interface.h; settings have theirs in trim3r_settings.h."""
+    """Checks that each struct and each field has its row in trim3r_interface.h, and settings in trim3r_settings.h."""
     header = (INCLUDE / "trim3r.h").read_text()
     fields = list(fields_of(header))
     rows = (INCLUDE / "trim3r_interface.h").read_text()
@@ -79,7 +79,7 @@ def check_rows():
 
 
 def answers(include, library, folder, *words):
-    """What a program compiled with these headers is told, line by line."""
+    """Returns the results of a program compiled with these headers, line by line."""
     program = folder / "driver"
     run("cc", "-std=c11", "-O1", *WARNINGS, *words, "-I", include, HERE / "interface_driver.c", library, "-o", program)
     ended = subprocess.run([program], capture_output=True, text=True, check=False)

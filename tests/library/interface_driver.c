@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* interface_driver: prints the status of each call by which a program starts, and whether it wrote anything. */
+/* interface_driver: prints the status of each call with which a program starts, and whether it wrote anything. */
 #include <stdio.h>
 #include <string.h>
 
@@ -7,7 +7,7 @@
 
 enum { SIDE = 16, BUDGET = 16, ROOM = 512 };
 
-/* All that the calls are given, with room about it that none may write. */
+/* All arguments of the calls, surrounded by memory that no call may write. */
 typedef struct world {
     uint8_t before[ROOM];
     union {
@@ -34,7 +34,7 @@ int main(void)
     const t3r_config zeros = {0};
     printf("default_config: %s\n", memcmp(&config, &zeros, sizeof config) == 0 ? "zeros" : "defaults");
     print_call("plan", t3r_plan(&config, &now.at.plan));
-    memset(&now.at, 0, sizeof now.at); /* the sums come again */
+    memset(&now.at, 0, sizeof now.at); /* the sums are written again */
     was = now;
     print_call("plan_bytes", t3r_plan_bytes(&config, &now.at.sums[0], &now.at.sums[1]));
     was.at.config = now.at.config = config;

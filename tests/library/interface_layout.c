@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The layout of the structs of trim3r.h as constants: a compiler that lays them out in another way writes others. */
+/* The layout of the structs of trim3r.h as constants: a compiler with another layout writes others. */
 #include "trim3r.h"
 
 #define TYPE(type) sizeof(type),

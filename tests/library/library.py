@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of the library share: where things are, compilers, and the hash that every consumer must print."""
+"""Shared by the tests of the library: paths, compilers, and the hash that every consumer must print."""
 import concurrent.futures
 import os
 import pathlib
@@ -14,7 +14,7 @@ sys.path.insert(0, str(ROOT / "tests" / "proofs"))
 
 CONSUMERS = HERE / "consumers"
 VERSION = ".".join(re.findall(r"#define T3R_VERSION_\w+ (\d+)", (ROOT / "runtime/include/trim3r.h").read_text()))
-SERIES = VERSION.rpartition(".")[0] # what shared libraries and packages are named by
+SERIES = VERSION.rpartition(".")[0] # version part in the names of shared libraries and packages
 HEADS = ROOT / "quant" / "heads"
 HASH = (HERE / "golden_hash.txt").read_text().strip()
 FEATURES = ("comparison", "stereo", "streams", "learned", "refinement", "extras")
@@ -22,12 +22,12 @@ WARNINGS = ["-Wall", "-Wextra", "-Werror"]
 
 
 def ended(*command, **options):
-    """The command's end, whatever its status."""
+    """Runs the command to its end, whatever its status."""
     return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=False, **options)
 
 
 def there(*tools):
-    """Whether these are on the path; says so where one is not."""
+    """Whether these are on the path; otherwise prints the missing ones."""
     missing = [tool for tool in tools if shutil.which(tool) is None]
     if missing:
         print(f"SKIPPED, no {' and no '.join(missing)} here (tools/setup --tests)")
@@ -35,13 +35,13 @@ def there(*tools):
 
 
 def at_once(function, values):
-    """function(value) of each, as many at once as there are processors."""
+    """Returns function(value) of each, with one thread per processor."""
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(function, values))
 
 
 def amalgamate(folder, seed="0"):
-    """Writes trim3r.c and trim3r.h; what the script prints."""
+    """Writes trim3r.c and trim3r.h; returns the script's output."""
     made = ended(sys.executable, "-B", ROOT / "tools" / "amalgamate", folder,
                  env={**os.environ, "PYTHONHASHSEED": seed})
     if made.returncode != 0:
@@ -50,5 +50,5 @@ def amalgamate(folder, seed="0"):
 
 
 def without(feature):
-    """The compiler's word that leaves a feature out."""
+    """Returns the compiler's argument that omits a feature."""
     return f"-DT3R_FEATURE_{feature.upper()}=0"

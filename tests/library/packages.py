@@ -39,7 +39,7 @@ def fields_of(package):
 
 
 def files_in(package):
-    """Paths below /usr; of a multiarch folder, as if it were lib."""
+    """Returns paths below /usr; a multiarch folder counts as lib."""
     lines = run("dpkg-deb", "--contents", package).stdout.splitlines()
     paths = [line.split()[5] for line in lines if not line.startswith("d")]
     check(all(path.startswith("./usr/") for path in paths), f"{package.name}: outside /usr: {paths}")
@@ -57,7 +57,7 @@ def check_package(package, fields):
 
 
 def check_use(root, folder):
-    """A consumer by the unpacked library, and the unpacked program."""
+    """Runs a consumer of the unpacked library, and the unpacked program."""
     usr = root / "usr"
     library = next(usr.rglob("libtrim3r.so")).parent
     run("cmake", "-S", CONSUMERS, "-B", folder / "use", f"-DCMAKE_PREFIX_PATH={usr}", f"-DWANTED_VERSION={VERSION}")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""paths.py BUILD FILE...: no file that was built holds the path of the tree or of the build folder, in its run path
-neither, and none looks for libraries in the folder that one works in."""
+"""paths.py BUILD FILE...: no built file contains the path of the tree or of the build folder, not even in its run
+path, and none looks for libraries in the current folder."""
 import pathlib
 import re
 import sys
@@ -13,7 +13,7 @@ from checks import check, done, run
 
 
 def run_paths(path):
-    """The places where the loader looks first; an empty one is the folder that one works in."""
+    """Returns the places where the loader looks first; an empty one is the current folder."""
     found = re.search(r"\((?:RUNPATH|RPATH)\).*\[(.*)\]", run("readelf", "--dynamic", "--wide", path).stdout)
     return found[1].split(":") if found else []
 
@@ -26,7 +26,7 @@ def offences(path, folders):
 
 
 def planted(folder):
-    """A program that knows where it was compiled, and looks for libraries in the folder that one works in."""
+    """Builds a program that contains its source's path, and looks for libraries in the current folder."""
     source, program = folder / "main.c", folder / "program"
     source.write_text('const char *where = __FILE__;\nint main(void) { return where[0]; }\n')
     run("cc", source, "-Wl,-rpath,::", "-o", program)

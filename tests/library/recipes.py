@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""recipes.py: the recipes for Conan, vcpkg and Yocto parse, agree with the tree, and set options that it has.
+"""recipes.py: the recipes for Conan, vcpkg and Yocto parse, agree with the tree, and set existing options.
 
-Neither tool need be here. Conan's recipe runs with stand-ins for Conan's own classes, vcpkg's port with stand-ins for
+The tools need not be installed. Conan's recipe runs with stand-ins for Conan's classes, vcpkg's port with stand-ins for
 vcpkg's functions, and Yocto's recipe is read line by line.
 """
 import hashlib
@@ -21,10 +21,9 @@ PACKAGING = ROOT / "tools" / "packaging"
 OPTIONS = {"T3R_TOOLS", "T3R_SHARED", *(f"T3R_WITH_{name.upper()}" for name in FEATURES)}
 
 
-# --- Conan -----------------------------------------------------------------------------------------------------------
 
 class Recorder:
-    """Takes any call, any attribute and any key; remembers what was set."""
+    """Accepts any call, any attribute and any key; records what was set."""
 
     def __init__(self, *_):
         self.set, self.items = {}, {}
@@ -43,7 +42,7 @@ class Recorder:
 
 
 def conan_recipe(source, toolchains):
-    """The recipe's class, with stand-ins for what it imports."""
+    """Returns the recipe's class, with stand-ins for its imports."""
     def toolchain(_):
         toolchains.append(Recorder())
         return toolchains[-1]
@@ -84,7 +83,6 @@ def conan_findings(source):
          any(value not in recipe.__class__.options[name] for name, value in recipe.default_options.items()))) if bad]
 
 
-# --- vcpkg -----------------------------------------------------------------------------------------------------------
 
 KEYS = {"name", "version", "description", "license", "supports", "dependencies", "default-features", "features"}
 NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
@@ -134,7 +132,6 @@ def port_findings(port, folder):
     return [] if given == OPTIONS else [f"portfile.cmake: sets {sorted(given)}"]
 
 
-# --- Yocto -----------------------------------------------------------------------------------------------------------
 
 LINE = re.compile(r'(?:#.*|inherit [a-z ]+|([A-Z_]+(?:\[\w+\]|:\$\{PN\})?) (?:=|\?=|\?\?=|\+=) "([^"]*)")?')
 

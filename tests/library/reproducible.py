@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""reproducible.py: two builds of copies of the tree, in folders whose paths differ in length, give the same bytes, debug
-information included: the libraries, the heads, the program, its modules for cameras, the Python package, man pages and
-bills of materials."""
+"""reproducible.py: two builds of copies of the tree, in folders with paths of different lengths, give the same
+bytes, debug information included: the libraries, the heads, the program, its modules for cameras, the Python
+package, man pages and bills of materials."""
 import os
 import pathlib
 import shutil
@@ -17,9 +17,9 @@ COPIED = ("CMakeLists.txt", "libraries.cmake", "LICENSE", "runtime", "quant", "p
 MADE = ("libtrim3r*.a", "libtrim3r*.so", "trim3r", "tools/packaging/man1/*", "tools/packaging/*.spdx.json",
         "python/trim3r/*")
 LIBRARIES = {"libtrim3r.a", "libtrim3r.so", "libtrim3r_heads.a"}
-# The compiler's own word for where a file lies, which is told from the tree's top.
+# The compiler's own name of a file, which must be relative to the tree's top.
 WHERE = "\nconst char t3r_where[] = __FILE__;\n"
-# A program that looks for libraries where it was built.
+# Makes a program that looks for libraries where it was built.
 RUN_PATH = "\nset_property(TARGET trim3r APPEND PROPERTY INSTALL_RPATH ${CMAKE_BINARY_DIR})\n"
 
 
@@ -35,14 +35,14 @@ def copy_of(folder):
 
 
 def command(*words):
-    # a cache of compilers would be asked for what another folder gave
+    # a compiler cache could return the other folder's objects
     environment = {name: value for name, value in os.environ.items() if not name.endswith("_COMPILER_LAUNCHER")}
     made = ended(*words, env=environment)
     check(made.returncode == 0, f"{' '.join(map(str, words))}: {made.stdout}{made.stderr}")
 
 
 def built(folder):
-    """{name: bytes} of what the copy in this folder makes."""
+    """Returns {name: bytes} of the files that the copy in this folder builds."""
     build = folder / "build"
     command("cmake", "-S", folder, "-B", build, "-DT3R_TESTS=OFF", "-DT3R_SHARED=ON", "-DCMAKE_BUILD_TYPE=Release",
             "-DCMAKE_C_FLAGS=-g", "-DCMAKE_CXX_FLAGS=-g")

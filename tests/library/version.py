@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""version.py: the version and the bits epoch of trim3r.h are those of every file that states them."""
+"""version.py: the version and the bits epoch of trim3r.h equal those of every file that states them."""
 import re
 
 from library import ROOT, SERIES, VERSION
@@ -8,7 +8,7 @@ from library import ROOT, SERIES, VERSION
 from checks import check, done
 
 EPOCH = re.search(r"#define T3R_BITS_EPOCH (\d+)", (ROOT / "runtime/include/trim3r.h").read_text())[1]
-STATED = (  # file, what stands around the version, the version
+STATED = (  # file, text around the version, the version
     ("CHANGELOG.md", r"\A(?s:.*?)^## (\d.*) - \d{4}-\d\d-\d\d$", f"{VERSION} (bits epoch {EPOCH})"),
     ("docs/library.md", r"find_package\(trim3r (\S+) ", SERIES),
     ("docs/library.md", r"`libtrim3r(?:\.so\.)?(\d.*?)`", SERIES),
@@ -22,7 +22,7 @@ STATED = (  # file, what stands around the version, the version
 
 
 def findings(name, text, pattern, wanted):
-    """A finding where a file states no version or another one."""
+    """Returns a finding if a file states no version or another one."""
     stated = re.findall(pattern, text, re.M)
     if set(stated) != {wanted}:
         yield f"{name} states {stated}, not {wanted}"

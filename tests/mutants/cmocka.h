@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* cmocka for programs that end at the first expectation that fails: compiled and run in a fraction of a second. With
+/* cmocka for programs that end at the first failed expectation: compiled and run in a fraction of a second. With
  * T3R_TESTS_TAKEN_AWAY they run no test at all. */
 #ifndef T3R_TESTS_MUTANTS_CMOCKA_H
 #define T3R_TESTS_MUTANTS_CMOCKA_H

@@ -3,8 +3,8 @@
 """Mutants of the fixed-point core, each compiled with the unit tests that should notice it.
 
     mutants.py             a sample, the same each time: every mutant is caught, or listed in equivalent.txt with a reason
-    mutants.py --all       every mutant, and docs/study/mutants.md has the counts of today
-    mutants.py --write     every mutant, and writes that page
+    mutants.py --all       every mutant, and docs/study/proofs.md has the counts of today
+    mutants.py --write     every mutant, and writes the counts into that page
     mutants.py --only FILE those of one file, for who writes tests: prints which survive
 
 Either way the tests are taken away first: a mutant must survive then.
@@ -27,11 +27,12 @@ import mutate
 HERE = pathlib.Path(__file__).resolve().parent
 TESTS, ROOT = HERE.parent, HERE.parent.parent
 RUNTIME = ROOT / "runtime"
-PAGE = ROOT / "docs" / "study" / "mutants.md"
+PAGE = ROOT / "docs" / "study" / "proofs.md"
 LISTED = HERE / "equivalent.txt"
-sys.path.insert(0, str(TESTS))
+sys.path[:0] = [str(TESTS), str(ROOT / "tools" / "study" / "scripts")]
 
 from checks import check, done, skip  # noqa: E402
+from measured import table, write_block  # noqa: E402
 
 # A suite is a program: a test, and what of the runtime it calls.
 SUITES = {
@@ -64,29 +65,12 @@ SANITIZED = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"] # as t
 LINK = ["-Wl,--gc-sections", "-lm"]
 SEED, SAMPLE = 1, 12
 SHARE_LEAST = 0.9
+TITLES = ("file", "mutants", "did not compile", "equivalent", "caught", "survived", "share")
 CAUGHT, SURVIVED, BROKEN = "caught", "survived", "did not compile"
-
-TEXT = """# Mutants of the fixed-point core
-
-Made by `tests/mutants/mutants.py --write`. A mutant is a source of the core with one small mistake. It has `+` for `-`, `<`
-for `<=`, or a constant one more or one less; or it lacks a cast, a rounding half, a negation or a statement.
-[mutate.py](../../tests/mutants/mutate.py) makes them of tokens, and of every sixteenth number of a table. The unit
-tests of that file run on each, as they are and then with sanitizers. A mutant is caught when one fails, crashes or does
-not end.
-
-| file | mutants | did not compile | equivalent | caught | survived | share |
-|---|---:|---:|---:|---:|---:|---:|
-{rows}
-
-The share is caught of those that compile and are not equivalent. Equivalent mutants differ from the source for no value
-that the function allows, so no test can tell them apart. [equivalent.txt](../../tests/mutants/equivalent.txt) has each
-with the reason. A test runs all of them at night. It fails when one survives without a reason, when a listed
-one is caught or exists no longer, and when the share falls below {least} %.
-"""
 
 
 class Bench:
-    """Where mutants are compiled and run. What a mutant does not touch is compiled once."""
+    """Compiles and runs mutants. Objects that a mutant does not affect are compiled once."""
 
     def __init__(self, folder, options=()):
         self.folder, self.options = folder, options
@@ -102,7 +86,7 @@ class Bench:
         return RUNTIME / source if (RUNTIME / source).exists() else TESTS / source
 
     def prepare(self, suite):
-        """The suite with the core as it stands: its objects, and the time that it takes."""
+        """Compiles the suite with the unchanged core: its objects, and its running time."""
         parts = []
         for number, source in enumerate(SUITES[suite]):
             self.objects[suite, source] = self.folder / f"{suite}-{number}.o"
@@ -119,7 +103,7 @@ class Bench:
         self.limit_s[suite] = 2 + int(5 * (time.monotonic() - begun))
 
     def fails(self, suite, core, changed, program, sanitized):
-        """Whether the suite fails with that core; None where it does not compile."""
+        """Whether the suite fails with that core; None if it does not compile."""
         parts = [self.place(source, core) if sanitized or changed.endswith(".h") or source == f"core/{changed}"
                  else self.objects[suite, source] for source in SUITES[suite]]
         extra, limit_s = (SANITIZED, 10 * self.limit_s[suite]) if sanitized else ([], self.limit_s[suite])
@@ -149,7 +133,7 @@ class Bench:
 
 
 def stopped_after(seconds, program):
-    """In seconds of the processor's time, so that a busy machine changes nothing."""
+    """Returns a command limited in processor time, so that a busy machine changes nothing."""
     return ["prlimit", f"--cpu={seconds}", "--core=0", program]
 
 
@@ -176,7 +160,7 @@ def text_of(key):
 
 
 def faults_of(fates, listed, every):
-    """What must not be: a survivor without a reason, a reason for one that is caught, or for none."""
+    """Finds errors: a survivor without a reason, a reason for a caught mutant, or for none."""
     faults = []
     for mutant, fate in fates:
         if fate == SURVIVED and mutant.key not in listed:
@@ -193,7 +177,7 @@ def share_of(count):
 
 
 def rows_of(fates, listed):
-    """(rows of the table, the counts of all)"""
+    """Returns (rows of the table, the counts of all)."""
     counts = collections.defaultdict(collections.Counter)
     for mutant, fate in fates:
         counts[f"`{mutant.file}`"]["equivalent" if fate == SURVIVED and mutant.key in listed else fate] += 1
@@ -204,7 +188,7 @@ def rows_of(fates, listed):
 
 
 def makes_what_it_should():
-    """Of the planted source exactly the mutants that stand beside it."""
+    """Checks that the planted source gives exactly the listed mutants."""
     said = [f"{mutant.before} => {mutant.after}" for mutant in mutate.mutants_of("", (HERE / "planted.c").read_text())]
     want = (HERE / "planted.txt").read_text().splitlines()
     check(said == want, "planted.c has the mutants of planted.txt, not\n" + "\n".join(sorted(set(said) ^ set(want))))
@@ -231,7 +215,7 @@ def can_fail(every, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--all", action="store_true", help="every mutant")
-    parser.add_argument("--write", action="store_true", help="every mutant, and write docs/study/mutants.md")
+    parser.add_argument("--write", action="store_true", help="every mutant, and write their counts into docs/study/proofs.md")
     parser.add_argument("--only", choices=NOTICED_BY, metavar="FILE", help="those of one file")
     options = parser.parse_args()
     if shutil.which("gcc") is None or shutil.which("prlimit") is None:
@@ -252,9 +236,9 @@ def main():
     check(not faults, "\n".join(faults))
     check(len(chosen) < len(every) or share_of(whole) >= SHARE_LEAST, f"{share_of(whole):.1%} are caught")
     if options.write:
-        PAGE.write_text(TEXT.format(rows=rows, least=round(100 * SHARE_LEAST)))
+        write_block(PAGE, "mutants", [*table(TITLES, []), rows])
     elif options.all:
-        check(rows in PAGE.read_text(), f"docs/study/mutants.md has other counts: {HERE / 'mutants.py'} --write")
+        check(rows in PAGE.read_text(), f"docs/study/proofs.md has other counts: {HERE / 'mutants.py'} --write")
     done()
 
 

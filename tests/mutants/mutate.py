@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mutants of a C source: the source with one small mistake, each the sort that a tired hand makes. Comments, strings,
-preprocessor lines, declared lengths of arrays, and bounds that a release build does not check stay as they are.
+"""Mutants of a C source: the source with one small mistake of the kind that people make. Comments, strings,
+preprocessor lines, declared lengths of arrays, and bounds that a release build does not check are never changed.
 
-It counts on the layout that clang-format gives: an operator of two operands has a space behind it."""
+This relies on clang-format's layout: a binary operator is followed by a space."""
 import dataclasses
 import re
 
@@ -11,7 +11,7 @@ TOKEN = re.compile(r"""(?P<skip>/\*.*?\*/|//[^\n]*|^[ \t]*\#(?:[^\n\\]|\\.)*|\s+
                       |(?P<number>\.?\d(?:[eEpP][+-]|[\w.])*)
                       |(?P<name>[A-Za-z_]\w*)
                       |(?P<sign><<=|>>=|->|\+\+|--|<<|>>|<=|>=|==|!=|&&|\|\||[-+*/%&|^]=|.)""", re.M | re.S | re.X)
-HEAD = re.compile(r"^\w[^;={}]*?\b(\w+)\([^;={}]*\)\s*\{", re.M) # of a function: it begins a line
+HEAD = re.compile(r"^\w[^;={}]*?\b(\w+)\([^;={}]*\)\s*\{", re.M) # a function's, at the start of a line
 LEFT_ALONE = {"T3R_BOUND", "T3R_ASSERT", "_Static_assert", "__attribute__"}
 STATEMENTS = {"break", "case", "continue", "default", "do", "else", "for", "goto", "if", "return", "switch", "while"}
 WORDS_OF_TYPES = {"bool", "char", "const", "int", "void"}
@@ -27,7 +27,7 @@ COMPARISONS = {"<", "<=", ">", ">=", "==", "!="}
 OTHER_NAME = {"T3R_MIN": "T3R_MAX", "T3R_MAX": "T3R_MIN"}
 WIDE = {"int64_t", "uint64_t"}
 CLOSES = {"(": ")", "[": "]", "{": "}"}
-TABLE_LEAST, TABLE_STEP = 32, 16 # of an initializer that long, every sixteenth number
+TABLE_LEAST, TABLE_STEP = 32, 16 # for an initializer of that length, every sixteenth number
 
 
 @dataclasses.dataclass(frozen=True)
@@ -40,8 +40,8 @@ class Token:
 
 @dataclasses.dataclass(frozen=True)
 class Mutant:
-    """The source with [begin, end) replaced. `place` is its file and function, `before` and `after` are the lines touched,
-    with single spaces."""
+    """The source with [begin, end) replaced. `place` is its file and function, `before` and `after` are the changed
+    lines, with single spaces."""
     file: str
     place: str
     begin: int
@@ -64,7 +64,7 @@ def tokens_of(source):
 
 
 class Source:
-    """A source's tokens, and which of them belong together."""
+    """A source's tokens, and the pairs of brackets."""
 
     def __init__(self, text):
         self.text, self.tokens = text, tokens_of(text)
@@ -93,7 +93,7 @@ class Source:
         return self.tokens[first].begin, self.tokens[last].end
 
     def inner(self, opening, top=True):
-        """The tokens between a bracket and its partner; those of the brackets within only if not `top`."""
+        """Yields the tokens between a bracket and its partner; with `top` not those of inner brackets."""
         i = opening + 1
         while i < self.partner[opening]:
             yield i
@@ -113,7 +113,8 @@ class Source:
 
 
 def other_numbers(text):
-    """The number one more and one less, in the same base and of the same type; none of a real or an octal one."""
+    """Returns the number plus one and minus one, in the same base and of the same type; none for a real or an octal
+    one."""
     match = re.fullmatch(r"(0[xX][0-9a-fA-F]+|0|[1-9]\d*)([uUlL]*)", text)
     if match is None:
         return []
@@ -122,7 +123,7 @@ def other_numbers(text):
 
 
 def changes(source):
-    """(begin, end, what stands there instead) of each mutant."""
+    """Yields (begin, end, replacement) for each mutant."""
     for i, token in enumerate(source.tokens):
         if i in source.left_alone:
             continue
@@ -149,7 +150,7 @@ def changes(source):
 
 
 def negated(source, opening):
-    """A condition with a comparison has mutants of that."""
+    """Negates a condition, unless it has a comparison, whose mutants suffice."""
     if not any(source.tokens[i].text in COMPARISONS for i in source.inner(opening, top=False)):
         begin, end = source.span(opening, source.partner[opening])
         yield begin, end, f"(!{source.text[begin:end]})"
@@ -188,7 +189,7 @@ def dropped_statement(source, i):
 
 
 def mutants_of(file, text):
-    """Every mutant of a source, in the order of its text; none twice."""
+    """Returns every mutant of a source, in the order of its text, without repetitions."""
     def lines(whole, begin, end):
         return " ".join(whole[whole.rfind("\n", 0, begin) + 1:(whole + "\n").index("\n", end)].split())
 

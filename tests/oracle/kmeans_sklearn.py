@@ -43,7 +43,7 @@ def compare(name, trim3r, points_file):
         fit = MiniBatchKMeans(n_clusters=CLUSTERS, random_state=0).fit(points)
     theirs = mean_squared_distance(points, fit.cluster_centers_.astype(np.float64))
     print(f"{name}: {len(points)} points, ours {ours:.6g}, scikit-learn {theirs:.6g}, ratio {ours / theirs:.4f}")
-    # no clustering into so many parts can be much better than a converged one, so this catches a made-up figure
+    # no clustering can be much better than a converged one, so this catches a made-up figure
     return 0.5 * theirs <= ours <= ALLOWED * theirs
 
 

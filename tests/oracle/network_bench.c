@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* network_bench: multiply-accumulates a second of heads of the shipped sizes on one core, for every width of weights
- * and activations, at all points and at every tenth; and their work memory per column. */
+/* network_bench: multiply-accumulates per second on one core of heads of the shipped sizes, for every width of weights
+ * and activations, at all points and at one in ten; and their work memory per column. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>

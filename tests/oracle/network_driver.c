@@ -49,7 +49,7 @@ static void put_points(const t3r_network *net, uint32_t y, const int8_t *feature
     int16_t(*out)[T3R_HEAD_OUTPUTS] = calloc(net->width, sizeof *out);
     uint32_t points = 0;
     for (uint32_t parity = 0; parity < 2; parity++) {
-        for (uint32_t x = parity; x < net->width; x += 2) { /* blocks of one to four, as they come */
+        for (uint32_t x = parity; x < net->width; x += 2) { /* blocks of one to four, in the order of the mask */
             uint32_t block[T3R_NETWORK_POINTS], count = 0;
             int8_t own[T3R_NETWORK_POINTS][T3R_FEATURES];
             int16_t made[T3R_NETWORK_POINTS][T3R_HEAD_OUTPUTS];

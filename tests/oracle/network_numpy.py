@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""network_numpy.py DRIVER, or network_numpy.py --build COMPILER RUNNER: random quantized networks, each layer computed in plain int64 by numpy from the text of
-runtime/head/weights.h, against the runtime's rows and outputs, bit for bit.
+"""network_numpy.py DRIVER, or network_numpy.py --build COMPILER RUNNER: computes each layer of random quantized
+networks in plain int64 by numpy, from the text of runtime/head/weights.h, and compares with the runtime's rows and
+outputs, bit for bit.
 
 Networks of every kind of layer, kernel, stride, level, phase, width of weights and activations, with two sources and
-upsampling; sums at the edge of their accumulators; images of odd and of the smallest sizes. With --build the driver is
-made for another processor, of the other byte order, and run under an emulator.
+upsampling; sums at the edge of their accumulators; images of odd and of the smallest sizes. --build makes the driver
+for another processor with the other byte order and runs it under an emulator.
 """
 import pathlib
 import struct
@@ -41,7 +42,7 @@ class Layer:
 
 
 class Network:
-    """Layers in order; `planes[n]` is what layer n made, (height, width, channels), n = 0 the features."""
+    """Layers in order; `planes[n]` is the output of layer n, (height, width, channels); n = 0 is the features."""
 
     def __init__(self, rng, weight_bits, activation_bits, features, edge):
         self.rng, self.weight_bits, self.activation_bits, self.edge = rng, weight_bits, activation_bits, edge
@@ -54,8 +55,6 @@ class Network:
 
     def level(self, source):
         return 0 if source == 0 else self.layers[source - 1].level
-
-    # --- arithmetic --------------------------------------------------------------------------------------------
 
     def quantities(self, layer):
         """Makes random weights and bias within the accumulators' bound, sometimes exactly at it."""
@@ -75,7 +74,7 @@ class Network:
         return weights, bias
 
     def choose_scale(self, layer, sums):
-        """Multiplier and shift a channel, so that most outputs are inside their range; some far outside."""
+        """Returns a multiplier and shift per channel, so that most outputs are in range and some far outside."""
         rng = self.rng
         want = 2.0 ** 13 if layer.last or self.activation_bits == 16 else 40.0
         spread = np.maximum(np.abs(sums.reshape(-1, layer.outputs)).mean(0), 1)
@@ -88,7 +87,7 @@ class Network:
         layer.shift = shift
 
     def requantize(self, layer, sums):
-        """sums (..., outputs), exact in Python's integers where int64 might not do."""
+        """Requantizes sums (..., outputs), exactly in Python's integers where int64 could overflow."""
         low, high = (-2 ** 15, 2 ** 15 - 1) if layer.last or self.activation_bits == 16 else (-128, 127)
         if self.activation_bits == 16:
             multiplier = np.minimum((layer.multiplier + 2 ** 15) >> 16, 2 ** 15 - 1)
@@ -150,10 +149,8 @@ class Network:
         self.layers.append(layer)
         return len(self.layers)
 
-    # --- file --------------------------------------------------------------------------------------------------
-
     def file_order(self, layer):
-        """Rows (phase, output) of taps to the order in the file."""
+        """Converts rows (phase, output) of taps to the file's order."""
         if layer.kind == DEPTHWISE:
             return layer.weights.T
         return layer.weights
@@ -206,11 +203,11 @@ def plane_layer(rng, net, made):
 
 
 def random_network(rng, net):
-    """Up to seven plane layers, each read by a later one, then one to three point layers."""
+    """Makes up to seven plane layers, each read by a later one, then one to three point layers."""
     made, unread = [0], set()
     for _ in range(int(rng.integers(0, 8))):
         layer = plane_layer(rng, net, made)
-        if unread and rng.random() < 0.7:  # go on from the last
+        if unread and rng.random() < 0.7:  # continue from the last
             layer = plane_layer(rng, net, [max(unread)])
         unread -= set(layer.sources)
         made.append(net.add(layer))
@@ -245,7 +242,7 @@ def run_driver(driver, path, net, features, mask):
 
 
 def compare(net, mask, output, order):
-    """Every record of the driver's output against the planes; returns the number of rows seen of each layer."""
+    """Compares every record of the driver's output with the planes; returns the rows seen of each layer."""
     seen, at = [set() for _ in net.planes], 0
     points = set()
     kind = "i1" if net.activation_bits == 8 else order + "i2"

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* stereo_driver match W H DISPARITIES PATHS: two luma planes on stdin, W x H and W + DISPARITIES - 1 x H (match.h); the
- * disparities of the first, 16 bits each, and its confidences on stdout.
+/* stereo_driver match W H DISPARITIES PATHS: two luma planes on stdin, W x H and W + DISPARITIES - 1 x H (match.h); on
+ * stdout the first plane's disparities, 16 bits each, and their confidences.
  *
  * stereo_driver pair W H DISPARITIES PATHS, then twice FX FY CX CY X Y Z QW QX QY QZ: two views' RGB planes on stdin;
- * on stdout a line with what the pair is, its depth unit and the first view's rectified kind and size, then depth, 16
+ * on stdout a line with the kind of pair, its depth unit and the first view's rectified kind and size, then depth, 16
  * bits each, and confidence of both views.
  *
  * stereo_driver bench W H DISPARITIES PATHS ROUNDS: like match; prints the fastest round's processor time in ms without

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""stereo_opencv.py DRIVER DATA [--time]: matching against OpenCV's StereoSGBM on Middlebury's teddy: pixels off by more
-than two, of those that both views see, as taken, with one picture half as bright, and with noise. With --time, for a
-release build where nothing else runs, then the processor time of both in turns: their ratio, its median over the rounds
-held to a limit, and its spread.
+"""stereo_opencv.py DRIVER DATA [--time]: compares matching with OpenCV's StereoSGBM on Middlebury's teddy, by the share
+of pixels seen by both views that are off by more than two: as captured, with one picture half as bright, and with
+noise. With --time, for a release build on an idle machine, also the ratio of processor times: its median over the
+rounds is held to a limit, and its spread is printed.
 
-OpenCV matches with all eight paths and 64 disparities, at the block size that is best for it in each case. Its picture is
-extended by 64 columns to the left, so that it has every candidate that ours has. A pixel without a disparity is off."""
+OpenCV matches with all eight paths and 64 disparities, at its best block size in each case. Its picture is extended by
+64 columns to the left, so that it has the same candidates. A pixel without a disparity counts as off."""
 import subprocess
 import sys
 import time
@@ -21,8 +21,8 @@ except ImportError as missing:
 
 DISPARITIES = 64
 BLOCKS = (1, 3, 5, 7, 9)
-# Processor time against OpenCV's with as many paths, filling left out, which OpenCV does not do. Other programs on the
-# machine disturb both: each round takes the fastest of some runs of the one, then of as many of the other.
+# Limit of the ratio to OpenCV's processor time with the same number of paths, without filling, which OpenCV lacks.
+# Because other programs disturb both, each round takes the fastest of RUNS runs of one, then of RUNS of the other.
 TIMES, ROUNDS, RUNS, SIDE = 1.5, 11, 5, 256
 
 
@@ -32,13 +32,13 @@ def luma(path):
 
 
 def truth(scene, name):
-    """Disparities: 450 pixels of focal length, cameras 0.4 apart, depth in millimetres."""
+    """Returns disparities: focal length 450 pixels, baseline 0.4, depth in millimetres."""
     depth = cv2.imread(str(scene / "depth" / name), cv2.IMREAD_UNCHANGED) * 0.001
     return np.where(depth > 0, 450 * 0.4 / np.maximum(depth, 1e-9), -1)
 
 
 def planes(left, right):
-    """Returns planes for the driver, without 0, which would mean that a pixel shows nothing."""
+    """Returns planes for the driver; 0 marks pixels without content, so values start at 1."""
     outside = np.zeros((len(left), DISPARITIES - 1), np.uint8)
     return np.maximum(left, 1), np.concatenate([outside, np.maximum(right, 1)], 1)
 
@@ -105,7 +105,7 @@ def speed(driver, scene):
     cv2.setNumThreads(1)
     failed = 0
     for paths, mode in ((4, cv2.STEREO_SGBM_MODE_HH4), (8, cv2.STEREO_SGBM_MODE_HH)):
-        # both check both ways and remove speckles
+        # both check left against right and remove speckles
         other = matcher(3, mode, disp12MaxDiff=1, uniquenessRatio=10, speckleWindowSize=64, speckleRange=1)
         rounds = []
         for _ in range(ROUNDS):

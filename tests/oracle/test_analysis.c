@@ -110,9 +110,9 @@ TEST(pointmap)
 typedef struct cloud {
     uint32_t count;
     int16_t (*feature_q11)[ORACLE_DIMENSIONS];
-    double *points;      /* the same, what the oracle sees */
-    uint32_t hole_every; /* one in so many points is invalid; 0 = none */
-    uint32_t *labels;    /* NO_LABEL until they come */
+    double *points;      /* the oracle's copy of the points */
+    uint32_t hole_every; /* every hole_every-th point is invalid; 0: none */
+    uint32_t *labels;    /* NO_LABEL until clustering sets them */
 } cloud;
 
 #define NO_LABEL UINT32_MAX
@@ -254,7 +254,7 @@ TEST(kmeans)
     kmeans_case("to the ends of the range", &c, 512, 1.15);
 }
 
-/* Returns the mean squared distance after clustering, started from the previous points' centres or anew. */
+/* Returns the mean squared distance after clustering, started from the previous centres or from scratch. */
 static double kmeans_of(const cloud *c, uint32_t k, bool follows, t3r_cluster *clusters)
 {
     const t3r_point_source source = source_of(c);
@@ -273,12 +273,12 @@ static double kmeans_of(const cloud *c, uint32_t k, bool follows, t3r_cluster *c
     return msd;
 }
 
-/* The points moved by a third of the room: centres left without points are placed anew, and quality is not lost. */
+/* The points move by a third of the room: centres without points are placed again, and quality is not lost. */
 TEST(kmeans_that_follows)
 {
     enum { K = 200, COUNT = 24000 };
     cloud before = cloud_of(COUNT, 60, 0.9, 0.15, 3), after = cloud_of(COUNT, 60, 0.9, 0.15, 3);
-    for (uint32_t i = 0; i < COUNT; i++) { /* points that leave at one end come in at the other */
+    for (uint32_t i = 0; i < COUNT; i++) { /* points that leave at one end enter at the other */
         after.feature_q11[i][0] = (int16_t)(after.feature_q11[i][0] + 2048);
         after.points[i * ORACLE_DIMENSIONS] += 1;
         if (i % 3 == 0) {
@@ -334,7 +334,7 @@ TEST(kmeans_that_stays)
         const t3r_cluster_host host = {.workers = {NULL, 1}, .context = &s, .step = take_step};
         const t3r_point_source source = source_of(&c);
         memcpy(following, anew, sizeof anew);
-        following[1].centre_q19[0] = following[2].centre_q19[0] = away; /* two are placed anew */
+        following[1].centre_q19[0] = following[2].centre_q19[0] = away; /* two are placed again */
         const uint32_t valid = t3r_superclusters(&source, &settings, following, work, &host);
         assert_int_equal(valid, stop_at == 0 ? COUNT : T3R_CLUSTERS_CANCELLED);
         all = stop_at == 0 ? s.calls : all;
@@ -404,8 +404,8 @@ static void wavelet_case(texture_kind kind, uint32_t width, uint32_t height, uin
     for (size_t i = 0; i < pixels; i++) {
         got += texture[i] / 16.0;
     }
-    /* 1 % (2 % where a few hundred coefficients can't average their roundings); where there is little to see, the
-     * lifting steps' own roundings, in levels of luma a pixel and level */
+    /* 1 %, or 2 % where a few hundred coefficients can't average their roundings. Where there is little texture, the
+     * roundings of the lifting steps count, in levels of luma per pixel and level. */
     double floor_level = kind == NOISE || kind == OCTAVES ? 0 : kind == RAMP ? 0.75 : 0.25;
     double share = pixels >= 4096 ? 0.01 : 0.02;
     if (fabs(got - want) > share * want + floor_level * levels * (double)pixels) {
@@ -431,7 +431,7 @@ TEST(wavelet_energy)
     }
 }
 
-/* The oracle itself: energy is preserved by the orthonormal pairs, constants vanish, so do ramps away from the wrap. */
+/* Checks the oracle: orthonormal pairs preserve energy; constants vanish, and so do ramps away from the wrap. */
 TEST(wavelet_oracle)
 {
     enum { N = 32 };

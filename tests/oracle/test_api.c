@@ -16,7 +16,7 @@ enum { W = 32, H = 24, POINTS = W * H };
 
 static const t3r_scene_frame plain_frame;
 
-/* ---- a runtime, and whether a call changed it ---------------------------------------------------- */
+/* ---- a runtime and a copy of its arena ----------------------------------------------------------- */
 
 typedef struct bench {
     t3r_config config;
@@ -61,7 +61,7 @@ static void refused_at(bench *b, t3r_status got, t3r_status want, int line)
         refused_at((b), (call), (want), __LINE__);                                                                     \
     } while (0)
 
-/* ---- a picture to hand in ------------------------------------------------------------------------ */
+/* ---- an input picture ---------------------------------------------------------------------------- */
 
 static uint8_t pixels[T3R_PIXEL_FORMAT_COUNT][POINTS * 3];
 static uint8_t depths[POINTS * 2];
@@ -455,7 +455,7 @@ TEST(calls_out_of_order)
     assert_int_equal(t3r_add_view(b.rt, &frame, &camera), T3R_OK);
     REFUSED(&b, t3r_add_view(b.rt, &frame, &camera), T3R_ERR_STATE);
     assert_int_equal(t3r_reset(b.rt), T3R_OK);
-    /* depth that is all holes: the view does not count, wherever this is noticed */
+    /* depth with holes only: the view is refused, or the reconstruction */
     static const uint8_t holes[POINTS * 2];
     t3r_frame empty = frame;
     empty.depth = holes;
@@ -509,7 +509,7 @@ TEST(calls_out_of_order)
     }
     assert_int_equal(t3r_rebuild(b.rt, &ten_given, &scene), T3R_OK);
     assert_int_equal(scene.count, 10);
-    assert_int_equal(t3r_rebuild(b.rt, NULL, &scene), T3R_OK); /* a request holds for its call alone */
+    assert_int_equal(t3r_rebuild(b.rt, NULL, &scene), T3R_OK); /* a request applies to its call only */
     assert_int_equal(scene.count, keep.gaussians);
     for (uint32_t z = 1; z <= keep.max_gaussians; z += 33) {
         assert_int_equal(t3r_rebuild(b.rt, &(t3r_request){.gaussians = z}, &scene), T3R_OK);
@@ -576,8 +576,8 @@ TEST(budgets)
     free(weights);
 }
 
-/* Memory of the planes that is reused once the scene is built must never come back as an analysis: a second
- * reconstruction is refused, or gives the same scene again. */
+/* Planes' memory that is reused after the scene is built must never be taken for an analysis: a second reconstruction
+ * is refused, or gives the same scene. */
 TEST(planes_lent_away)
 {
     t3r_frame frame = good_frame();
@@ -664,7 +664,7 @@ TEST(cancelling)
             break;
         }
         assert_int_equal(status, T3R_ERR_CANCELLED);
-        assert_int_equal(f.calls, at + 1); /* no call after it said stop */
+        assert_int_equal(f.calls, at + 1); /* no call after a cancelling one */
         cancelled++;
         /* a cancelled call does not affect later ones */
         assert_int_equal(t3r_set_hooks(b.rt, NULL), T3R_OK);

@@ -100,7 +100,7 @@ TEST(plan_equals_macros)
         t3r_plan_info plan;
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
         check_plan(&plan);
-        assert_true(plan.bytes <= t3r_most_arena_bytes(&c)); /* what is refused where size_t is small */
+        assert_true(plan.bytes <= t3r_most_arena_bytes(&c)); /* refused where size_t is small */
         const uint32_t keep = c.stream ? T3R_KEEP_MAP : c.keep_analysis;
 #define SHAPE                                                                                                          \
     T3R_SHAPE_(c.width, c.height, c.views, c.max_gaussians, c.stream ? 1 : c.clusters, c.render_width,                 \
@@ -109,7 +109,7 @@ TEST(plan_equals_macros)
         assert_true(plan.min_bytes == T3R_MIN_BYTES_(SHAPE));
         assert_true(plan.bytes == T3R_FULL_BYTES_(SHAPE));
 #undef SHAPE
-        /* the public macros speak of the defaults */
+        /* the macros are for the defaults */
         c = t3r_default_config(c.width, c.height, c.views, c.max_gaussians);
         assert_int_equal(t3r_plan(&c, &plan), T3R_OK);
         assert_true(plan.min_bytes == T3R_ARENA_MIN_BYTES(c.width, c.height, c.views, c.max_gaussians));
@@ -135,7 +135,7 @@ TEST(plan_equals_macros)
 }
 
 /* Settings unknown to the macros must not need more. */
-/* The most Gaussians that fit, and not one more; never more than were asked for. */
+/* Finds the most Gaussians that fit, never more than requested; one more does not fit. */
 TEST(plan_within_is_the_inverse)
 {
     dice d = {11};
@@ -176,7 +176,7 @@ TEST(plan_within_is_the_inverse)
         assert_memory_equal(&fitted, &c, sizeof c);
     }
     assert_true(cut > 10000 && refused > 5);
-    /* all that memory can hold of the largest scene, and what is out of range */
+    /* the largest scene that memory can hold, and values out of range */
     t3r_config c = t3r_default_config(256, 256, 2, T3R_MAX_GAUSSIANS);
     assert_int_equal(t3r_plan_within(LEAST, &c), T3R_OK);
     assert_true(c.max_gaussians >= 13107 && c.gaussians == c.max_gaussians);

@@ -80,7 +80,7 @@ TEST(same_bits_everywhere)
         assert_int_equal(t3r_reconstruct(rt, NULL, &expected), T3R_OK);
         assert_int_equal(expected.count, 400);
         uint32_t different = 0;
-        for (uint32_t i = 1; i < expected.count; i++) { /* the network says something, not always the same */
+        for (uint32_t i = 1; i < expected.count; i++) { /* the network's output varies */
             different += expected.gaussians[i].opacity_q15 != expected.gaussians[i - 1].opacity_q15;
         }
         assert_true(different > expected.count / 2);
@@ -107,8 +107,8 @@ TEST(same_bits_everywhere)
     }
 }
 
-/* Two readers of the features with receptive fields of different sizes, a depthwise layer, a layer that reads only a
- * coarser one. */
+/* Two readers of the features with receptive fields of different sizes, a depthwise layer, and a layer that reads only
+ * a coarser one. */
 static const made_layer odd_shape[] = {
     {T3R_LAYER_CONV, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 4},
     {T3R_LAYER_CONV, 0, {0, T3R_SOURCE_NONE}, 5, 1, 1, 4},
@@ -119,7 +119,7 @@ static const made_layer odd_shape[] = {
 };
 static const uint32_t odd_layers = sizeof odd_shape / sizeof odd_shape[0];
 
-/* A view made in bands, each in its own work memory with any contents, has the Gaussians of the view made at once. */
+/* A view made in bands, each in its own work memory with any contents, has the same Gaussians as the whole view. */
 TEST(bands_give_the_whole_view)
 {
     static const struct {
@@ -138,7 +138,7 @@ TEST(bands_give_the_whole_view)
     t3r_head_input input = t3r_head_input_of(rt, views, 0, &settings);
     t3r_gaussian *whole = malloc(POINTS * sizeof *whole), *bands = malloc(POINTS * sizeof *bands);
     t3r_head_rows *const heads[] = {t3r_head_analytic, t3r_head_learned};
-    enum { ROUNDS = T3R_SANITIZED ? 36 : 180 }; /* 36 have every shape, width and kind of band */
+    enum { ROUNDS = T3R_SANITIZED ? 36 : 180 }; /* 36 rounds cover every shape, width and kind of band */
     uint32_t random = 1;
     for (uint32_t round = 0; round < ROUNDS; round++) {
         const uint32_t bits = round / 3 % 4;
@@ -171,7 +171,7 @@ TEST(bands_give_the_whole_view)
     arena_free(&memory);
 }
 
-/* A network whose work fits into the kernels' still requires a byte per column: 0 means no learned head. */
+/* A network whose work fits into the kernels' memory still needs one byte per column: 0 means no learned head. */
 TEST(least_room_for_a_head)
 {
     static const made_layer least[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, T3R_HEAD_OUTPUTS}};
@@ -191,7 +191,7 @@ TEST(least_room_for_a_head)
     free(weights);
 }
 
-/* Heads shipped by earlier versions, by their layers: such files can still be bound, in an arena made for them. */
+/* Heads shipped by earlier versions, by their layers, can still be bound in an arena made for them. */
 TEST(heads_that_are_not_shipped)
 {
 #define U_NET(A, B, C, HIDDEN)                                                                                         \
@@ -262,8 +262,8 @@ static void is_part_of(const t3r_scene *few, const t3r_gaussian *all, uint32_t c
     }
 }
 
-/* A head without adaptation makes all points' Gaussians, which are pruned and not changed; a head with adaptation
- * makes another scene. */
+/* A head without adaptation makes all points' Gaussians and drops some unchanged; a head with adaptation makes another
+ * scene. */
 TEST(unadapted_is_pruned)
 {
     static t3r_gaussian all[2 * POINTS], adapted[300];
@@ -274,7 +274,7 @@ TEST(unadapted_is_pruned)
         t3r_config config = learned_config(2 * POINTS);
         config.head = heads[h];
         config.allocate = T3R_ALLOCATE_UNIFORM;        /* at 100 % the density is 1 everywhere */
-        config.fill_radius = config.bridge_radius = 0; /* nor do filled points take measured ones' places */
+        config.fill_radius = config.bridge_radius = 0; /* filled points do not displace measured ones */
         arena memory = arena_of(&config, ARENA_AT_FULL);
         uint32_t count = 0;
         const t3r_request fewer = {.gaussians = 300, .allocate = T3R_ALLOCATE_DENSITY};
@@ -372,13 +372,13 @@ TEST(binding)
     uint32_t crc = t3r_head_crc(rt);
     assert_int_not_equal(crc, 0);
     assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
-    assert_int_equal(t3r_bind_head(rt, too_large, wide_bytes), T3R_ERR_WEIGHTS); /* the bound one stays */
+    assert_int_equal(t3r_bind_head(rt, too_large, wide_bytes), T3R_ERR_WEIGHTS); /* the bound head stays */
     assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = 50}, &scene), T3R_OK);
     assert_int_equal(t3r_bind_head(rt, NULL, 0), T3R_OK);
     assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = 50}, &scene), T3R_ERR_STATE);
     assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = 50, .head = T3R_HEAD_ANALYTIC}, &scene), T3R_OK);
     assert_int_equal(t3r_rebuild(rt, &(t3r_request){.gaussians = 50, .head = T3R_HEAD_LEARNED}, &scene), T3R_ERR_STATE);
-    assert_int_equal(t3r_get_scene(rt, &scene), T3R_OK); /* refused before anything changed */
+    assert_int_equal(t3r_get_scene(rt, &scene), T3R_OK); /* refused before any change */
     assert_int_equal(t3r_attach(&rt, memory.bytes, memory.count), T3R_OK);
     assert_int_equal(t3r_head_crc(rt), crc);
 
@@ -392,11 +392,11 @@ TEST(binding)
     free(weights);
 }
 
-/* --- what the outputs mean ---------------------------------------------------------------------------------------- */
+/* --- meaning of the outputs --------------------------------------------------------------------------------------- */
 
 static t3r_gaussian constant_scene[POINTS];
 
-/* Every pixel retained, one point layer without weights: the outputs are its biases. */
+/* Every pixel is retained, and one point layer has no weights: its biases are the outputs. */
 static const t3r_gaussian *constant_head(const int16_t outputs[T3R_HEAD_OUTPUTS], t3r_head head)
 {
     const made_layer one[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 9}};
@@ -415,7 +415,7 @@ static const t3r_gaussian *constant_head(const int16_t outputs[T3R_HEAD_OUTPUTS]
     seal_weights(weights, bytes);
     t3r_config config = learned_config(POINTS);
     config.views = 1;
-    config.gamma_q8 = 0; /* all as dense */
+    config.gamma_q8 = 0; /* uniform density */
     config.head = head;
     arena memory = arena_of(&config, ARENA_AT_MINIMUM);
     t3r_runtime *rt = with_views(&memory, &config, 0);
@@ -464,7 +464,7 @@ static double product(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* The Gaussian's covariance in the coordinates of the tangents tu and tv, px^2: xx, xy, yy. */
+/* Computes the Gaussian's covariance in the coordinates of the tangents tu and tv, px^2: xx, xy, yy. */
 static void in_the_image(const t3r_gaussian *g, const double tu[3], const double tv[3], double s[3])
 {
     double uu = product(tu, tu), uv = product(tu, tv), vv = product(tv, tv), det = uu * vv - uv * uv;
@@ -486,7 +486,7 @@ static void in_the_image(const t3r_gaussian *g, const double tu[3], const double
     }
 }
 
-/* Footprints against the same in doubles, the spacing being one pixel where all are kept. */
+/* Footprints against doubles; the spacing is one pixel, as all points are kept. */
 TEST(footprints)
 {
     static t3r_gaussian centres[POINTS];
@@ -535,7 +535,8 @@ TEST(footprints)
     }
 }
 
-/* Outputs are in units of the spacing: at a tenth kept a constant head that copies `analytic` gives its discs. */
+/* Outputs are in units of the spacing: with a tenth of the points a constant head that copies `analytic` gives its
+ * discs. */
 TEST(scaled_by_the_spacing)
 {
     const made_layer one[] = {{T3R_LAYER_POINT, 0, {0, T3R_SOURCE_NONE}, 1, 1, 1, 9}};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The integer raster against the float64 oracle on the same Gaussians: at least 50 dB, both rounded to 8 bits,
- * over all pixels; and the promise that the arena's size never shows in a pixel. */
+/* The integer raster against the float64 oracle on the same Gaussians: at least 50 dB, both rounded to 8 bits, over
+ * all pixels. The arena's size must not change a pixel. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,9 +12,8 @@
 #include "test.h"
 
 #define LEAST_DB 50.0
-/* Alpha: Q15 against double. Depth: where transmittance passes 1/2 within the margin, the neighbours in the order
- * are correct, too. The shares allow for splats within one step of the same depth, whose order depends on its last
- * bit. */
+/* Alpha: Q15 against double. Depth: where transmittance passes 1/2 within the margin, a neighbour in the order is
+ * valid, too. The shares allow for splats less than one step apart in depth, whose order depends on the last bit. */
 #define ALPHA_TOLERANCE 0.004
 #define ALPHA_SHARE 0.001
 #define DEPTH_SHARE 0.001
@@ -136,7 +135,7 @@ TEST(random_scenes)
     }
 }
 
-/* From other places, turned, with unequal focal lengths and a principal point off the middle. */
+/* Turned cameras at other places, with unequal focal lengths and an off-centre principal point. */
 TEST(moved_cameras)
 {
     static const recipe r = {"ball", 8000, 200, 160, 200, -1, 1, 1, 0.005, 0.05, 20, 0.1, 1};
@@ -158,7 +157,7 @@ TEST(moved_cameras)
             camera.rotation_q30[k] = camera.rotation_q30[k] / 2 + camera.rotation_q30[k] / 5; /* any norm will do */
         }
         check("moved camera", &plain_frame, gaussians, r.count, &camera, r.width, r.height);
-        /* The same place at map coordinates, in units 1/64 as large. */
+        /* The same place in map coordinates, in units 1/64 as large. */
         t3r_scene_frame frame = {{(int64_t)4123456 << 32, -((int64_t)512345 << 32), 99}, -6};
         for (int k = 0; k < 3; k++) {
             camera.position_q32[k] = camera.position_q32[k] / 64 + frame.origin_q32[k];
@@ -239,7 +238,7 @@ static void huge_scenes(int least_exponent, int most_exponent)
     }
 }
 
-/* Up to 64 times the median depth. */
+/* Splats up to 64 times as wide as the median depth. */
 TEST(huge_splats)
 {
     huge_scenes(0, 6);
@@ -304,7 +303,7 @@ TEST(near_plane)
         check(recipes[i].name, &plain_frame, gaussians, recipes[i].count, &camera, recipes[i].width, recipes[i].height);
         free(gaussians);
     }
-    /* A splat exactly on the plane is culled, one step beyond is drawn; nothing behind the camera is. */
+    /* A splat exactly on the near plane is culled, one step beyond it drawn; none behind the camera is drawn. */
     t3r_camera camera = plain_camera(100, 33, 33);
     static const struct {
         int32_t z_q20;
@@ -334,8 +333,7 @@ TEST(far_off_axis)
     }
 }
 
-/* The Jacobian is clamped at 1.3 half fields of view and, where nothing is drawn any more, at 16 to the side per 1
- * ahead. */
+/* The Jacobian is clamped at 1.3 half fields of view, or at |x|/z = 16, beyond which nothing is drawn. */
 TEST(fields_of_view)
 {
     static const struct {
@@ -394,7 +392,8 @@ TEST(saturation)
     free(gaussians);
 }
 
-/* Sigma, depth and focal length so that everything is known: the oracle to rounding, the raster to one level. */
+/* Sigma, depth and focal length are chosen for a closed form: the oracle agrees to rounding, the raster to one level.
+ */
 TEST(closed_form)
 {
     enum { SIDE = 31, MIDDLE = 15 };
@@ -414,7 +413,7 @@ TEST(closed_form)
                 double alpha = fmin(0.99, opacity * exp(-d2 / (2 * variance)));
                 int pixel = y * SIDE + x;
                 if (fabs(alpha - 1 / 255.0) < 2e-5) {
-                    continue; /* on the threshold itself either is right */
+                    continue; /* at the threshold both are valid */
                 }
                 alpha = alpha < 1 / 255.0 ? 0 : alpha;
                 assert_true(fabs(want.rgb[pixel * 3] - alpha) < 1e-12);
@@ -482,7 +481,7 @@ TEST(arena_sizes)
             assert_true(few.passes > 1);
         }
         assert_true(many.passes < few.passes || few.passes == 1);
-        /* and every step between the two, unaligned ends included */
+        /* and every size between the two, including unaligned ones */
         t3r_config config = render_config(r->count, r->width, r->height);
         t3r_plan_info plan;
         assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
@@ -577,7 +576,7 @@ static void note_hash(void *user, t3r_stage stage, uint64_t hash)
     *(uint64_t *)user = hash;
 }
 
-/* The stage's hash is of the planes that were asked for, whatever stands between their rows. */
+/* The stage's hash covers the requested planes and ignores the bytes between their rows. */
 TEST(planes_are_hashed)
 {
     enum { W = 21, H = 17 };

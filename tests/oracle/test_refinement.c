@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The integer refinement, one pass to the default number of them, against the float64 oracle on the same scene: two
- * views of a slanted surface with holes in its depth and a nearer one before it. */
+/* The integer refinement, after one pass to the default number, against the float64 oracle on the same scene: two
+ * views of a slanted surface with holes in its depth and a nearer surface before it. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -52,7 +52,7 @@ static int stop_before_refinement(void *user, t3r_stage stage, uint32_t done, ui
     return stage == T3R_STAGE_REFINE;
 }
 
-/* Reconstructs with so many passes; with none the Gaussians are as the head makes them. */
+/* Reconstructs with `refine` passes; 0 leaves the Gaussians as the head makes them. */
 static t3r_gaussian *reconstruct(uint32_t refine, const splat_maker *maker, t3r_scene *scene)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, BUDGET);
@@ -96,7 +96,7 @@ static double length_of(const double *v, int n)
 }
 
 typedef struct difference {
-    double colour, opacity, place, shape; /* levels; 1; over the factor's norm, twice */
+    double colour, opacity, place, shape; /* levels; 1; position and shape relative to the factor's norm */
 } difference;
 
 static difference between(const oracle_gaussian *a, const oracle_gaussian *b)
@@ -113,9 +113,9 @@ static difference between(const oracle_gaussian *a, const oracle_gaussian *b)
     return (difference){colour, fabs(a->opacity - b->opacity), length_of(place, 3) / norm, length_of(shape, 9) / norm};
 }
 
-/* Of a splat that is all but hidden, what 16-bit weights and the cut at alpha 1/255 leave of its sums decides the step.
- * So the mean error is held to a share of how far the passes moved a Gaussian. All but STRAYS of the Gaussians are held
- * to a bound below the largest step of all. Every pass starts from what the one before left, so errors add up. */
+/* For a splat that is nearly hidden, 16-bit weights and the cut at alpha 1/255 remove most of its sums and so decide
+ * the step. Hence the mean error is bounded by a share of the Gaussians' mean change, and all but STRAYS Gaussians by
+ * a bound below the largest step. Each pass starts from the previous result, so errors add up. */
 #define STRAYS 2
 static const double mean_share[PASSES] = {0.015, 0.0175, 0.021, 0.025};
 static const difference most_off[PASSES] = {
@@ -154,8 +154,8 @@ static void check_pass(const splat_maker *maker, uint32_t passes, const oracle_g
                   mean.opacity, mean.place, mean.shape, most.colour, most.opacity, most.place, most.shape);
     assert_true(moved.colour > 1 && moved.opacity > 0.003 && moved.place > 0.01 && moved.shape > 0.01);
     assert_true(mean.colour < share * moved.colour);
-    assert_true(mean.opacity <
-                share * moved.opacity + 0.001 * (passes - 1)); /* one pass takes what the next one gives */
+    assert_true(mean.opacity < share * moved.opacity +
+                                   0.001 * (passes - 1)); /* one pass may take opacity that the next one gives back */
     assert_true(mean.place < share * moved.place && mean.shape < share * moved.shape);
     assert_true(strays <= STRAYS);
     free(after);

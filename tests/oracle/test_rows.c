@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Views that come in strips of rows: the hashes are those of whole frames, and strips out of order are refused. */
+/* Views that come in strips of rows have the hashes of whole frames; strips out of order are refused. */
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -84,7 +84,7 @@ static uint64_t hash_of_scene(session *s)
     return s->hash;
 }
 
-/* Rows in memory of exactly their bytes, so that sanitizers see a read beyond them. */
+/* Copies rows to memory of exactly their size, so that sanitizers see a read beyond them. */
 static const uint8_t *rows_of(const uint8_t *plane, uint32_t stride, uint32_t row, uint32_t rows)
 {
     uint8_t *copy = malloc((size_t)stride * rows + 1);
@@ -114,7 +114,7 @@ static uint32_t least(uint32_t a, uint32_t b)
     return a < b ? a : b;
 }
 
-/* Colour by `rows`, depth by `depth_rows` with each strip of colour and the rest alone. */
+/* Adds colour in strips of `rows`, each with `depth_rows` of depth, then the rest of the depth. */
 static void add_in_strips(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint32_t rows,
                           uint32_t depth_rows)
 {
@@ -149,7 +149,7 @@ TEST(strips_have_the_bits_of_frames)
             const uint32_t count = format == T3R_PIXEL_NV12 ? heights[h][0] + heights[h][0] % 2 : heights[h][0];
             add_in_strips(rows.rt, &frame, &camera, count, heights[h][1]);
             add_in_strips(rows.rt, &frame, &camera, count, heights[h][1]);
-            assert_int_equal(strip(rows.rt, &frame, &camera, 0, 2, 0, 1), T3R_ERR_STATE); /* no room */
+            assert_int_equal(strip(rows.rt, &frame, &camera, 0, 2, 0, 1), T3R_ERR_STATE); /* both views are complete */
             assert_true(hash_of_scene(&rows) == want);
             arena_free(&rows.memory);
         }
@@ -196,7 +196,7 @@ TEST(strips_out_of_order_are_refused)
     other.depth = NULL;
     assert_int_equal(t3r_add_rows(s.rt, &other, &camera, 9, 1, 9, 1), T3R_ERR_NO_DEPTH);
     t3r_scene scene;
-    /* what came stays, through all of that */
+    /* the refused calls have not removed the earlier rows */
     assert_int_equal(strip(s.rt, &frame, &camera, 9, 29, 9, 18), T3R_OK);
     assert_true(hash_of_scene(&s) == want);
     assert_int_equal(strip(s.rt, &frame, &camera, 0, 1, 0, 1), T3R_ERR_STATE); /* there is a scene */
@@ -204,7 +204,7 @@ TEST(strips_out_of_order_are_refused)
 
     t3r_runtime *attached;
     begin(&s, config_of());
-    for (int call = 0; call < 4; call++) { /* each discards what came */
+    for (int call = 0; call < 4; call++) { /* each discards the rows so far */
         assert_int_equal(strip(s.rt, &frame, &camera, 0, 9, 0, 9), T3R_OK);
         if (call == 0) {
             assert_int_equal(t3r_reset(s.rt), T3R_OK);
@@ -218,7 +218,7 @@ TEST(strips_out_of_order_are_refused)
         }
         assert_int_equal(strip(s.rt, &frame, &camera, 9, 1, 9, 1), T3R_ERR_STATE);
     }
-    /* begun anew in the middle, and without a measurement */
+    /* a view that starts again midway, and one without a measurement */
     assert_int_equal(strip(s.rt, &frame, &camera, 0, 9, 0, 9), T3R_OK);
     add_in_strips(s.rt, &frame, &camera, 5, 5);
     memset(depth, 0, sizeof depth);

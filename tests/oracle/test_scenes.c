@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The integer raster against the float64 oracle on real input: every test scene with sensor depth, built at 100 % and
- * at 5 % of its valid points, as it lies in the arena and as it is written to a .ply; and a trained scene from a
- * foreign .ply, the oracle fed with the file's own numbers.
+ * at 5 % of its valid points, as stored in the arena and as written to a .ply; and a trained scene from a foreign .ply,
+ * where the oracle gets the file's own numbers.
  *
- * Usage: test_scenes TRIM3R DATA_FOLDER; the folder's splits.json says that the data is there. */
+ * Usage: test_scenes TRIM3R DATA_FOLDER; the folder's splits.json shows that the data is there. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -70,7 +70,7 @@ static t3r_capture_frame frame_of(const t3r_recording *recording, uint32_t index
     return frame;
 }
 
-/* Pixels with a measured depth in the two context views. */
+/* Returns the number of pixels with a measured depth in the two context views. */
 static uint32_t valid_points(const t3r_recording *recording, t3r_triplet t)
 {
     uint32_t valid = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Streams: a camera moves along a textured wall with boxes before it, for a long time. The cap holds, the bits
- * depend on nothing irrelevant, impossible calls are refused, and cancelled ones do no harm. */
+/* Streams: a camera moves along a textured wall with boxes before it, for a long time. The cap holds, the bits depend
+ * on nothing irrelevant, invalid calls are refused, and cancelled ones do no harm. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -25,8 +25,7 @@ typedef struct pose {
 
 static uint8_t rgb[PIXELS * 3], depth[PIXELS * 2];
 
-/* Makes what a camera there sees: the wall's colour by place, depth along the camera's axis; 0 where it looks past
- * the wall. */
+/* Renders the view of a camera there: the wall's colour by place, depth along the camera's axis, 0 beyond the wall. */
 static void look_from(const pose *p, t3r_frame *frame, t3r_camera *camera)
 {
     *camera = plain_camera(20, W, H);
@@ -69,7 +68,7 @@ typedef struct site {
     t3r_runtime *rt;
     uint32_t calls, cancel_at; /* calls of the progress hook; 0 = never */
     t3r_stage stage;           /* of the last call */
-    uint32_t done, steps;      /* of that call; number of calls that were not of the previous step */
+    uint32_t done, steps;      /* `done` of the last call; number of changes of stage or `done` */
 } site;
 
 static int progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
@@ -126,7 +125,7 @@ static void move_arena(site *s)
     vectors_if_sanitized(s->rt);
 }
 
-/* Along the wall, to and fro a little, looking about. */
+/* Walks along the wall, a little to and fro, looking about. */
 static pose step_of(uint32_t i)
 {
     return (pose){.x = i * 0.3, .z = 0.4 * sin(i * 0.13), .yaw = 0.5 * sin(i * 0.37), .boxes = true};
@@ -134,13 +133,13 @@ static pose step_of(uint32_t i)
 
 /* ---- tests --------------------------------------------------------------------------------------- */
 
-/* 3 km. With sanitizers in longer strides, as keyframes take ten times as long. */
+/* Walks 3 km; with sanitizers in longer strides, as keyframes take ten times as long. */
 TEST(the_cap_holds)
 {
     enum { STRIDE = T3R_SANITIZED ? 5 : 1, KEYFRAMES = 10000 / STRIDE };
     t3r_config config = stream_config();
     config.refine = 1;
-    site s = site_of(config, ARENA_AT_FULL); /* every view takes one pass */
+    site s = site_of(config, ARENA_AT_FULL); /* one pass for all views */
     t3r_hooks hooks = {.user = &s, .progress = progress};
     assert_int_equal(t3r_set_hooks(s.rt, &hooks), T3R_OK);
     uint32_t before = 0, most_steps = 0, origins = 0;
@@ -166,8 +165,8 @@ TEST(the_cap_holds)
         if (r.crowded > 0) {
             assert_int_equal(scene.count, CAP);
         }
-        /* a keyframe takes as many steps in the end as in the beginning; within a step of refinement the number of
-         * calls depends on the tiles' splats */
+        /* a keyframe takes no more steps at the end than at the beginning; the calls within a step of refinement
+         * depend on the tiles' splats */
         most_steps = i < 2 * AT_HAND && s.steps > most_steps ? s.steps : most_steps;
         assert_true(s.steps <= most_steps);
         frame = scene.frame;
@@ -177,11 +176,11 @@ TEST(the_cap_holds)
             assert_int_equal(t3r_set_hooks(s.rt, &hooks), T3R_OK);
         }
     }
-    assert_true(origins >= 2); /* the way is 1,500 scene units and more */
+    assert_true(origins >= 2); /* the path is at least 1,500 scene units long */
     arena_free(&s.memory);
 }
 
-/* On a long path the map holds what is in front of the camera, and more so the faster the rest fades. */
+/* On a long path the map holds what is in front of the camera; the faster the rest fades, the more. */
 TEST(follows)
 {
     uint32_t near[2] = {0, 0};
@@ -264,7 +263,7 @@ static uint32_t of_boxes(const t3r_scene *scene)
     return count;
 }
 
-/* The boxes are removed: the wall behind them is visible, and the boxes' Gaussians are removed. */
+/* The boxes are taken away: the wall behind them becomes visible, and the boxes' Gaussians are removed. */
 TEST(contradicted_ones_leave)
 {
     site s = site_of(stream_config(), ARENA_AT_FULL);
@@ -282,7 +281,7 @@ TEST(contradicted_ones_leave)
     arena_free(&s.memory);
 }
 
-/* From a quarter of the distance the wall has sixteen times the pixels. */
+/* At a quarter of the distance the wall has sixteen times the pixels. */
 TEST(finer_sights_replace)
 {
     site s = site_of(stream_config(), ARENA_AT_FULL);
@@ -297,7 +296,7 @@ TEST(finer_sights_replace)
     arena_free(&s.memory);
 }
 
-/* Wherever the hook stops it, the map stays valid and later calls work. */
+/* At any call where the hook cancels, the map stays valid and later calls work. */
 TEST(cancelled_anywhere)
 {
     uint32_t cancelled = 0;
@@ -330,7 +329,7 @@ TEST(cancelled_anywhere)
     assert_true(cancelled > 15);
 }
 
-/* Whatever a copied arena holds beside its Gaussians does no harm. */
+/* Any record of a copied arena, apart from its Gaussians, does no harm. */
 TEST(wild_records)
 {
     dice d = {3};
@@ -359,8 +358,8 @@ static uint32_t overlap_at(const site *s, pose p)
     return overlap_q8;
 }
 
-/* Full overlap at the same place; less the farther the camera moves sideways, turns, comes near or goes back; none
- * behind. */
+/* The overlap is full at the same place, smaller as the camera moves sideways, turns, comes nearer or retreats, and 0
+ * when it looks back. */
 TEST(overlap_tells_of_motion)
 {
     site s = site_of(stream_config(), ARENA_AT_FULL);
@@ -387,7 +386,7 @@ TEST(overlap_tells_of_motion)
     arena_free(&s.memory);
 }
 
-/* If none of the sampled pixels has depth, no overlap is known. */
+/* With no depth at the sampled pixels the overlap is unknown. */
 TEST(nothing_overlaps_with_nothing)
 {
     t3r_config config = stream_config();
@@ -407,8 +406,8 @@ TEST(nothing_overlaps_with_nothing)
     arena_free(&s.memory);
 }
 
-/* A camera that jumps from one end of the range to the other takes the origin along. The keyframe left behind is out
- * of range, so the scene is that of a stream that begins there. */
+/* A camera that jumps from one end of the range to the other takes the origin along. The previous keyframe is then out
+ * of range, so the scene equals one of a stream that begins at the new place. */
 TEST(jumps_leave_keyframes_behind)
 {
     site s = site_of(stream_config(), ARENA_AT_FULL), fresh = site_of(stream_config(), ARENA_AT_FULL);
@@ -435,7 +434,7 @@ TEST(jumps_leave_keyframes_behind)
     arena_free(&fresh.memory);
 }
 
-/* And reports nothing, whatever the report held before. */
+/* Checks the status; the report is zeroed, whatever it held before. */
 static void assert_refused(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_status status)
 {
     const t3r_stream_report nothing = {0};
@@ -479,7 +478,7 @@ TEST(refused)
     far.position_q32[0] = (int64_t)5000 << 32;
     assert_refused(s.rt, &frame, &far, T3R_ERR_CAMERA);
     assert_int_equal(t3r_stream_overlap(s.rt, &far, W, H, &overlap_q8), T3R_ERR_CAMERA);
-    /* with pictures so large the focal length would be below 8 pixels at the working size */
+    /* with pictures this large the focal length would be below 8 pixels at the working size */
     assert_int_equal(t3r_stream_overlap(s.rt, &camera, T3R_MAX_SIDE, T3R_MAX_SIDE, &overlap_q8), T3R_ERR_CAMERA);
     t3r_camera folded = camera; /* a lens that shows nothing in most of the picture */
     folded.distortion = T3R_DISTORTION_RADTAN;

@@ -56,7 +56,7 @@ typedef struct site {
     t3r_runtime *rt;
     uint32_t calls, cancel_at; /* calls of the progress hook; 0 = never */
     uint32_t refining;         /* views refined, counted in each pass */
-    uint32_t refined;          /* the last of them, from 1 on */
+    uint32_t refined;          /* the view refined last, plus 1 */
     uint64_t hash[T3R_STAGE_COUNT];
 } site;
 
@@ -123,7 +123,7 @@ static void site_free(site *s)
     free(s);
 }
 
-/* The arena's bytes go elsewhere. */
+/* Moves the arena's bytes elsewhere. */
 static void move(site *s)
 {
     arena elsewhere = arena_of_bytes(s->memory.count);
@@ -152,7 +152,7 @@ static t3r_scene build(site *s)
     return scene;
 }
 
-/* Builds the pair of `step` and the previous one, after all pairs before; the caller frees the scene. */
+/* Builds the pair of `step` and the previous one, after all earlier pairs; the caller frees the scene. */
 static t3r_gaussian *slide(site *s, bool moved)
 {
     t3r_gaussian *scenes = calloc(STEPS * BUDGET, sizeof *scenes);
@@ -177,7 +177,7 @@ static t3r_gaussian *slide(site *s, bool moved)
     return scenes;
 }
 
-/* Compares with a scene of these views by a fresh runtime. */
+/* Compares with the scene that a fresh runtime makes of these views. */
 static void assert_anew(const t3r_scene *scene, viewpoint first, viewpoint second)
 {
     site *cold = site_of(config_of(0), ARENA_AT_FULL);
@@ -228,7 +228,8 @@ TEST(same_bits)
     free(expected);
 }
 
-/* Drawing ends the analysis where none is kept, and keeps the views: without refinement, which would end it earlier. */
+/* Drawing ends an analysis that is not kept, and keeps the views. Without refinement, which would end the analysis
+ * earlier. */
 TEST(a_drawn_arena_moves)
 {
     t3r_config config = config_of(1);
@@ -244,7 +245,7 @@ TEST(a_drawn_arena_moves)
     free(expected);
 }
 
-/* Textures belong to one view: kept ones, and the new view's, are the same as in a fresh runtime. */
+/* Textures belong to one view: kept ones, and the new view's, equal those of a fresh runtime. */
 TEST(a_view_that_changed_is_not_taken_for_the_old)
 {
     site *s = site_of(config_of(1), ARENA_AT_FULL);
@@ -261,7 +262,7 @@ TEST(a_view_that_changed_is_not_taken_for_the_old)
     assert_true(s->hash[T3R_STAGE_IMAGE] == cold->hash[T3R_STAGE_IMAGE]);
     assert_true(s->hash[T3R_STAGE_WAVELET] == cold->hash[T3R_STAGE_WAVELET]);
     site_free(cold);
-    /* the oldest goes: the second view, and then the first again */
+    /* the oldest view is dropped: the second one, and then the first */
     add(s, step_at(2));
     (void)build(s);
     cold = site_of(config_of(0), ARENA_AT_FULL);
@@ -274,7 +275,7 @@ TEST(a_view_that_changed_is_not_taken_for_the_old)
     site_free(s);
 }
 
-/* A call refused before anything is written does not change the pair. */
+/* A call that is refused before it writes does not change the pair. */
 TEST(errors_in_between)
 {
     site *s = site_of(config_of(1), ARENA_AT_FULL);
@@ -308,7 +309,7 @@ TEST(errors_in_between)
     scene = build(s);
     assert_memory_equal(scene.gaussians, expected + BUDGET, BUDGET * sizeof *expected);
 
-    /* a single measurement, which is lost in the resized and undistorted picture: all views are gone */
+    /* a single measurement, which resizing and undistortion lose: all views are dropped */
     bad = look_from(&next, &camera);
     memset(depth, 0, sizeof depth);
     depth[0] = 200;
@@ -358,14 +359,15 @@ TEST(cancelled_builds_leave_nothing)
     }
 }
 
-/* Views at another scale, or far from the origin, begin anew. */
+/* Views at another scale, or far from the origin, are built from scratch. */
 TEST(another_frame_begins_anew)
 {
     site *s = site_of(config_of(1), ARENA_AT_FULL);
     add(s, step_at(0));
     add(s, step_at(1));
     (void)build(s);
-    for (int turn = 0; turn < 3; turn++) { /* 2 m a scene unit: the first two are in range of the frame before */
+    for (int turn = 0; turn < 3;
+         turn++) { /* 2 m a scene unit: the first two views are in range of the previous frame */
         const double x = turn == 0 ? 1500 : turn == 1 ? -300 : 3000;
         const viewpoint far = {x, 60}, farther = {x + 0.2, 60};
         add(s, far);

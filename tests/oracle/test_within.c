@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The smallest sufficient scene: the budget chosen in the arena, on two views of a textured wall with a box before
+/* The smallest sufficient scene: the budget is chosen in the arena, on two views of a textured wall with a box before
  * it. */
 #include <math.h>
 #include <stdbool.h>
@@ -23,7 +23,7 @@ static t3r_camera camera[VIEWS];
 typedef struct site {
     arena memory;
     t3r_runtime *rt;
-    int32_t calls_left; /* before the progress hook cancels; negative = never */
+    int32_t calls_left; /* calls until the progress hook cancels; negative: never */
 } site;
 
 static int progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
@@ -192,7 +192,7 @@ TEST(a_blank_wall_needs_next_to_nothing)
     arena_free(&s.memory);
 }
 
-/* The error of the scene in the arena is that of the context views as rendered. */
+/* The error of the scene in the arena is the error of the rendered context views. */
 TEST(the_error_is_that_of_the_picture)
 {
     make_views(90);

@@ -92,7 +92,7 @@ def table():
 
 
 def copy_of_tree(folder):
-    """The tracked files and no others, each written only where it differs, so that builds stay fresh."""
+    """Copies only the tracked files, each only if it differs, so that builds stay up to date."""
     listed = run("git", "-C", ROOT, "ls-files", "--cached", "--others", "--exclude-standard").stdout.splitlines()
     names = [name for name in listed if (ROOT / name).is_file()]
     for path in folder.rglob("*"):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""pose_free.py SCRIPTS: where tools/study/scripts/pose_free.py puts the target's camera among estimated ones."""
+"""pose_free.py SCRIPTS: where tools/study/scripts/cameras.py puts the target's camera among estimated ones."""
 import os
 import sys
 
@@ -8,16 +8,16 @@ sys.path[:0] = [os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."), 
 from checks import check, done, skip
 
 try:
-    import cv2  # of pose_free
+    import cv2  # of cameras
     import numpy as np
 except ImportError as missing:
     skip(str(missing))
-import pose_free
+import cameras
 
 
 def camera(random):
     out = np.eye(4)
-    out[:3, :3] = pose_free.nearest_rotation(random.standard_normal((3, 3)))
+    out[:3, :3] = cameras.nearest_rotation(random.standard_normal((3, 3)))
     out[:3, 3] = 5 * random.standard_normal(3)
     return out
 
@@ -29,7 +29,7 @@ def moved(similarity, scale, pose):
 
 
 def placed(given, estimated, metric=False):
-    return pose_free.laid_over(given[:2], estimated[:2], metric)
+    return cameras.laid_over(given[:2], estimated[:2], metric)
 
 
 def alike(what, found, expected):
@@ -56,8 +56,8 @@ for _ in range(100):
     ends = [placed(given, far, metric=True) @ pose for pose in given[:2]]
     alike("ends", ends[0][:3, 3] - far[0][:3, 3], far[1][:3, 3] - ends[1][:3, 3])
 same = np.full((2, 2, 3), 9)
-check(pose_free.psnr(same, same, np.ones((2, 2), bool)) > 99, "nothing off")
+check(cameras.psnr(same, same, np.ones((2, 2), bool)) > 99, "nothing off")
 half_seen = np.array([[True, False]])
-found = pose_free.psnr(np.zeros((1, 2, 3)), np.array([[[255.0] * 3, [9.0] * 3]]), half_seen)
+found = cameras.psnr(np.zeros((1, 2, 3)), np.array([[[255.0] * 3, [9.0] * 3]]), half_seen)
 alike("what the mask leaves out does not count", found, 0)
 done()

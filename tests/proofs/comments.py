@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""comments.py: the comments of the runtime's headers read plainly. Every field of a public struct has a comment of its own,
-which begins with a capital and ends as a sentence; no sentence is long; some words have no place in a reference."""
+"""comments.py: the comments of the runtime's headers read plainly. Every field of a public struct has a comment of its
+own, which begins with a capital and ends as a sentence; no sentence is long; some words have no place in a reference.
+"""
 import re
 import sys
 
@@ -13,7 +14,7 @@ PUBLIC = proof.RUNTIME / "include" / "trim3r.h"
 
 
 def comments_of(text):
-    """Line and text of each comment; what is indented or drawn in it ends a sentence, as an empty line does."""
+    """Yields line and text of each comment; indented or drawn lines end a sentence, like an empty line."""
     for match in re.finditer(r"/\*(.*?)\*/", text, flags=re.S):
         lines = [re.sub(r"^\s*\* ?", "", line) for line in match[1].split("\n")]
         yield text[:match.start()].count("\n") + 1, "\n".join("." if line.startswith("    ") else line for line in lines)
@@ -30,7 +31,7 @@ def wording(name, text):
 
 
 def fields(name, text):
-    """Fields of structs without a sentence before them."""
+    """Yields fields of structs without a preceding sentence."""
     for struct in re.finditer(r"typedef struct \w+ \{(.*?)\n\} \w+;", text, flags=re.S):
         line, documented = text[:struct.start(1)].count("\n") + 1, False
         for part in re.finditer(r"/\*(.*?)\*/|([^;/]+);|\n", struct[1], flags=re.S):

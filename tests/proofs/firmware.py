@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""firmware.py TARGET: a firmware that names one head is made without a C library and holds that head alone.
+"""firmware.py TARGET: a firmware that names one head builds without a C library and contains that head only.
 
-freestanding/firmware.c, the runtime and the shipped heads, these as a library with an object a head, compiled with no
-headers but the compiler's own (-nostdinc) and linked with -nostdlib; what the file holds then is read back, and its bytes
-are told.
+Compiles freestanding/firmware.c, the runtime and the shipped heads (a library with one object per head) with no headers
+but the compiler's own (-nostdinc), links with -nostdlib, reads the symbols of the result and prints its size.
 """
 import re
 import sys
@@ -13,7 +12,7 @@ import proof
 
 HEADS = proof.ROOT / "quant" / "heads"
 NAMES = sorted(path.stem for path in HEADS.glob("*.c"))
-# a section for each constant, as trim3r_heads and a firmware's own build have it
+# a section per constant, as in trim3r_heads and in a firmware's own build
 EXTRA = ["-I", HEADS, "-ffunction-sections", "-fdata-sections"]
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""format.py: each file in C and C++ is as clang-format writes it, but for those that programs write and what is planted."""
+"""format.py: each C and C++ file is formatted by clang-format, except generated and planted files."""
 import concurrent.futures
 import os
 import shutil
@@ -11,7 +11,7 @@ import proof
 ENDINGS = (".c", ".h", ".cpp", ".hpp")
 WRITTEN = ("runtime/budget/blue_noise.c", "quant/heads/tiny.c", "quant/heads/small.c")
 AREAS = ("runtime", "quant", "platform", "tools", "tests")
-VERSION = "14." # another one formats otherwise
+VERSION = "14." # other versions format differently
 BATCH = 100
 
 

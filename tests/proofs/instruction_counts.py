@@ -41,7 +41,7 @@ def build(folder):
 
 
 def count(program, folder, builds):
-    """{"build stage": instructions}, all parts of a stage together, and what the driver prints."""
+    """{"build stage": instructions}, all parts of a stage together, and the driver's output."""
     out = folder / "callgrind.out"
     done = proof.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", program, *builds])
     if done.returncode != 0:

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""instructions.py [--update]: no stage takes more instructions than instructions.txt allows. callgrind counts those of two
-small builds in plain C at -O2, which no other program on the machine disturbs. Other builds take the operations that the
-runtime predicts (work.py). --update writes the table anew.
+"""instructions.py [--update]: no stage takes more instructions than instructions.txt allows. callgrind counts those of
+two small builds in plain C at -O2; other programs on the machine do not disturb the counts. The runtime predicts the
+operations of other builds (work.py). --update rewrites the table.
 
 The compiler's version is part of the table: another one makes other instructions, and skips the proof.
 """
@@ -14,7 +14,7 @@ from instruction_counts import build, compiler_name, count, need_valgrind, skip
 
 TABLE = proof.HERE / "instructions.txt"
 BUILDS = ("small,96,96,2,1843,small,sensor,64,24,4", "stereo,96,96,2,1843,analytic,stereo,64,24,4")
-MOST_ABOVE = 0.03  # of what the table has
+MOST_ABOVE = 0.03  # relative to the table
 MUCH_BELOW = 0.03
 HEADING = """# Instructions of each stage of two small builds, in plain C at -O2 (instructions_driver.c), counted by callgrind.
 # tests/proofs/instructions.py --update writes them. The compiler's version is part of the table.
@@ -23,7 +23,7 @@ compiler {}
 
 
 def table_of(text):
-    """(the compiler, {"build stage": instructions})"""
+    """Returns (the compiler, {"build stage": instructions})."""
     compiler, rows = "", {}
     for line in text.splitlines():
         words = line.split()

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Builds of the built-in room and a view of each, in plain C on one thread. Under callgrind each stage's instructions
- * are a part of the output of their own, named by the build and the stage. A build is an argument:
- * NAME,WIDTH,HEIGHT,VIEWS,GAUSSIANS,HEAD,DEPTH,CLUSTERS,BATCHES,PASSES. For each one a line with its units of work is
- * printed: the name, and KIND=UNITS. */
+/* Builds the built-in room and draws a view of each build, in plain C on one thread. callgrind writes each stage's
+ * instructions as a separate part, named by the build and the stage. An argument is a build:
+ * NAME,WIDTH,HEIGHT,VIEWS,GAUSSIANS,HEAD,DEPTH,CLUSTERS,BATCHES,PASSES. Prints a line of work for each: the name, and
+ * KIND=UNITS. */
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -28,9 +28,9 @@ typedef struct build {
     uint16_t *depth_mm;
 } build;
 
-static const char *current; /* name of the build at hand */
+static const char *current; /* name of the current build */
 
-/* What was counted since the last part is that stage's. */
+/* Assigns the instructions since the last part to that stage. */
 static void end_stage(void *user, t3r_stage stage, uint64_t hash)
 {
     char name[64];
@@ -112,7 +112,7 @@ static t3r_status run(const build *b, t3r_runtime *runtime)
     room_camera(1, b->config.width, b->config.height, &camera);
     CALLGRIND_ZERO_STATS;
     status = status == T3R_OK ? t3r_render(runtime, &camera, &target) : status;
-    end_stage(NULL, T3R_STAGE_RASTER, 0); /* without a hook of its own, or what is left behind it */
+    end_stage(NULL, T3R_STAGE_RASTER, 0); /* the rest of drawing, which calls no hook */
     return status;
 }
 

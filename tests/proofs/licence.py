@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""licence.py: each source file that git tracks names its licence in its first lines, but for those that programs write."""
+"""licence.py: each source file that git tracks, except generated ones, names its licence in its first lines."""
 import subprocess
 import sys
 

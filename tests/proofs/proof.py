@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the proofs share: compiling the runtime for a target, and the verdict.
+"""Shared by the proofs: compiling the runtime for a target, and the verdict.
 
-A proof first shows that it can fail: each kind of offence stands planted in planted/ and must be found there.
-Then it looks at the real thing. Exit 0: holds; 1: broken; 77: skipped, a tool is absent.
+A proof first shows that it can fail: it must find each kind of offence planted in planted/. Then it checks the real
+code. Exit 0: holds; 1: broken; 77: skipped, a tool is absent.
 """
 import contextlib
 import os
@@ -25,8 +25,8 @@ FREESTANDING = ["-std=c11", "-ffreestanding", "-fno-tree-loop-distribute-pattern
 
 
 class Target:
-    """A compiler, its flags, and the core's row in docs/firmware.md: the helpers that it may call where the processor
-    lacks an instruction. They are of integers; __aeabi_f... and __aeabi_d... would be soft float."""
+    """A compiler, its flags, and the core's row in docs/firmware.md: the integer helpers that it may call where the
+    processor lacks an instruction. __aeabi_f... and __aeabi_d... would be soft float."""
 
     def __init__(self, name, prefix, flags, core="x86-64, and other 64-bit cores"):
         self.name, self.prefix, self.flags, self.core = name, prefix, flags, core
@@ -54,7 +54,7 @@ TARGETS = {
                            "Cortex-M3 and larger, Cortex-A15"),
     "cortex-m55": Target("cortex-m55", "arm-none-eabi-", ["-O2", "-mcpu=cortex-m55+nofp", "-mthumb", "-mfloat-abi=hard"],
                          "Cortex-M3 and larger, Cortex-A15"),
-    # without registers for real numbers: any use of one is an error, or calls a helper that is not listed
+    # without floating-point registers: any real number is an error, or calls a helper that is not listed
     "aarch64": Target("aarch64", "aarch64-linux-gnu-", ["-O2", "-mgeneral-regs-only"]),
     "armv7": Target("armv7", "arm-linux-gnueabihf-", ["-O2", "-fno-pic", "-mcpu=cortex-a15", "-marm", "-mfloat-abi=soft"],
                     "Cortex-M3 and larger, Cortex-A15"),
@@ -69,7 +69,7 @@ TARGETS = {
 
 
 def compiler_of(target):
-    """The target's compiler; skips the proof when this machine has none."""
+    """Returns the target's compiler; skips the proof when it is not installed."""
     compiler = target.prefix + "gcc" if target.prefix else os.environ.get("CC", "gcc")
     if shutil.which(compiler) is None:
         print(f"SKIPPED: no {compiler} here (tools/setup --tests)")
@@ -82,7 +82,7 @@ def run(command, **options):
 
 
 def compile_each(target, sources, folder, extra=()):
-    """Compiles each source to an object in the folder; ends the proof when one does not compile."""
+    """Compiles each source to an object in the folder; ends the proof if one fails to compile."""
     compiler, objects = compiler_of(target), []
     for index, source in enumerate(sources):
         made = pathlib.Path(folder) / f"{index:02d}_{source.stem}.o"
@@ -94,14 +94,15 @@ def compile_each(target, sources, folder, extra=()):
 
 
 def compile_one(compiler, target, source, made, extra=()):
-    """One source to an object, with no other headers than the compiler's own and ours: none of a C library."""
+    """Compiles one source with no headers but the compiler's own and ours: none of a C library."""
     own = run([compiler, "-print-file-name=include"], check=True).stdout.strip()
     includes = ["-nostdinc", "-isystem", own, "-I", RUNTIME / "include", "-I", RUNTIME]
     return run([compiler, *FREESTANDING, *target.flags, *extra, *includes, "-c", source, "-o", made])
 
 
 def runtime_objects(target):
-    """The runtime's objects for the target, which all proofs and tests share; beside each its call graph, NAME.ci."""
+    """Returns the runtime's objects for the target, shared by all proofs and tests; NAME.ci beside each is its call
+    graph."""
     return objects.compiled([compiler_of(target), *target.flags])
 
 
@@ -114,7 +115,7 @@ def public_headers():
 
 
 def public_functions():
-    """Names of the functions that trim3r.h declares; those that are inline are the program's."""
+    """Returns the names of the functions that trim3r.h declares, except inline ones, which the program compiles."""
     text = re.sub(r"/\*.*?\*/", "", (RUNTIME / "include" / "trim3r.h").read_text(), flags=re.S)
     text = re.sub(r"^\s*#.*$", "", text, flags=re.M)
     text = re.sub(r"\{[^{}]*\}", "", text)
@@ -128,7 +129,7 @@ def scratch():
 
 
 def must_find(findings, text, what):
-    """The proof's own proof: the offence planted in `what` is among the findings."""
+    """Checks the proof itself: the offence planted in `what` is among the findings."""
     if not any(text in finding for finding in findings):
         broken(f"blind: '{text}' planted in {what} was not found", findings or ["(no findings)"])
     found = next(line for finding in findings for line in finding.splitlines() if text in line)

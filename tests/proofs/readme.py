@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """readme.py example LIBRARY... | table PROGRAM [--update]: what the documents show is what happens.
 
-example: the README's C program compiles without a warning, links with the runtime and the shipped heads alone and prints
-         what the README says.
-table:   the arena table of docs/firmware.md is what `trim3r plan --markdown` prints; --update writes it there.
+example: the README's C program compiles without a warning, links with only the runtime and the heads, and prints
+         what the README shows.
+table:   the arena table of docs/firmware.md is the output of `trim3r plan --markdown`; --update writes it there.
 """
 import re
 import sys
@@ -18,7 +18,7 @@ STRICT = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wco
 
 
 def example_of(text):
-    """The first C block, and the text block after it, which is its output."""
+    """Returns the first C block, and the text block after it, which is its output."""
     match = re.search(r"```c\n(.*?)```.*?```text\n(.*?)```", text, flags=re.S)
     if match is None:
         proof.broken("README.md has no C example followed by its output")

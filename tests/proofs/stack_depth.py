@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """stack_depth.py TARGET [--markdown]: the deepest stack of each public function, from the compiler's own call graph.
 
-Fails on recursion, on frames whose size is not known at compile time, on a depth over the limit, and on calls through
-pointers that pointers.txt does not declare. What callbacks of the caller use comes on top.
+Fails on recursion, frames of unknown size, a depth over the limit, and calls through pointers that pointers.txt does
+not declare. Stack of the caller's callbacks comes on top.
 """
 import re
 import sys
@@ -21,7 +21,7 @@ INDIRECT = "__indirect_call"
 
 
 def plain(title):
-    """raster.c:draw_tile.constprop.0 -> draw_tile"""
+    """Returns draw_tile for raster.c:draw_tile.constprop.0."""
     return title.split(":")[-1].split(".")[0]
 
 
@@ -49,21 +49,21 @@ class Depths:
         self.graph, self.findings, self.memo, self.pointers = graph, [], {}, pointers
 
     def row_of(self, title, caller):
-        """The row of pointers.txt for a function, as its caller's file calls it where there is such a row."""
+        """Returns the row of pointers.txt for a function: the one for calls from its caller's file if there is one."""
         source = self.graph.source[title]
         own = f"{source} {plain(title)}"
         keys = ([f"{own} from {self.graph.source[caller]}"] if caller else []) + [own, source]
         return next((key for key in keys if key in self.pointers), source)
 
     def behind_pointer(self, title, key):
-        """The runtime's functions that a call through a pointer in this function may reach, by its row."""
+        """Returns the runtime's functions that a call through a pointer in this function may reach, by its row."""
         source = self.graph.source[title]
         if key not in self.pointers:
             self.findings.append(f"calls through a pointer, not declared in pointers.txt: {plain(title)} in {source}")
         return [t for t in self.graph.bytes if plain(t) in self.pointers.get(key, ())]
 
     def of(self, title, path=()):
-        """(bytes, deepest path) below and with the function."""
+        """Returns (bytes, deepest path) of the function and its callees."""
         if title in path:
             self.findings.append("recursion: " + " > ".join(plain(t) for t in (*path[path.index(title):], title)))
             return 0, ()
@@ -71,7 +71,7 @@ class Depths:
             return 0, ()
         row = self.row_of(title, path[-1] if path else None)
         if (title, row) not in self.memo:
-            # "dynamic,bounded" is realignment, and within the bytes that are told
+            # "dynamic,bounded" is realignment, which the reported bytes include
             if self.graph.kind[title] not in ("static", "dynamic,bounded"):
                 self.findings.append(f"frame of unknown size: {plain(title)} ({self.graph.kind[title]})")
             below = (0, ())
@@ -106,8 +106,8 @@ def check(graph, roots, pointers, limit):
 
 
 def declared_pointers():
-    """pointers.txt: source file, file and function, or these and the caller's file -> names of functions; each must still
-    be there."""
+    """Reads pointers.txt: source file, file and function, or these and the caller's file -> names of functions, each
+    of which must exist."""
     text = re.sub(r"#.*", "", (proof.HERE / "pointers.txt").read_text())
     pointers = {source.strip(): names.split() for source, names in re.findall(r"^(.+?):(.*)$", text, flags=re.M)}
     runtime = {path.name: path.read_text() for path in proof.runtime_sources()}
@@ -123,7 +123,7 @@ def declared_pointers():
 
 
 def misplaced(pointers, runtime):
-    """Rows of a caller's file that are not just those tasks of the whole list which that file names."""
+    """Yields rows for a caller's file whose tasks differ from the tasks of the whole list that the file names."""
     for key in pointers:
         function, _, caller = key.partition(" from ")
         if caller in runtime:

@@ -30,7 +30,7 @@ MAY["platform/baremetal"] = RUNTIME | PLATFORM | {"quant"}
 
 
 def tool(name, *uses, base=PLATFORM):
-    """An area of tools/: what it uses directly, and what those may use."""
+    """Enters an area of tools/: the areas it uses directly, and theirs."""
     MAY["tools/" + name] = RUNTIME | set(base)
     for used in uses:
         MAY["tools/" + name] |= {"tools/" + used} | MAY["tools/" + used]
@@ -68,7 +68,7 @@ SYMBOL = re.compile(r"^.*\[([^\]]+)\]: (\S+) (\w)")
 
 
 def area_of(path):
-    """The area of a source file, by its path from the root of the tree."""
+    """Returns the area of a source file, by its path from the root of the tree."""
     folder, stem = path.parent.as_posix(), path.with_suffix("").as_posix()
     if folder.startswith("runtime"):
         return "/".join(stem.split("/")[:2])
@@ -82,7 +82,7 @@ def area_of(path):
 
 
 def resolve(root, path, name):
-    """The file of the tree that an #include names, by the include paths that its area is built with."""
+    """Returns the file of the tree that an #include names, by the include paths that its area is built with."""
     for base in (path.parent, pathlib.Path("runtime/include"), pathlib.Path("runtime"), pathlib.Path("quant"),
                  pathlib.Path("quant/heads"), pathlib.Path("platform"), pathlib.Path("tools")):
         if (root / base / name).is_file():
@@ -104,7 +104,7 @@ def check_rooms(paths):
 
 
 def check_includes(root):
-    """Arrows that the picture does not have."""
+    """Returns includes that MAY does not allow."""
     findings = []
     for path in sources(root):
         area = area_of(path)
@@ -119,7 +119,7 @@ def check_includes(root):
 
 
 def circles(arrows):
-    """The sets of nodes that reach each other (Tarjan)."""
+    """Returns the sets of nodes that reach each other (Tarjan)."""
     index, low, stack, found = {}, {}, [], []
 
     def visit(node):
@@ -149,14 +149,14 @@ def is_study(area):
 
 
 def check_picture(may):
-    """The picture itself has no circle, and no arrow from the product to its study."""
+    """Checks that MAY has no cycle, and no arrow from the product to the study."""
     findings = [f"the picture has a circle: {', '.join(circle)}" for circle in circles(may)]
     return findings + [f"{area} of the product may use {used}" for area, uses in may.items() for used in sorted(uses)
                        if is_study(used) and not is_study(area)]
 
 
 def check_calls(libraries):
-    """Source files that call each other, or use each other's data: the linker sees it, whatever headers are named."""
+    """Returns source files that call each other or use each other's data, as the linker sees it."""
     findings = []
     for library in libraries:
         defines, needs = {}, {}
@@ -178,7 +178,7 @@ def check_calls(libraries):
 
 
 def planted_findings():
-    """The offenders: a small house in planted/house, and two files that call each other."""
+    """Checks planted offenders: a small tree in planted/house, and two files that call each other."""
     house = proof.PLANTED / "house"
     findings = check_includes(house)
     for offence in ("runtime/core/outward.c includes platform/capture/planted_replay.h",

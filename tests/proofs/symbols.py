@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """symbols.py TARGET [LIBRARY]: the runtime calls nothing but memcpy, memmove, memset and memcmp, and keeps no state.
 
-Beyond those four, only the integer helpers that docs/firmware.md names for the core. On a core without an FPU every
-use of a real number would call a helper that is not listed. With a LIBRARY, that one is judged instead of a build
-made here.
+The only other calls are the integer helpers that docs/firmware.md names for the core. On a core without an FPU every
+use of a real number would call a helper that is not listed. A given LIBRARY is checked instead of a build made here.
 """
 import pathlib
 import re

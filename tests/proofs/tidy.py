@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""tidy.py: clang-tidy finds nothing in the runtime, quant/ and platform/; /.clang-tidy says which checks it makes."""
+"""tidy.py: clang-tidy finds nothing in the runtime, quant/ and platform/; /.clang-tidy lists its checks."""
 import concurrent.futures
 import os
 import re
@@ -10,9 +10,9 @@ import sys
 import proof
 
 AREAS = ("runtime", "quant", "platform")
-# Other processors' intrinsics and firmware, and tables that programs write
+# other processors' intrinsics, firmware, and generated tables
 APART = ("runtime/kernels/arm/", "runtime/kernels/wasm/", "platform/baremetal/", "quant/heads/", "runtime/budget/blue_noise.c")
-VERSION = "14." # another one has other checks
+VERSION = "14." # other versions have other checks
 INCLUDES = ("runtime/include", "runtime", "quant", "platform", ".")
 FINDING = re.compile(r"^.*: (?:warning|error): .*$", re.M)
 

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """words.py: the source of the runtime has no real numbers, no heap, no streams, no operating system.
 
-Symbols cannot show a real constant that the compiler folded away, so the source itself is read. The words must not
-appear in comments either: then a plain grep is enough for anyone who wants to look for himself.
+The compiler may fold a real constant away, so symbols cannot show it; hence the source itself is searched. The words
+must not appear in comments either, so that a plain grep is enough to verify it.
 """
 import pathlib
 import re

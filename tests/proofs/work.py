@@ -44,7 +44,7 @@ def kinds_of_stages():
 
 
 def builds_of(counted, printed):
-    """{build: ({stage: instructions}, {kind: units})}"""
+    """Returns {build: ({stage: instructions}, {kind: units})}."""
     builds = {}
     for line in printed.splitlines():
         name, *words = line.split()
@@ -54,7 +54,7 @@ def builds_of(counted, printed):
 
 
 def prices_of_table():
-    """{kind: 1/1000 operations a unit}"""
+    """Returns {kind: 1/1000 operations a unit}."""
     return {kind.lower(): int(price)
             for kind, price in re.findall(r"\[WORK_(\w+)\] = (\d+)", TABLE.read_text())}
 
@@ -64,7 +64,7 @@ def operations(units, prices, kinds):
 
 
 def check(builds, prices):
-    """What is more than MOST_OFF away."""
+    """Returns findings that are more than MOST_OFF away."""
     findings, kinds = [], kinds_of_stages()
     for name, (stages, units) in builds.items():
         expected = {stage: operations(units, prices, kinds[stage]) for stage in STAGES}
@@ -81,7 +81,7 @@ def check(builds, prices):
 
 
 def findings(counted, printed):
-    """Of the builds CHECKED among those that were counted."""
+    """Returns the builds CHECKED among the counted ones."""
     builds = {name: both for name, both in builds_of(counted, printed).items() if name.startswith(CHECKED_NAME)}
     prices = prices_of_table()
     proof.must_find(check(builds, {**prices, "batches": 9 * prices["batches"]}), "superclusters", "the prices")
@@ -89,7 +89,7 @@ def findings(counted, printed):
 
 
 def solve(rows):
-    """Prices of at least 0 with which the sum of squared relative errors is least, of [(units, total)]."""
+    """Returns prices of at least 0 that minimise the sum of squared relative errors of [(units, total)]."""
     scaled = [[unit / total for unit in units] for units, total in rows]
     prices, left = [0.0] * len(scaled[0]), [1.0] * len(rows)
     for _ in range(20000):  # coordinate descent

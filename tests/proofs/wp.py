@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""wp.py: WP, of Frama-C, proves the results that tests/proofs/frama/contracts.h promises of functions of fixed.h.
+"""wp.py: WP of Frama-C proves the contracts of functions of fixed.h in tests/proofs/frama/contracts.h.
 
-Goals that its own simplifier leaves go to Z3 by way of Why3. Exit 77: a tool is absent (tools/setup --tests).
+Goals that WP's own simplifier cannot prove go to Z3 through Why3. Exit 77: a tool is absent (tools/setup --tests).
 """
 import os
 import pathlib
@@ -15,7 +15,7 @@ import proof
 
 DRIVERS = proof.HERE / "frama"
 TOOLS = ("frama-c", "why3", "z3")
-SECONDS_A_GOAL = 20 # on a busy machine; alone each takes less than one
+SECONDS_A_GOAL = 20 # on a busy machine; on an idle one each takes less than one
 
 
 def functions_of(header):
@@ -23,7 +23,7 @@ def functions_of(header):
 
 
 def unproven(driver, functions=()):
-    """The goals that are not proven, and how many there are."""
+    """Returns the unproven goals, and the number of goals."""
     includes = f"-std=c11 -I {proof.RUNTIME / 'include'} -I {proof.RUNTIME} -I {DRIVERS} -include {DRIVERS / 'frama.h'}"
     chosen = ["-wp-fct", ",".join(functions)] if functions else []
     result = proof.run(["frama-c", "-no-unicode", "-machdep", "gcc_x86_64", "-c11", f"-cpp-extra-args={includes}", "-wp",

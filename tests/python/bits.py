@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""bits.py LIBRARY TRIM3R: the package's frames, hashes, scenes, files and figures are those of the program."""
+"""bits.py LIBRARY TRIM3R: the package's frames, hashes, scenes, files and figures equal the program's."""
 import json
 import pathlib
 import sys
@@ -10,7 +10,7 @@ from common import FRAMES, SIDE, check, np, small, trim3r, with_views
 
 from checks import done, near, run
 
-# the program's digits
+# the program's rounding
 FIGURES = {"psnr": ("psnr", 4), "ssim": ("ssim", 5), "sharp": ("sharp", 5), "holes": ("holes", 5),
            "psnr_all": ("psnr_all", 4), "context_psnr": ("context_psnr", 4), "flip": ("perceptual", 5)}
 
@@ -28,7 +28,7 @@ def check_frames(recording):
 
 
 def check_build(recording, folder, path):
-    """Hashes of each stage, of the whole, and every byte of the file."""
+    """Compares hashes of each stage, of the whole, and every byte of the file."""
     settings = ("--context", "0,2", "--gaussians", "400", "--json")
     replayed = json.loads(program("replay", path, *settings))
     built = json.loads(program("build", path, *settings, "-o", folder / "theirs.ply"))
@@ -46,7 +46,7 @@ def check_build(recording, folder, path):
 
 
 def check_presets(recording, folder, path):
-    """The head and the settings of `--preset`."""
+    """Compares the head and the settings of `--preset`."""
     for name in ("fast", "balanced", "best"):
         built = json.loads(program("build", path, "--context", "0,2", "--gaussians", "90", "--preset", name, "--json", "-o",
                                    folder / "preset.ply"))
@@ -63,7 +63,8 @@ def check_presets(recording, folder, path):
 
 
 def check_same_bits():
-    """Whatever must change no bit: an analysis that was kept, workers, the arena's size, a percentage for a count."""
+    """Changes everything without influence on bits: a kept analysis, workers, the arena's size, a percentage for a
+    count."""
     with with_views() as one, with_views(workers=3) as two, with_views(arena_bytes=1 << 20, gaussians=900) as three:
         scene = one.build(900)
         wanted, hashes = scene.gaussians.tobytes(), one.stage_hashes
@@ -78,7 +79,7 @@ def check_same_bits():
 
 
 def check_heads():
-    """Heads of single builds on one analysis, and behind them the constructor's again."""
+    """Uses other heads for single builds on one analysis, and afterwards the constructor's again."""
     with with_views(head="small") as made:
         wanted = made.build(300).gaussians.tobytes()
         for head in ("analytic", "tiny", None):
@@ -89,7 +90,7 @@ def check_heads():
 
 
 def check_scene(folder):
-    """Means in the world, a file that is read again, and what was read drawn."""
+    """Compares means in the world, a file that is read again, and views of the read scene."""
     with with_views() as made, small(0, gaussians=4096) as drawn:
         scene = made.build(keep=50)
         away = np.linalg.norm(scene.positions - FRAMES[0].camera.pose[:3, 3], axis=1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of the Python package share: the package itself, as it was built."""
+"""Shared by the tests of the Python package: the package itself, as built."""
 import contextlib
 import pathlib
 import sys
@@ -7,7 +7,7 @@ import sys
 from checks import check, skip
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-PACKAGE = pathlib.Path(sys.argv[1]).resolve().parent # of the shared library, which is the first argument
+PACKAGE = pathlib.Path(sys.argv[1]).resolve().parent # the folder of the shared library, which is the first argument
 
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(PACKAGE.parent)]
@@ -24,12 +24,12 @@ FRAMES = trim3r.room(3, SIDE, SIDE)
 
 
 def small(views=2, **options):
-    """A reconstructor of small views, quick to build."""
+    """Returns a reconstructor of small views, quick to build."""
     return trim3r.Reconstructor(SIDE, SIDE, views=views, **{"head": "tiny", **options})
 
 
 def with_views(frames=(FRAMES[0], FRAMES[2]), **options):
-    """One with these views added."""
+    """Returns a reconstructor with these views added."""
     made = small(len(frames), **options)
     for frame in frames:
         made.add_view(frame)
@@ -38,7 +38,7 @@ def with_views(frames=(FRAMES[0], FRAMES[2]), **options):
 
 @contextlib.contextmanager
 def refused(kind, *words):
-    """What is inside raises that kind of error, and its text has these words."""
+    """Expects an error of that kind from the block, with these words in its text."""
     try:
         yield
     except kind as error:

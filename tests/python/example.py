@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""example.py LIBRARY: the example runs, prints what docs/python.md shows, and draws its charts."""
+"""example.py LIBRARY: the example runs, prints the text in docs/python.md, and draws its charts."""
 import os
 import pathlib
 import re

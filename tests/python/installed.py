@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""installed.py LIBRARY BUILD: what `cmake --install` and pip put into a folder is the whole package, wherever it is
-moved."""
+"""installed.py LIBRARY BUILD: `cmake --install` and pip put the complete package into a folder, and it works after a
+move."""
 import importlib.util
 import os
 import pathlib
@@ -28,7 +28,7 @@ def by_cmake(there):
 
 
 def by_pip(there):
-    source = there.with_name("source") # pip leaves folders of its own where it builds
+    source = there.with_name("source") # pip leaves build folders there
     shutil.copytree(PACKAGE.parent, source)
     run(sys.executable, "-m", "pip", "install", "--no-deps", "--no-index", "--no-build-isolation", "--target", there,
         source)

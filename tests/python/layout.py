@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""layout.py LIBRARY COMPILER: each struct and each constant of the package is the compiler's, and each function is
-there."""
+"""layout.py LIBRARY COMPILER: each struct and each constant of the package equals the compiler's, and each function
+exists."""
 import pathlib
 import subprocess
 import sys
@@ -16,9 +16,9 @@ INCLUDES = [f"-I{ROOT / folder}" for folder in ("runtime/include", "platform", "
 
 
 def structs():
-    """Those that are laid out in the headers."""
+    """Yields the structs that the headers define."""
     for name in ffi.list_types()[0]:
-        pointer = ffi.typeof(name + " *") # some names are those of functions, which have no size
+        pointer = ffi.typeof(name + " *") # some names are functions', which have no size
         if pointer.kind == "pointer" and pointer.item.kind == "struct" and pointer.item.fields is not None:
             yield name, pointer.item
 
@@ -28,7 +28,7 @@ def constants():
 
 
 def program():
-    """C that prints a line for each size, offset and constant, as the compiler sees it."""
+    """Returns C that prints a line for each size, offset and constant, as the compiler sees it."""
     lines = ['#include "interface.h"', "#include <stdio.h>", "int main(void)", "{"]
     for name, ctype in structs():
         lines.append(f'printf("{name}: %zu\\n", sizeof({name}));')

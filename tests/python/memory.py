@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""memory.py LIBRARY TRIM3R: pixels are handed over where they lie, results lie in the arena, and nothing is freed too
+"""memory.py LIBRARY TRIM3R: pixels are passed without a copy, results lie in the arena, and nothing is freed too
 early."""
 import dataclasses
 import gc
@@ -28,7 +28,7 @@ def address(array):
 
 
 def check_pointers():
-    """What the library gets is the array's own address and stride, of whole arrays and of crops."""
+    """The library gets the array's own address and stride, for whole arrays and for crops."""
     large = np.zeros((HIGH, WIDE, 3), np.uint8)
     steps = np.zeros((HIGH, WIDE), np.uint16)
     for rows, columns in ((slice(None), slice(None)), (slice(5, 105), slice(7, 207)), (slice(0, 100, 2), slice(50))):
@@ -42,7 +42,7 @@ def check_pointers():
 
 
 def check_no_copies():
-    """A large view leaves little in Python's memory: far less than a copy of its pixels would."""
+    """A large view uses little of Python's memory: far less than a copy of its pixels."""
     large = trim3r.room(1, WIDE, HIGH)[0]
     with small(1) as made:
         tracemalloc.start()
@@ -53,7 +53,7 @@ def check_no_copies():
 
 
 def check_crops():
-    """Rows that lie apart, and arrays of other layouts, have the bits of a copy without gaps."""
+    """Rows with gaps, and arrays of other layouts, give the bits of a copy without gaps."""
     wanted = hashes_of(*FRAMES[:2])
     apart = []
     for frame in FRAMES[:2]:
@@ -79,7 +79,7 @@ def check_crops():
 
 
 def check_when_read():
-    """Pixels are read while the view is added, and at no other time."""
+    """Pixels are read only while the view is added."""
     wanted, colour = hashes_of(FRAMES[0]), FRAMES[0].colour.copy()
     with small(1) as made:
         made.add_view(dataclasses.replace(FRAMES[0], colour=colour))
@@ -90,7 +90,7 @@ def check_when_read():
 
 
 def check_results():
-    """A scene lies in the arena and holds it; a picture is drawn where it is wanted."""
+    """A scene lies in the arena and keeps it alive; a picture is drawn into the given array."""
     with with_views() as made:
         scene = made.build(300)
         held = scene.gaussians

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""page.py LIBRARY: the Python on docs/python.md runs, block after block, and so does that in the package's docstring."""
+"""page.py LIBRARY: the Python code on docs/python.md runs, block after block, and so does the code in the package's
+docstring."""
 import contextlib
 import io
 import os
@@ -18,7 +19,7 @@ from pages import blocks_of
 
 
 def said(source, names):
-    """What it prints."""
+    """Returns the code's output."""
     with contextlib.redirect_stdout(io.StringIO()) as out:
         exec(compile(source, "docs/python.md", "exec"), names)
     return out.getvalue()

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""refused.py LIBRARY: what cannot be used is refused with a reason, and leaves everything as it was."""
+"""refused.py LIBRARY: invalid input is refused with a reason, and leaves everything unchanged."""
 import dataclasses
 import pathlib
 import tempfile
@@ -82,11 +82,11 @@ def check_cameras():
     with refused(ValueError):
         trim3r.Camera(1 << 20, 1 << 20, 0, 0, distortion="wide").native()
     with small() as made, refused(trim3r.InputError):
-        made.add_view(changed(camera=make(1, 1, 0, 0, pose))) # focal lengths are 8 pixels at least
+        made.add_view(changed(camera=make(1, 1, 0, 0, pose))) # focal lengths are at least 8 pixels
     view = FRAMES[0].camera
     again = make(view.fx, view.fy, view.cx, view.cy, view.pose)
     check(np.allclose(again.pose, view.pose, atol=1e-8) and again.fx_q16 == view.fx_q16, "a pose there and back")
-    for axis in np.eye(3): # half turns, where a trace is of no use
+    for axis in np.eye(3): # half turns, for which the trace is useless
         turned = np.eye(4)
         turned[:3, :3] = 2 * np.outer(axis, axis) - np.eye(3)
         check(np.allclose(make(60, 60, 32, 32, turned).pose, turned, atol=1e-8), f"half a turn about {axis}")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""rows.py LIBRARY: a view by strips of rows has the bits of the whole view, whatever the strips; they are handed over
-where they lie, and what is no next strip is refused."""
+"""rows.py LIBRARY: a view in strips of rows has the bits of the whole view, for any strips; they are passed without
+a copy, and a strip that does not continue the view is refused."""
 import dataclasses
 import tracemalloc
 
@@ -11,7 +11,7 @@ from checks import done
 
 
 def strip_of(frame, rows, depth_rows=None):
-    """These rows of it, as (first, one past the last)."""
+    """Returns these rows of the frame, as (first, one past the last)."""
     depth_rows = depth_rows or rows
     colour = frame.colour
     if isinstance(colour, tuple):
@@ -22,7 +22,7 @@ def strip_of(frame, rows, depth_rows=None):
 
 
 def add_in(made, frame, step):
-    """The frame by strips of so many rows; what each call told."""
+    """Adds the frame in strips of `step` rows; returns the result of each call."""
     return [made.add_rows(strip_of(frame, (row, min(row + step, SIDE))), row, SIDE) for row in range(0, SIDE, step)]
 
 
@@ -48,7 +48,7 @@ def check_bits():
 
 
 def check_apart():
-    """Colour and depth that do not keep step, and depth of another size."""
+    """Adds colour and depth at different rates, and depth of another size."""
     frame = dataclasses.replace(FRAMES[0], depth=np.ascontiguousarray(FRAMES[0].depth[::2, ::2]))
     with small(1) as made:
         check(not made.add_rows(strip_of(frame, (0, SIDE), (0, 0)), 0, SIDE, depth_row=0, depth_height=SIDE // 2), "colour")
@@ -61,7 +61,7 @@ def check_apart():
 
 
 def check_formats():
-    """The two planes of nv12, floats of depth, and colours alone by stereo."""
+    """Adds the two planes of nv12, floats of depth, and colours alone by stereo."""
     random = np.random.default_rng(3)
     planes = (random.integers(0, 256, (SIDE, SIDE), np.uint8), random.integers(0, 256, (SIDE // 2, SIDE // 2, 2), np.uint8))
     for frame in (dataclasses.replace(FRAMES[0], colour=planes, format="nv12"),
@@ -80,7 +80,7 @@ def check_formats():
 
 
 def check_memory():
-    """One small strip serves the whole of a large view: it is read during the call, and not copied."""
+    """One small strip suffices for a large view: it is read during the call, and not copied."""
     large = trim3r.room(1, 640, 480)[0]
     colour, depth = np.empty((16, 640, 3), np.uint8), np.empty((16, 640), np.uint16)
     strip = dataclasses.replace(large, colour=colour, depth=depth)
@@ -105,7 +105,7 @@ def check_refused():
     elsewhere = dataclasses.replace(frame, camera=frame.camera.at(np.eye(4)))
     with small(1) as made:
         with refused(trim3r.StateError):
-            made.add_rows(strip_of(frame, (8, 16)), 8, SIDE) # no strip from row 0 came before
+            made.add_rows(strip_of(frame, (8, 16)), 8, SIDE) # no strip from row 0 precedes
         made.add_rows(strip_of(frame, (0, 8)), 0, SIDE)
         with refused(trim3r.StateError):
             made.add_rows(strip_of(frame, (16, 24)), 16, SIDE)
@@ -121,12 +121,12 @@ def check_refused():
         with refused(ValueError, "no camera"):
             made.add_rows(dataclasses.replace(strip_of(frame, (8, 16)), camera=None), 8, SIDE)
         with refused(ValueError, "sides"):
-            made.add_view(strip_of(frame, (0, 0))) # rows may be missing in a strip alone
+            made.add_view(strip_of(frame, (0, 0))) # only a strip may lack rows
         with refused(trim3r.StateError):
             made.build(100)
         check(add_in(made, frame, 32)[-1], "a strip from row 0 begins anew")
         with refused(trim3r.StateError):
-            made.add_rows(strip_of(frame, (0, 8)), 0, SIDE) # there is no room
+            made.add_rows(strip_of(frame, (0, 8)), 0, SIDE) # too little memory
         made.build(200)
         check(made.stage_hashes == hashes_of([frame]), "what was refused leaves nothing behind")
         made.reset()

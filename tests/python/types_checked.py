@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""types_checked.py LIBRARY: mypy finds nothing in the package, nor in a program that uses it well, and finds what is
-used wrongly. Everything public has a docstring and types."""
+"""types_checked.py LIBRARY: mypy finds nothing in the package, nor in a correct program, and finds wrong uses.
+Everything public has a docstring and types."""
 import inspect
 import pathlib
 import shutil
@@ -29,7 +29,7 @@ MISUSE = {"made.build(keep='10')": "arg-type", "made.bild(10)": "attr-defined", 
 
 
 def check_types(folder):
-    """The package, the example, and a program that ends with what is wrong: nothing else is found, and all of that."""
+    """Checks the package, the example, and a program with errors at its end: exactly these are found."""
     used = pathlib.Path(folder) / "used.py"
     used.write_text(USE + "\n".join(MISUSE) + "\n")
     found = subprocess.run(["mypy", "--config-file", ROOT / "tools" / "python" / "pyproject.toml", "--show-error-codes",

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""work.py LIBRARY: progress, stopping, threads, and the end of a reconstructor."""
+"""work.py LIBRARY: progress, cancelling, threads, and the end of a reconstructor."""
 import copy
 import gc
 import signal
@@ -20,7 +20,7 @@ def check_progress():
 
 
 def check_stopping():
-    """Whatever a callback raises stops the work and comes out of the call; the next call works."""
+    """Any exception of a callback stops the work and leaves the call; the next call works."""
     stop = []
 
     def progress(*_):
@@ -45,7 +45,7 @@ def check_stopping():
 
 
 def check_signal():
-    """A signal's exception ends a build that has no progress of its own."""
+    """A signal's exception ends a build without a progress callback."""
     called = []
 
     def stop(*_):
@@ -76,7 +76,7 @@ def check_reentry():
 
 
 def check_threads():
-    """Several at once, each in a thread; one in two threads takes one call at a time."""
+    """Runs several at once, each in a thread; one in two threads takes one call at a time."""
     results, turned_away = [], []
 
     def build(made):
@@ -125,7 +125,7 @@ def check_end():
         scene.positions.sum()
     with refused(TypeError):
         copy.deepcopy(made)
-    for _ in range(20): # left to the collector, in the middle of everything
+    for _ in range(20): # left to the garbage collector, at any time
         with_views(workers=2, progress=lambda *_: None).build(50)
     gc.collect()
     with with_views() as again:
@@ -138,7 +138,7 @@ def check_end():
 
 
 def check_warm():
-    """A pair that slides: a view takes the place of the oldest, and the scene before is gone."""
+    """Slides a pair: a view replaces the oldest, and the previous scene becomes invalid."""
     with with_views(settings={"warm": 1}) as made:
         before = made.build(keep=10)
         made.add_view(FRAMES[1])

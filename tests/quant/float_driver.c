@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* float_driver HEAD.safetensors VIEW WIDTH HEIGHT OUT: the float graph of quant/ for a script to compare.
- * VIEW holds the features, int8 [HEIGHT][WIDTH][9], then the retained pixels, a byte each; OUT gets every layer's
- * output, float32 in the machine's order, one plane behind the other. */
+/* float_driver HEAD.safetensors VIEW WIDTH HEIGHT OUT: runs the float graph of quant/ for comparison by a script. VIEW
+ * holds the features, int8 [HEIGHT][WIDTH][9], then the retained pixels, a byte each; OUT gets every layer's output,
+ * float32 in the machine's order, one plane after the other. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Heads in numpy, written from runtime/head/weights.h alone: .safetensors out, .t3w in, the graph in floats and in integers.
+"""Heads in numpy, written from runtime/head/weights.h alone: writes .safetensors, reads .t3w, runs the graph in floats
+and in integers.
 
 A description is the JSON object of the metadata key "trim3r"; tensors are a dict of float32 arrays."""
 import json
@@ -25,7 +26,6 @@ def safetensors(tensors, description, metadata=None):
     return struct.pack("<Q", len(text)) + text + data
 
 
-# ---- random heads ---------------------------------------------------------------------------------------------------
 
 def layer(kind, level, sources, inputs, outputs, kernel=1, stride=1, phases=1, relu=True):
     return dict(kind=kind, level=level, sources=sources, inputs=inputs, outputs=outputs, kernel=kernel, stride=stride,
@@ -33,7 +33,7 @@ def layer(kind, level, sources, inputs, outputs, kernel=1, stride=1, phases=1, r
 
 
 def every_kind():
-    """Every kind, kernel size, stride, phase count and way of reading that the format has."""
+    """Returns a description with every kind, kernel size, stride, phase count and kind of source in the format."""
     return {"format": 1, "name": "every_kind", "feature_set": 1, "layers": [
         layer("conv", 1, [0], 9, 10, 6, 2),
         layer("depthwise", 1, [1], 10, 10, 3),
@@ -60,7 +60,7 @@ def plain():
 
 
 def random_tensors(description, random):
-    """Weights that keep the activations' size, over one order of magnitude between channels."""
+    """Draws weights that keep the activations' size, over one order of magnitude between channels."""
     tensors = {}
     for n, l in enumerate(description["layers"], 1):
         k, fan_in = l["kernel"], 1 if l["kind"] == "depthwise" else l["inputs"]
@@ -78,18 +78,16 @@ def random_tensors(description, random):
 
 
 def random_view(random, height, width):
-    """Smooth features with noise, and a mask of a third of the pixels."""
+    """Draws smooth features with noise, and a mask of a third of the pixels."""
     y, x = numpy.mgrid[:height, :width]
     waves = [numpy.sin(x / (3 + c) + c) * numpy.cos(y / (4 + c)) * 90 for c in range(FEATURES)]
     features = numpy.stack(waves, -1) + random.normal(size=(height, width, FEATURES)) * 25
     return numpy.clip(numpy.round(features), -128, 127).astype(numpy.int8), random.random((height, width)) < 1 / 3
 
 
-# ---- the graph: one walk for floats and integers --------------------------------------------------------------------
 
 def gather(layers, planes, zeros, n, height, width):
-    """Returns layer n's sources on the grid that its kernel walks, channels one after the other, and each channel's
-    zero."""
+    """Returns layer n's sources on its kernel's grid, channels one after the other, and each channel's zero."""
     l = layers[n - 1]
     grid = l["level"] - (l["stride"] - 1)
     rows, columns = -(-height // 2**grid), -(-width // 2**grid)
@@ -103,7 +101,8 @@ def gather(layers, planes, zeros, n, height, width):
 
 
 def sums(l, weight, grid, zero, height, width):
-    """The sums over weight x source of a conv or depthwise layer: `weight` is [outputs][k][k][inputs] or [k][k][out]."""
+    """Returns the sums of weight x source of a conv or depthwise layer: `weight` is [outputs][k][k][inputs] or
+    [k][k][out]."""
     k, s, p = l["kernel"], l["stride"], (l["kernel"] - l["stride"] + 1) // 2
     rows, columns = -(-height // 2 ** l["level"]), -(-width // 2 ** l["level"])
     padded = numpy.broadcast_to(zero, (s * rows + k, s * columns + k, grid.shape[2])).copy()
@@ -117,7 +116,7 @@ def sums(l, weight, grid, zero, height, width):
 
 
 def point_sums(l, weight, bias, grid):
-    """The same and the bias, of a point layer: `weight` is [phases][outputs][inputs]."""
+    """Returns the same with the bias, for a point layer: `weight` is [phases][outputs][inputs]."""
     y, x = numpy.mgrid[:grid.shape[0], :grid.shape[1]]
     phase = 2 * (y & 1) + (x & 1) if l["phases"] == 4 else 0 * y
     return numpy.einsum("yxoi,yxi->yxo", weight[phase], grid) + bias[phase]
@@ -141,7 +140,6 @@ def run_float(description, tensors, features, mask):
     return planes
 
 
-# ---- the weight file ------------------------------------------------------------------------------------------------
 
 def read_t3w(data):
     magic, form, epoch, size, crc = struct.unpack_from("<4sHHII", data)

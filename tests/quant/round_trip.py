@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Random heads through `trim3r quantize` and back: the float graph of quant/ against numpy's, every layer of the weight
-file, run in numpy's integers, against exact bounds, the runtime's bits against those, and the whole against the float
+file in numpy's integers against exact bounds, the runtime's bits against numpy's, and the whole against the float
 graph.
 
-    round_trip.py PATH/TO/trim3r PATH/TO/float_driver PATH/TO/network_driver"""
+round_trip.py PATH/TO/trim3r PATH/TO/float_driver PATH/TO/network_driver"""
 import json
 import os
 import subprocess
@@ -18,7 +18,7 @@ from checks import check, done, run
 
 TRIM3R, DRIVER, NETWORK = map(os.path.abspath, sys.argv[1:4])
 HEIGHT, WIDTH = 37, 50  # no level divides them
-# signal to noise of the whole head's outputs, dB, at least, by (weight bits, activation bits); every_kind is 13 layers
+# least signal to noise of the whole head's outputs, dB, by (weight bits, activation bits); every_kind has 13 layers
 LEAST_SNR = {"plain": {(8, 8): 33, (16, 8): 42, (8, 16): 33, (16, 16): 77},
              "every_kind": {(8, 8): 22, (16, 8): 30, (8, 16): 24, (16, 16): 69}}  # one of 16 bits is headroom
 SOURCE_USER = """#include <stdint.h>
@@ -53,7 +53,8 @@ def check_float_graph(description, features, mask, planes):
 
 
 def scales(head, description, tensors):
-    """Each plane's step by channel, from the ranges alone, and each layer's accumulator step from its multiplier."""
+    """Returns each plane's step by channel, from the ranges alone, and each layer's accumulator step from its
+    multiplier."""
     feature_step = 1 / 64 if head["activation_bits"] == 8 else 1 / 64 / 256
     outputs, sums = [numpy.full(head_file.FEATURES, feature_step)], []
     for n, l in enumerate(head["layers"], 1):
@@ -62,7 +63,7 @@ def scales(head, description, tensors):
         else:
             relu = description["layers"][n - 1]["relu"]
             steps = 2 ** (head["activation_bits"] - (0 if relu else 1)) - 1
-            headroom = 2 if head["activation_bits"] == 16 else 1  # ranges that come along are those of 8 bits
+            headroom = 2 if head["activation_bits"] == 16 else 1  # given ranges are for 8 bits
             step = headroom * tensors[f"layer{n}.range"].astype(float) / steps
         outputs.append(step)
         sums.append(step * l["multiplier"] * 2.0 ** (l["shift"] - 31))
@@ -146,7 +147,7 @@ def check_info(path, description, tensors, head):
 
 
 def check_source(path, name, expected):
-    """OUT.c compiles, and holds the bytes of OUT.t3w."""
+    """Checks that OUT.c compiles, and holds the bytes of OUT.t3w."""
     with open("main.c", "w") as file:
         file.write(SOURCE_USER.replace("NAME", name))
     run("cc", "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "main.c", path, "-o", "main")

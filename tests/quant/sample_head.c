@@ -44,8 +44,6 @@ void sample_head(float_head *head, uint64_t seed)
     }
 }
 
-/* ---- as a file --------------------------------------------------------------------------------------------------- */
-
 typedef struct writer {
     FILE *header, *data;
     size_t written; /* bytes of data */

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""shipped.py TRIM3R HEADS: the C arrays in HEADS are what tools/study/train/ship makes of the float heads beside them."""
+"""shipped.py TRIM3R HEADS: tools/study/train/ship makes the C arrays in HEADS of the float heads next to them."""
 import os
 import pathlib
 import re

@@ -46,7 +46,7 @@ static int by_size(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
-/* All values of a channel over the views, sorted by amount; of a point layer at retained pixels. */
+/* Returns all values of a channel over the views, sorted by magnitude; for a point layer those at retained pixels. */
 static float *sorted(const float_head *head, const sample_views *views, uint32_t n, uint32_t channel, size_t *count)
 {
     float *all = unit_array(VIEWS * PIXELS, sizeof *all);
@@ -106,7 +106,7 @@ TEST(test_ranges)
     free(views);
 }
 
-/* Ranges that the head brings along stay; without a pixel there are none to give. */
+/* A head's own ranges are kept; without a pixel there are none. */
 TEST(test_own_ranges)
 {
     sample_views *views = unit_array(1, sizeof *views);
@@ -210,7 +210,7 @@ TEST(test_runtime_views)
             assert_int_equal(calibration_finish(c, &head, 100, 1), 1);
             const float *range = head.layers[0].range;
             assert_true(range[0] * 64 == 72 && range[2] * 64 == 100 && range[3] * 64 == 127 && range[4] * 64 == 127);
-            /* nothing was ever green, so its range is the maximum */
+            /* green was always 0, so its range is the maximum */
             assert_true(range[1] * 64 == 127 && range[7] * 64 == 127);
         }
         calibration_free(c);
@@ -222,7 +222,7 @@ TEST(test_runtime_views)
 /* Two cameras a quarter of the picture apart, in front of one slanted surface. */
 enum { PAIR = 2, PAIR_SIDE = 64, PAIR_PIXELS = PAIR_SIDE * PAIR_SIDE, ROW = PAIR_SIDE * T3R_FEATURES };
 
-/* The rows of features that were made, in the order of views, in the course of one call. */
+/* The computed rows of features, in the order of views, during one call. */
 typedef struct taken {
     uint32_t rows;
     int8_t features[PAIR * PAIR_SIDE][ROW];
@@ -230,7 +230,7 @@ typedef struct taken {
 
 static taken *taking;
 
-/* The linker puts this before every caller of t3r_head_features() in another file: the head's and the calibration's. */
+/* The linker replaces every call of t3r_head_features() from another file by this: the head's and the calibration's. */
 void __real_t3r_head_features(const t3r_head_input *input, uint32_t y, int8_t *row);
 void __wrap_t3r_head_features(const t3r_head_input *input, uint32_t y, int8_t *row);
 void __wrap_t3r_head_features(const t3r_head_input *input, uint32_t y, int8_t *row)
@@ -266,8 +266,8 @@ static void add_pair(t3r_runtime *runtime)
     }
 }
 
-/* Calibration sees what the network gets, feature by feature: 5 % kept, where points that another view covers are
- * passed over, and 60 %, where they are not; as shown to a head and hidden from it. */
+/* Calibration gets the network's features: with 5 % kept, when points that another view covers are passed over, and
+ * with 60 %, when they are not; with the mask shown and hidden. */
 TEST(test_features_of_a_pair)
 {
     static taken network, calibrated;

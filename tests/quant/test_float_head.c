@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Float heads: tensors end where they belong, and every mistake in the description or a tensor is refused. */
+/* Float heads: tensors are stored at the right places, and every mistake in the description or a tensor is refused. */
 #include "float_head.h"
 
 #include <cjson/cJSON.h>
@@ -28,7 +28,7 @@ static const tensor sound[TENSORS] = {
     {"layer2.bias", "[2]", 2},          {"layer2.range", "[2]", 2},       {"layer3.weight", "[4,3,11]", 132},
     {"layer3.bias", "[4,3]", 12},       {"layer4.weight", "[1,9,3]", 27}, {"layer4.bias", "[1,9]", 9}};
 
-/* The file; tensor t holds 1000 t + i + 1 at place i, but `odd` at its place 1 if t is odd_at. */
+/* Makes the file; tensor t holds 1000 t + i + 1 at place i, but `odd` at its place 1 if t is odd_at. */
 static uint8_t *file_of(const char *description, const tensor tensors[TENSORS], size_t odd_at, float odd, size_t *count)
 {
     cJSON *header = cJSON_CreateObject(), *metadata = cJSON_AddObjectToObject(header, "__metadata__");
@@ -80,7 +80,7 @@ static void refuse(const char *description, const tensor tensors[TENSORS], size_
     assert_null(head.layers[0].weight);
 }
 
-/* The description with the n-th `from` (counted from 1) as `to`. */
+/* Refuses the description with the n-th `from` (counted from 1) replaced by `to`. */
 static void refuse_change(int n, const char *from, const char *to, const char *why)
 {
     char text[sizeof DESCRIPTION + 4096];
@@ -125,7 +125,7 @@ TEST(test_reads)
     float_head_free(&head);
 }
 
-/* A head survives writing and reading unchanged. */
+/* A written head reads back unchanged. */
 TEST(test_round_trip)
 {
     size_t count;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The shipped heads: sound, of their class, and at home in the default arena. */
+/* The shipped heads: valid, of their class, and small enough for the default arena. */
 #include <string.h>
 
 #include "head/weights.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A head that does not see the mask, against the head itself run on features that say so. */
+/* A head that does not see the mask, against the head itself on features that say all is retained. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@
 #include "trim3r_heads.h"
 #include "weights_maker.h"
 
-enum { W = 118, H = 110, PIXELS = W * H, MARGIN = 46 }; /* the widest head sees 45 pixels far */
+enum { W = 118, H = 110, PIXELS = W * H, MARGIN = 46 }; /* the widest head has a radius of 45 pixels */
 
 static int8_t seen[PIXELS][T3R_FEATURES];
 static int16_t expected[PIXELS][T3R_HEAD_OUTPUTS], made[PIXELS][T3R_HEAD_OUTPUTS];
@@ -50,7 +50,7 @@ static void nothing_pruned(void)
     }
 }
 
-/* The outputs at every pixel. */
+/* Computes the outputs at every pixel. */
 static void run(const uint8_t *file, int16_t (*out)[T3R_HEAD_OUTPUTS])
 {
     const size_t work_bytes = t3r_network_work_bytes(file, W);
@@ -85,7 +85,7 @@ static uint32_t differing(void)
     return count;
 }
 
-/* With any mask the copy gives the outputs of the head itself when nothing is pruned, bit for bit. */
+/* With any mask the copy gives the outputs of the original head with nothing pruned, bit for bit. */
 static void check_head(const uint8_t *file, size_t bytes)
 {
     const uint32_t middle = (W - 2 * MARGIN) * (H - 2 * MARGIN);
@@ -96,14 +96,14 @@ static void check_head(const uint8_t *file, size_t bytes)
     fill_features(1);
     nothing_pruned();
     run(file, expected);
-    fill_features(1); /* the same except for the two */
+    fill_features(1); /* equal except for those two */
     run(hidden, made);
     assert_int_equal(differing(), 0);
     run(file, made);
-    assert_true(differing() > middle / 2); /* the head itself sees them */
+    assert_true(differing() > middle / 2); /* the original head sees them */
     fill_features(2);
     run(hidden, made);
-    assert_true(differing() > middle / 2); /* and the copy the rest */
+    assert_true(differing() > middle / 2); /* and the copy sees the others */
 
     t3r_weights_header before = t3r_weights_header_of(file), after = t3r_weights_header_of(hidden);
     assert_int_equal(before.macs_q8, after.macs_q8);
@@ -126,7 +126,7 @@ TEST(made_heads)
     }
 }
 
-/* Features read by a depthwise layer, as the first and as the second source, by a point layer of four phases. */
+/* Features that a depthwise layer reads as first and second source, and a point layer of four phases. */
 TEST(every_kind_of_layer)
 {
     const made_layer layers[] = {
@@ -153,7 +153,7 @@ TEST(shipped_heads)
     }
 }
 
-/* Layers that share their bytes: the one that does not read features keeps its own. */
+/* Layers with shared bytes: one that does not read features keeps its own. */
 TEST(shared_blocks)
 {
     const made_layer layers[] = {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Quantized layers: how far each is from its floats, that scales and shifts are in range, whatever the weights. */
+/* Quantized layers: their distance from the floats; scales and shifts are in range for any weights. */
 #include "quantize.h"
 
 #include "sample_head.h"
@@ -36,7 +36,7 @@ static void quantize(quantized_head *out, const float_head *head, const uint32_t
     assert_sound(out);
 }
 
-/* Against the definition: the nearest mantissa of 31 bits, at least half of the range. */
+/* Compares with the definition: the nearest mantissa of 31 bits, at least half of the range. */
 TEST(test_multiplier)
 {
     uint64_t seed = 1;
@@ -60,8 +60,8 @@ TEST(test_multiplier)
     assert_int_equal(quantize_multiplier(-1, &multiplier, &shift), -1);
 }
 
-/* Every weight and every bias is within half a step, and the multiplier is exactly the ratio of the steps, also in
- * the 16 bits that int16 activations leave it. */
+/* Every weight and every bias is within half a step, and the multiplier is exactly the ratio of the steps, also in the
+ * 16 bits that int16 activations allow. */
 TEST(test_layers)
 {
     for (uint64_t seed = 0; seed < 5; seed++) {
@@ -111,7 +111,7 @@ TEST(test_layers)
     }
 }
 
-/* Channels that are dead, tiny, huge, or all bias give a sound file or a refusal. */
+/* Channels that are dead, tiny, huge, or all bias give a valid file or a refusal. */
 TEST(test_extremes)
 {
     static const float factors[] = {0, 1e-38f, 1e-20f, 1e-6f, 1e6f, 1e20f, 1e38f};
@@ -163,7 +163,7 @@ TEST(test_accumulators)
     quantize(&out, &head, (const uint32_t[]){16, 8});
     int16_t most = out.layers[0].weight[0];
     assert_true(most < 32767);
-    /* |bias'| + 2^8 sum < 2^31 x 7/8, the bound that the quantizer keeps: not far below it either */
+    /* |bias'| + 2^8 sum < 2^31 x 7/8, the quantizer's bound: the result is also not far below it */
     assert_in_range(most, 20000, 22700);
     quantized_head_free(&out);
     quantize(&out, &head, (const uint32_t[]){16, 16});

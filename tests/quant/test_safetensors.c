@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* .safetensors: what is read, and that everything else is refused with a reason. */
+/* .safetensors: valid files are read, and all others are refused with a reason. */
 #include "safetensors.h"
 
 #include "unit/unit.h"
@@ -7,7 +7,7 @@
 #define TENSOR(name, shape, begin, end)                                                                                \
     "\"" name "\":{\"dtype\":\"F32\",\"shape\":" shape ",\"data_offsets\":[" begin "," end "]}"
 
-/* Header and `data_bytes` bytes of data, in memory of exactly their size. */
+/* Makes a header and `data_bytes` bytes of data, in memory of exactly their size. */
 static uint8_t *file_of(const char *header, size_t data_bytes, size_t *count)
 {
     size_t length = strlen(header);

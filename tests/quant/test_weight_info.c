@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Weight files: every field of a sound one, changed, is refused with a reason by the host's reader, and by the
- * runtime's check too. */
+/* Weight files: a change in any field of a valid file is refused with a reason by the host's reader, and also by the
+ * runtime's check. */
 #include "weight_info.h"
 
 #include "core/little_endian.h"
@@ -52,7 +52,7 @@ static void refuse(const sample_file *file, const char *why)
     assert_int_equal(t3r_weights_check(file->bytes, file->count), T3R_ERR_WEIGHTS);
 }
 
-/* The sample with a number of `bytes` bytes at `at` changed, the CRC made to fit. */
+/* Refuses the sample with a number of `bytes` bytes at `at` changed, with a matching CRC. */
 static void refuse_change(uint32_t weight_bits, uint32_t activation_bits, size_t at, uint32_t bytes, uint64_t value,
                           const char *why)
 {
@@ -77,7 +77,7 @@ static void refuse_row(uint32_t n, size_t at, uint32_t bytes, uint64_t value, co
     refuse_header(T3R_WEIGHTS_HEADER_BYTES + (n - 1) * (size_t)T3R_WEIGHTS_LAYER_BYTES + at, bytes, value, why);
 }
 
-/* The reason names the layer. */
+/* Refuses a field of a layer that the reason names. */
 static void refuse_layer(uint32_t n, size_t at, uint32_t bytes, uint64_t value, const char *why)
 {
     char text[128];
@@ -211,7 +211,7 @@ TEST(test_layers)
     }
 }
 
-/* The offset of a block of layer 1. */
+/* Returns the offset of a block of layer 1. */
 static size_t block_at(uint32_t weight_bits, uint32_t activation_bits, enum weight_block block)
 {
     sample_file file = make(weight_bits, activation_bits);
@@ -242,8 +242,8 @@ TEST(test_numbers)
     free(file.bytes);
 }
 
-/* Fields of many values, sealed again: the rules of layers, written once for firmware and once for the host, accept the
- * same files. */
+/* Sets fields to many values, with a matching CRC: the rules for layers, written once for firmware and once for the
+ * host, accept the same files. */
 TEST(test_agreement)
 {
     static const uint32_t variants[4][2] = {{8, 8}, {8, 16}, {16, 8}, {16, 16}};

@@ -54,8 +54,6 @@ t3r_sink bag_sink(bag_bytes *bytes)
     return (t3r_sink){append, bytes, read_back};
 }
 
-/* ---- CDR ---- */
-
 void bag_cdr_start(bag_cdr *cdr, bool big_endian)
 {
     bag_bytes_start(&cdr->bytes);
@@ -106,8 +104,6 @@ void bag_header(bag_cdr *cdr, int64_t stamp_ns, const char *frame_id)
     bag_u32(cdr, (uint32_t)(stamp_ns - seconds * 1000000000));
     bag_string(cdr, frame_id);
 }
-
-/* ---- MCAP ---- */
 
 void bag_start(bag *b)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Recordings made by hand for the tests: MCAP files in memory, with CDR of either byte order, as a foreign writer
- * might make them. Independent of platform/messages/cdr.c and of the recorder. */
+/* Recordings assembled for the tests: MCAP files in memory, with CDR of either byte order, as a foreign writer might
+ * make them. Independent of platform/messages/cdr.c and of the recorder. */
 #ifndef T3R_TESTS_BAG_H
 #define T3R_TESTS_BAG_H
 
@@ -11,7 +11,7 @@
 #include "mcap/mcap_writer.h"
 #include "recording/recording.h"
 
-/* Bytes that grow. As a sink: `room_left` bytes fit, then it fails; what fitted can be read back. */
+/* Growing bytes. As a sink it fails once `room_left` bytes are used; the earlier bytes can be read back. */
 typedef struct bag_bytes {
     uint8_t *data;
     size_t count, capacity;

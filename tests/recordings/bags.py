@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bags that a foreign writer makes: trim3r import reads them, and what it writes is what is known of them.
+"""Bags by a foreign writer: trim3r import reads them, and its output has the known contents.
 
 bags.py TRIM3R FOLDER; FOLDER has node's packages and modules (bags.sh).
 """
@@ -30,7 +30,7 @@ OPTICAL = (0.5, -0.5, 0.5, -0.5)  # w x y z: x right, y down, z forward, in a bo
 
 
 def stamp_of(ns):
-    # the writer of messages calls the field nsec or nanosec, by its version
+    # the name, nsec or nanosec, depends on the writer's version
     return {"sec": ns // 10**9, "nsec": ns % 10**9, "nanosec": ns % 10**9}
 
 
@@ -163,16 +163,16 @@ def robot(packing):
     check(use == {"/cam/color/image_raw/compressed": "colour", "/cam/color/camera_info": "camera_info",
                   "/cam/depth/image_rect_raw": "depth", "/cam/depth/camera_info": "camera_info of depth",
                   "/tf": "transforms", "/tf_static": "transforms"}, f"{use}")
-    check([(t["topic"], t["unused"]) for t in told["unused"]] == [("/imu", "its type is none that is read")],
+    check([(t["topic"], t["unused"]) for t in told["unused"]] == [("/imu", "its type is not read")],
           f"{told['unused']}")
     still = frames.matrix(yaw(0.2), (0.1, 0, 0.3)) @ frames.matrix(OPTICAL, (0, 0, 0))
     for i in range(count):
         check(np.array_equal(told["read"]["image"][i], colour_rows(i)), f"picture {i}")
-        at = (10 + 33 * i) / 100  # of a tenth of a second; yaw turns evenly, so the arc is that of the angle
+        at = (10 + 33 * i) / 100  # in tenths of a second; yaw changes evenly, so the arc is proportional to the angle
         moving = frames.matrix(yaw(0.4 * at), (1 + 0.5 * at, 2, 0))
         same_pose(told["read"]["pose"][i], moving @ still, f"pose {i}")
     for z in told["read"]["depth"]:
-        # the depth camera stands 0.25 to the right: what it sees moves by 30 x 0.25 / 2 = 3.75 pixels to the right
+        # the depth camera is 0.25 to the right, which moves its content by 30 x 0.25 / 2 = 3.75 pixels to the right
         check(z.shape == (24, 32), f"{z.shape}")
         check((z[:, 4:] == 2000).all() and (z[:, :3] == 0).all(), f"{z}")
     wide = imported("robot.mcap", "--pair", 40)
@@ -193,11 +193,11 @@ def robot(packing):
         refused = run(TRIM3R, command[0], "robot.mcap", *command[1:], expect=1)
         check("trim3r import robot.mcap -o NAME.mcap" in refused.stderr, f"{command}: {refused.stderr}")
     text = run(TRIM3R, "import", "robot.mcap", "-o", "out.mcap").stdout
-    check("not used             /imu (sensor_msgs/msg/Imu, 1 messages): its type is none that is read" in text, text)
+    check("not used             /imu (sensor_msgs/msg/Imu, 1 messages): its type is not read" in text, text)
 
 
 def odometry_and_named_topics():
-    """Poses of the body, with the camera's place in it; of two pose topics one is named."""
+    """Poses of the body, with the camera's place in it; an option names one of several pose topics."""
     messages = [transforms("/tf_static", START, ("base", "cam", (0, 0, 0.5), OPTICAL))]
     for i in range(3):
         ns = START + i * 100 * MS
@@ -227,13 +227,13 @@ def odometry_and_named_topics():
 
 
 def depth_kinds():
-    """Depth in every encoding, of colour's own frame: the same steps come out."""
+    """Depth in every encoding, in colour's own frame, gives the same steps."""
     steps = (np.arange(WIDTH * HEIGHT) % 3000 + 500).reshape(HEIGHT, WIDTH).astype(np.uint16)
     steps[0, 0] = 0
     a, b = 20000.0, -20.0  # metres are a / (sample - b)
     quantized = np.where(steps > 0, np.round(a / (np.maximum(steps, 1) * 0.001) + b), 0).astype(np.uint16)
     metres = np.where(quantized > 0, a / (quantized - b), 0)
-    png = frames.png
+    png = frames.picture
     kinds = {"16UC1": (image, "16UC1", steps.astype("<u2").tobytes()), "mono16": (image, "mono16", steps.astype("<u2").tobytes()),
              "32FC1": (image, "32FC1", (steps * np.float32(0.001)).astype("<f4").tobytes()),
              "png": (compressed, "16UC1; png compressed ", png(steps)),
@@ -265,7 +265,7 @@ def depth_kinds():
 
 
 def lenses():
-    """Depth whose lens is rational_polynomial or equidistant lands where the lens says that it looks."""
+    """Depth through a rational_polynomial or equidistant lens lands where the lens model says."""
     for model, d in (("rational_polynomial", (0.2, -0.1, 0.001, -0.002, 0.03, 0.15, -0.05, 0.01)), ("equidistant", (0.05, -0.02, 0.01, 0))):
         z = np.full((HEIGHT, WIDTH), 1000, "<u2")
         mark = (10, 12)  # y, x of a near block, seen in the depth camera
@@ -300,7 +300,7 @@ def distorted(model, d, p):
 
 
 def broken_bags_are_mended():
-    """Cut anywhere: what was whole is written, whole; and the line says what was lost."""
+    """Files cut anywhere: complete messages are written, and the line reports the loss."""
     messages = []
     for i in range(6):
         ns = START + i * 33 * MS
@@ -333,7 +333,7 @@ def imported_frames(name):
 
 
 def built_from():
-    """A room recorded, written anew by import with every compression: the same scene."""
+    """A recorded room, rewritten by import with every compression, gives the same scene."""
     run(TRIM3R, "room", "--size", "96x96", "-o", "room.mcap")
     hashes = set()
     for stored in (("--unchunked",), ("--compression", "zstd"), ("--compression", "lz4"), ()):

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* For the tests' scripts: `recording_tool sample STORAGE FORMAT FILE` writes the sample recording (sample.h),
- * `recording_tool dump FILE` prints what the reader makes of a recording as JSON, `recording_tool seeds FOLDER` writes
- * a fuzzer's seeds. Fixed-point numbers that may not fit a double are strings. */
+ * `recording_tool dump FILE` prints a recording's contents as JSON, `recording_tool seeds FOLDER` writes a fuzzer's
+ * seeds. Fixed-point numbers that may not fit a double are strings. */
 #include <cjson/cJSON.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -40,7 +40,7 @@ static void add_int64(cJSON *object, const char *name, int64_t value)
     cJSON_AddStringToObject(object, name, text);
 }
 
-/* Rows without padding, as hexadecimal digits. */
+/* Adds rows without padding, as hexadecimal digits. */
 static void add_rows(cJSON *object, const char *name, const uint8_t *rows, uint32_t stride, uint32_t row_bytes,
                      uint32_t count)
 {

@@ -6,7 +6,7 @@
 #include "mcap/chunk_packer.h"
 #include "messages/pixel_layout.h"
 
-#define PADDING 5u /* bytes behind each row in memory, not to be recorded */
+#define PADDING 5u /* bytes after each row in memory, not to be recorded */
 
 uint8_t sample_byte(uint32_t frame, uint32_t plane, uint32_t i)
 {

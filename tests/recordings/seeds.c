@@ -22,7 +22,7 @@ static int save(const char *folder, const char *name, const uint8_t *bytes, size
     return fclose(file) != 0 || failed ? -1 : 0;
 }
 
-/* Channels and messages of every type that is read, without magic and Header. */
+/* Returns channels and messages of every type that is read, without magic and Header. */
 static bag_bytes records(void)
 {
     static const uint8_t pixels[64] = {1, 2, 3};
@@ -72,7 +72,7 @@ static int save_chunked(const char *folder, const char *name, const char *compre
     return status;
 }
 
-/* One transform of `child` in `parent`, at a quarter to its right. */
+/* Puts one transform of `child` in `parent`, at a quarter to its right. */
 static void put_transform(bag *b, uint16_t channel, int64_t stamp_ns, const char *parent, const char *child)
 {
     bag_cdr cdr;
@@ -87,7 +87,7 @@ static void put_transform(bag *b, uint16_t channel, int64_t stamp_ns, const char
     bag_bytes_free(&cdr.bytes);
 }
 
-/* What import alone reads: transforms that move, depth of another lens, a compressed image. */
+/* Saves what import alone reads: transforms that move, depth of another lens, a compressed image. */
 static int save_rig(const char *folder)
 {
     static const uint8_t pixels[64] = {1, 2, 3, 4, 5, 6, 7, 8};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Recordings that others make: big-endian CDR, other encodings, other topics, stamps that do not match, chunks. */
+/* Recordings by other writers: big-endian CDR, other encodings, other topics, stamps that do not match, chunks. */
 #include <lz4frame.h>
 #include <math.h>
 #include <stdio.h>
@@ -56,7 +56,7 @@ static t3r_capture_frame frame_of(const t3r_recording *recording, uint32_t index
     return frame;
 }
 
-/* Opening must fail with both texts in the reason. */
+/* Checks that opening fails with both texts in the reason. */
 static void refuse_file(const bag *b, const char *what, const char *where)
 {
     char error[256] = "";
@@ -160,7 +160,7 @@ TEST(pairs_by_stamp_then_by_nearness)
     uint16_t other_info = bag_channel(&b, "/cam/depth/camera_info", info_type);
     uint16_t second = bag_channel(&b, "/zed/image", image_type);
     static const uint8_t z16[6][8] = {{1}, {2}, {3}, {4}, {5}, {6}};
-    /* Out of order. */
+    /* Unordered stamps. */
     static const int64_t depths[6] = {300 * MS, 100 * MS, 93 * MS, 221 * MS, 180 * MS, 420 * MS + 1};
     for (uint32_t i = 0; i < 6; i++) {
         const bag_image z = {depths[i], 2, 2, 4, "16UC1", false, z16[i], 8};
@@ -207,13 +207,13 @@ TEST(pairs_by_stamp_then_by_nearness)
     assert_int_equal(pairing.worst_pose_gap_ns, 19 * MS);
     assert_string_equal(t3r_recording_clock(recording), "unknown");
     assert_int_equal(t3r_recording_bits_epoch(recording), 0);
-    assert_int_equal(t3r_recording_stream(recording, 4).use, T3R_USE_DEPTH_CAMERA_INFO); /* for import */
+    assert_int_equal(t3r_recording_stream(recording, 4).use, T3R_USE_DEPTH_CAMERA_INFO); /* read by import only */
     assert_non_null(strstr(t3r_recording_note(recording), "/zed/image is not used"));
     t3r_recording_close(recording);
     bag_free(&b);
 }
 
-/* Two images; the second one's intrinsics are `info`. */
+/* Opens a recording of two images; the second one's intrinsics are `info`. */
 static t3r_recording *with_info(bag *b, bag_info info)
 {
     bag_start(b);
@@ -381,7 +381,7 @@ TEST(malformed_messages_are_refused)
         {image_type, "\0\7\0\0", 4, "not plain CDR"},
         {image_type, "\0\1\0\0\1\0\0\0\1\0\0", 11, "header is malformed"},
         {image_type, "\0\1\0\0\0\0\0\0\0\312\232\073\1\0\0\0\0", 17, "nanosec"},
-        {image_type, "\0\1\0\0\0\0\0\0\0\0\0\0\2\0\0\0ab", 18, "header is malformed"}, /* no zero behind the text */
+        {image_type, "\0\1\0\0\0\0\0\0\0\0\0\0\2\0\0\0ab", 18, "header is malformed"}, /* no zero after the text */
         {image_type, "\0\1\0\0\0\0\0\0\0\0\0\0\377\377\377\377\0", 17, "header is malformed"},
         {image_type, "\0\1\0\0\0\0\0\0\0\0\0\0\0\0\0\0\2\0\0\0\2\0\0\0\0\0\0\0\0\0\0\0\2\0\0\0\377\377\377\377\0", 41,
          "data is cut short"},
@@ -509,7 +509,7 @@ typedef struct chunk {
     uint32_t crc;
 } chunk;
 
-/* Schema, channel and `frames` images, packed. */
+/* Makes a chunk of schema, channel and `frames` images, packed. */
 static chunk make_chunk(const char *compression, uint32_t frames)
 {
     bag b;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The reader for firmware gives the frames that the reader with a heap gives, and ends where a file is cut. */
+/* The reader for firmware gives the same frames as the reader with a heap, and ends where a file is cut. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -78,7 +78,7 @@ static void check_same(const t3r_capture_frame *a, const t3r_capture_frame *b)
     }
 }
 
-/* The frame's rows in strips of so many, against those of the whole one: planes begin with the strip. */
+/* Compares the frame read in strips with the whole frame; planes begin with the strip. */
 static void check_strips(bag_bytes *bytes, const t3r_capture_frame *whole, uint32_t strip)
 {
     static reading r;
@@ -112,7 +112,7 @@ static void check_strips(bag_bytes *bytes, const t3r_capture_frame *whole, uint3
     assert_string_equal(r.reader.error, "these rows are not in the image");
 }
 
-/* Every frame of the bytes by both readers; how many there are. */
+/* Reads the bytes with both readers; returns the number of frames. */
 static uint32_t check_both(bag_bytes *bytes)
 {
     char error[256] = "";
@@ -181,7 +181,7 @@ static void refuse(bag_bytes *bytes, size_t colour_room, const char *expected)
     }
     assert_int_equal(status, -1);
     assert_string_equal(r.reader.error, expected);
-    assert_int_equal(t3r_frame_reader_next(&r.reader, &frame), T3R_CAPTURE_FAILED); /* and so it stays */
+    assert_int_equal(t3r_frame_reader_next(&r.reader, &frame), T3R_CAPTURE_FAILED); /* the failure is final */
 }
 
 TEST(what_it_cannot_read_is_named)
@@ -211,7 +211,7 @@ TEST(depth_is_passed_over_without_a_buffer)
     bag_bytes_free(&bytes);
 }
 
-/* Depth in metres and big-endian depth, each behind its colour image. */
+/* Depth in metres and big-endian depth, each after its colour image. */
 TEST(foreign_depth_becomes_steps_in_its_place)
 {
     static const uint8_t colour[4 * 4];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Recordings that unpack to more than memory should hold: they are read, and what is seen stays where it was. */
+/* Recordings that unpack to more than memory should hold can be read, and returned bytes keep their address. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 #include "scratch.h"
 #include "test.h"
 
-/* 166 MB of pictures, in a file of a quarter of that: more than T3R_LIMIT_UNPACKED_HEAP. */
+/* 166 MB of pictures in a file a quarter as large: more than T3R_LIMIT_UNPACKED_HEAP. */
 enum { FRAMES = 20, WIDTH = 1920, HEIGHT = 1440, ROW_BYTES = WIDTH * 3, NOISE_BYTES = ROW_BYTES / 4 };
 
 static void fill(uint8_t *rgb, uint32_t frame)
@@ -109,7 +109,7 @@ TEST(spills)
 {
     t3r_spill spill = {0};
     uint8_t *a = t3r_spill_take(&spill, 100);
-    uint8_t *b = t3r_spill_take(&spill, (size_t)100 << 20); /* a part of its own */
+    uint8_t *b = t3r_spill_take(&spill, (size_t)100 << 20); /* too large to share a part */
     assert_true(a != NULL && b != NULL);
     memset(a, 7, 100);
     memset(b, 8, 4096);

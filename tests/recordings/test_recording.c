@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Recordings of our own: what is written is what is read, wherever the file is cut, and never after it was changed. */
+/* Our own recordings: they read back as written, also when truncated anywhere; changed files are refused. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -149,13 +149,13 @@ TEST(frame_out_of_range_is_refused)
     bag_bytes_free(&bytes);
 }
 
-/* ---- where messages end, by the record reader ---- */
+/* ---- ends of messages, by the record reader ---- */
 
 typedef struct ends {
     const uint8_t *base;
     uint32_t messages;
     size_t end[20];
-    uint32_t images[20]; /* frames whole once this message is */
+    uint32_t images[20]; /* number of frames that are complete after each message */
 } ends;
 
 static int no_schema(void *user, const t3r_mcap_schema_record *schema, t3r_mcap_place place)
@@ -234,7 +234,7 @@ TEST(cut_anywhere_reads_the_whole_messages)
     check_cuts(SAMPLE_NONE);
 }
 
-/* Of a chunk that was cut, whatever could be unpacked. */
+/* A cut chunk gives the part that could be unpacked. */
 TEST(cut_anywhere_reads_what_can_be_unpacked)
 {
     for (uint32_t storage = SAMPLE_ZSTD; storage <= SAMPLE_LZ4; storage++) {
@@ -334,7 +334,7 @@ TEST(a_failing_sink_fails_the_recorder)
     }
 }
 
-/* A sink that cannot be read back gets what --unchunked writes. */
+/* A sink that cannot be read back gets the output of --unchunked. */
 TEST(without_reading_back_there_are_no_chunks)
 {
     bag_bytes plain = sample(T3R_PIXEL_RGB24, SAMPLE_UNCHUNKED), written;
@@ -348,7 +348,7 @@ TEST(without_reading_back_there_are_no_chunks)
     bag_bytes_free(&written);
 }
 
-/* One that fails to give back what it took fails the recorder. */
+/* A sink that fails to return written bytes makes the recorder fail. */
 static int read_nothing(void *user, uint64_t offset, void *data, size_t count)
 {
     (void)user, (void)offset;
@@ -377,7 +377,7 @@ TEST(the_same_frames_give_the_same_bytes)
     }
 }
 
-/* What packs to less than a reader takes from so small a file is stored as it is. */
+/* Contents that would compress beyond a reader's limit for so small a file are stored uncompressed. */
 TEST(a_flat_picture_stays_readable)
 {
     enum { SIDE = 1024 };
@@ -512,7 +512,7 @@ TEST(replay_hands_out_the_frames)
     assert_non_null(strstr(error, "directory"));
 }
 
-/* A pose that is set takes the place of the recorded one; another frame keeps its own. */
+/* A pose that is set replaces the recorded one; another frame keeps its own. */
 TEST(a_set_pose_wins)
 {
     static const int64_t position_q32[3] = {INT64_C(5) << 40, -7, 0};

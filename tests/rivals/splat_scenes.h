@@ -19,20 +19,20 @@
 /* The frame of the scenes: scene units are world units, their origin the world's. */
 extern const t3r_scene_frame scene_frame;
 
-/* `count` parameter rows, opacity 1/2, grey, tiny, one unit ahead. splat_model_free(). */
+/* Makes `count` parameter rows: opacity 1/2, grey, tiny, one unit ahead. Call splat_model_free(). */
 splat_model plain_model(uint32_t count);
 double *parameters_of(const splat_model *model, uint32_t gaussian);
-/* A ball of `sigma` at x, y, z. */
+/* Makes Gaussian a ball of `sigma` at x, y, z. */
 void set_ball(const splat_model *model, uint32_t gaussian, double x, double y, double z, double sigma, double opacity);
 
-/* A model of Gaussians of all shapes before a camera at the origin with this focal length, in their order and clearly
- * apart in depth. */
+/* Makes Gaussians of all shapes before a camera at the origin with this focal length, in order of depth and clearly
+ * apart. */
 splat_model random_model(dice *d, uint32_t count, double focal, uint32_t width, uint32_t height);
 
-/* At the origin, looking along +z, the principal point in the middle. */
+/* Returns a camera at the origin, looking along +z, with the principal point in the middle. */
 splat_camera middle_camera(double focal, uint32_t width, uint32_t height);
 
-/* Opened and projected. splat_view_close(). */
+/* Opens a view and projects the model. Call splat_view_close(). */
 splat_view view_of(const splat_model *model, const splat_camera *camera, double alpha_least);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Fine-tuning finds its way back to pictures that a known model drew, and does so the same way every time. */
+/* Fine-tuning recovers a known model from its pictures, with the same result every time. */
 #include <stdio.h>
 
 #include "splat_scenes.h"
@@ -25,7 +25,7 @@ static void draw_bytes(const splat_model *model, const splat_camera *camera, uin
     splat_view_close(&view);
 }
 
-/* Pictures of a random model, and the model disturbed. */
+/* Draws pictures of a random model, and disturbs the model. */
 static void make_scene(scene *s)
 {
     dice d = {11};
@@ -95,7 +95,7 @@ TEST(same_every_time)
     free(s);
 }
 
-/* Every parameter moves by its own rate in the first step of Adam, or stays where nothing depends on it. */
+/* In the first step of Adam every parameter moves by its own rate, unless the loss does not depend on it. */
 TEST(first_step)
 {
     static uint8_t black[VALUES];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The loss of fine-tuning against its definition, the slow way, and its derivatives against differences. */
+/* The loss of fine-tuning against a direct computation of its definition, and its derivatives against differences. */
 #include "splat_scenes.h"
 #include "study/rivals/photometric.h"
 #include "test.h"

@@ -5,15 +5,16 @@
 #include "splat_scenes.h"
 #include "test.h"
 
-/* The cut at 1/255 has no derivative: here it lies where it cannot be seen. */
+/* The cut at 1/255 has no derivative: here it is too low to be seen. */
 #define UNSEEN 1e-6
-/* Floats drawn, steps small against a pixel: a few parts in a thousand of the largest derivative of the parameter. */
+/* Pictures are floats and steps are small against a pixel: tolerance of a few thousandths of the parameter's largest
+ * derivative. */
 #define STEP 2e-3
 #define TOLERANCE 4e-3
 
 enum { WIDTH = 21, HEIGHT = 18, VALUES = WIDTH * HEIGHT * 3, COUNT = 24 };
 
-/* A linear measure of the picture: its derivative with respect to the picture is `weights`. */
+/* Returns a linear measure of the picture, whose derivative with respect to the picture is `weights`. */
 static double measure(const splat_model *model, const splat_camera *camera, const float *weights)
 {
     static float rgb[VALUES];
@@ -95,7 +96,7 @@ TEST(turned_view)
     splat_model_free(&model);
 }
 
-/* At the cap of alpha neither place nor shape nor opacity shows. */
+/* At the cap of alpha the derivatives by place, shape and opacity are 0. */
 TEST(capped)
 {
     static float rgb[9 * 9 * 3], weights[9 * 9 * 3];

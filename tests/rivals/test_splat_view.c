@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The rivals' rasterizer draws what the runtime's integer raster draws: at least 50 dB, both rounded to 8 bits. */
+/* The rivals' rasterizer agrees with the runtime's integer raster: at least 50 dB, both rounded to 8 bits. */
 #include <stdio.h>
 
 #include "splat_scenes.h"
@@ -85,7 +85,7 @@ TEST(random_scenes)
     }
 }
 
-/* Turned, with unequal focal lengths, and at map coordinates in units a 64th as large. */
+/* Turned cameras with unequal focal lengths, in map coordinates in units 1/64 as large. */
 TEST(moved_cameras)
 {
     static const recipe r = {"ball", 8000, 200, 160, 200, 0.5, 1, 0.005, 0.05, 20, 0.1};
@@ -128,7 +128,7 @@ static void gather(void *user, const splat_row *row)
     }
 }
 
-/* What a walk tells adds up to the picture. */
+/* The contributions that a walk reports add up to the picture. */
 TEST(walk_is_the_picture)
 {
     enum { WIDTH = 45, HEIGHT = 29 };
@@ -147,7 +147,7 @@ TEST(walk_is_the_picture)
     splat_model_free(&model);
 }
 
-/* To parameters and back: within the rounding of the record. */
+/* A scene converted to parameters and back differs only by the record's rounding. */
 TEST(model_round_trip)
 {
     static const recipe r = {"round trip", 2000, 64, 64, 60, 0.5, 4, 0.001, 0.2, 100, 0.001};
@@ -178,7 +178,7 @@ TEST(model_round_trip)
     free(gaussians);
 }
 
-/* Nothing that an optimiser may come to draws outside memory or ends in a trap. */
+/* No parameters that an optimiser may reach cause accesses out of bounds or traps. */
 TEST(wild_parameters)
 {
     static const double wild[] = {0, -0.0, 1e-300, 1e300, -1e300, 700, -700, INFINITY, -INFINITY, NAN};

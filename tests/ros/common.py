@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the scripts of this folder share."""
+"""Shared by the scripts of this folder."""
 import json
 import math
 import os
@@ -11,13 +11,13 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 from checks import check, done, near, run, skip  # noqa: E402, F401
 
 SIDE, FRAMES, GAUSSIANS = 64, 10, 1000
-EVERY = 1  # with frames between keyframes, `replay` draws these, and its hashes hold the pictures
+EVERY = 1  # with frames between keyframes, `replay` draws these, and its hashes cover the pictures
 FIELDS = ("x", "y", "z", "rgb", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3")
 FLOAT32 = 7
 
 
 def walk(trim3r, folder):
-    """A recording of the built-in room, and what `replay --stream` makes of it."""
+    """Makes a recording of the built-in room and runs `replay --stream` on it."""
     recording = f"{folder}/walk.mcap"
     run(trim3r, "room", "--size", f"{SIDE}x{SIDE}", "--frames", FRAMES, "-o", recording)
     told = run(trim3r, "replay", recording, "--stream", "--every", EVERY, "--gaussians", GAUSSIANS, "--json").stdout
@@ -25,7 +25,7 @@ def walk(trim3r, folder):
 
 
 def hashes(log):
-    """Those of the keyframes that a node's log tells."""
+    """Returns the keyframes' hashes in a node's log."""
     return re.findall(r"keyframe \d+: .* hash ([0-9a-f]{16})", log)
 
 
@@ -35,7 +35,7 @@ def check_hashes(log, replayed, name):
 
 
 def ply_rows(path):
-    """Rows of x y z nx ny nz f_dc_0..2 opacity scale_0..2 rot_0..3, floats."""
+    """Returns rows of x y z nx ny nz f_dc_0..2 opacity scale_0..2 rot_0..3, floats."""
     with open(path, "rb") as file:
         data = file.read()
     head, body = data.split(b"end_header\n", 1)
@@ -46,7 +46,7 @@ def ply_rows(path):
 
 
 def check_clouds(lines, replayed, name):
-    """One a keyframe, as it says it is."""
+    """Checks that there is one cloud per keyframe, and the clouds' fields, sizes, frame and stamps."""
     clouds = [json.loads(line) for line in lines]
     check([c["cloud"] for c in clouds] == [k["gaussians"] for k in replayed["keyframes"]], f"{name}: a cloud a keyframe")
     for cloud in clouds:
@@ -60,7 +60,7 @@ def check_clouds(lines, replayed, name):
 
 
 def check_points(cloud_path, scene_path, name):
-    """The last cloud against the scene that the node saved as .ply, Gaussian for Gaussian."""
+    """Compares the last cloud with the scene that the node saved as .ply, Gaussian for Gaussian."""
     rows = ply_rows(scene_path)
     with open(cloud_path, "rb") as file:
         data = file.read()

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-// A recording's messages as messages of ROS 1 or ROS 2, and what a test wants to know of a cloud.
+// Converts a recording's messages to messages of ROS 1 or ROS 2, and describes clouds for the tests.
 #ifndef TRIM3R_TESTS_ROS_PLAY_HPP
 #define TRIM3R_TESTS_ROS_PLAY_HPP
 
@@ -89,7 +89,7 @@ template <class Image, class Stamp> Image image_of(const t3r_recorded_message &m
     return to;
 }
 
-// `arrays(message, k, d)` gives the arrays of that version of ROS their numbers.
+// `arrays(message, k, d)` fills the arrays, whose names depend on the version of ROS.
 template <class Info, class Stamp, class Arrays>
 Info camera_info_of(const t3r_recorded_message &message, Stamp stamp, Arrays arrays)
 {
@@ -130,7 +130,7 @@ void fill_pose(const t3r_ros_pose &from, Position &position, Rotation &rotation)
     rotation.w = double_of(from.rotation_f64[3]);
 }
 
-// A line of JSON for a cloud; its points go to the file.
+// Prints a line of JSON for a cloud and writes its points to the file.
 template <class Cloud> void tell(const Cloud &cloud, int64_t stamp_ns, const char *path)
 {
     std::printf(

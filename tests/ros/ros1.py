@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""ros1.py TRIM3R ros1_node|none ros1_play|none: the node for ROS 1 as a process of its own beside Debian's master. It gets a
-recording as messages over TCP: clouds and hashes against `trim3r replay --stream`, with poses of their own and by tf."""
+"""ros1.py TRIM3R ros1_node|none ros1_play|none: runs the node for ROS 1 as a process, with Debian's master. It gets a
+recording as messages over TCP; clouds and hashes are compared with `trim3r replay --stream`, with pose messages and
+with tf."""
 import os
 import pathlib
 import shutil
@@ -38,13 +39,13 @@ def wait_for_port(port, process):
 
 
 def stop(process):
-    """Ends a process as a user does; its output."""
+    """Ends a process with SIGINT, as a user does; returns its output."""
     process.send_signal(signal.SIGINT)
     return process.communicate(timeout=60)[0]
 
 
 def session(folder, environment, recording, replayed, kind):
-    """One run of the node: what the player heard, what the node said."""
+    """Runs the node once; returns the output of the player and of the node."""
     scene, cloud = f"{folder}/{kind}.ply", f"{folder}/{kind}.cloud"
     given = {"width": SIDE, "height": SIDE, "gaussians": GAUSSIANS, "every": EVERY, "queue": 32,
              "patience_ms": 20000.0, "world": "world", "scene": scene, "pose": kind}

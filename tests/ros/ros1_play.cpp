@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 // ros1_play RECORDING KEYFRAMES CLOUD [tf]: publishes the recording's frames to a running node, waits for that many
-// clouds, tells each as a line of JSON and keeps the points of the last one in the file CLOUD, then calls the node's
-// service `save`. Poses go as messages of their own, or with `tf` by way of a body that carries the camera.
+// clouds, prints each as a line of JSON, writes the points of the last one to the file CLOUD, then calls the node's
+// service `save`. Poses are messages of their own, or with `tf` transforms of a body that carries the camera.
 #include <cstdlib>
 
 #include <geometry_msgs/PoseStamped.h>
@@ -97,7 +97,7 @@ class player
             pose_.publish(message);
             return;
         }
-        // the world carries the body, which stands where the camera does; the body carries the camera
+        // the world holds the body, at the camera's place; the body carries the camera
         tf2_msgs::TFMessage message;
         message.transforms.resize(2);
         play::fill_header(message.transforms[0].header, pose.header, set_stamp);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-// ros2_drive RECORDING CLOUD SCENE KIND: the shell for ROS 2 in one process, on real messages of ROS 2 and the stand-in
-// of rclcpp: publishes the recording's frames, tells each cloud as a line of JSON and each line of the log on stderr,
-// and keeps the points of the last cloud. KIND: how poses come, pose odometry transform tf; or `faults`, where some
-// messages are wrong.
+// ros2_drive RECORDING CLOUD SCENE KIND: runs the node for ROS 2 in one process, on real messages of ROS 2 and the
+// stand-in of rclcpp. Publishes the recording's frames, prints each cloud as a line of JSON and each log line on
+// stderr, and writes the points of the last cloud. KIND: the source of poses (pose, odometry, transform, tf), or
+// `faults`, where some messages are wrong.
 #include <algorithm>
 #include <cmath>
 
@@ -92,7 +92,7 @@ class player
         }
     }
 
-    // A frame before the true one of the same number, a millisecond earlier, with one thing wrong.
+    // Sends a wrong copy of the frame of that number, stamped a millisecond earlier, before the true one.
     void send_wrong(uint32_t frame)
     {
         constexpr int64_t earlier_ns = 1000000;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Messages of a camera, in any order and of any content, to frames: pairs by time, bounded queues, reasons. */
+/* Messages of a camera, in any order and with any content, become frames: pairs by time, bounded queues, reasons. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -97,7 +97,7 @@ static void finish(heard *h)
     assert_int_equal(h->held, 0);
 }
 
-/* The colour image of that time in milliseconds, or the depth image. */
+/* Returns the colour or depth image of that time in milliseconds. */
 static t3r_ros_image image_of(frame_feed_topic topic, int64_t ms)
 {
     const bool is_colour = topic == FRAME_FEED_COLOUR;
@@ -157,7 +157,7 @@ TEST(settings_are_checked)
     assert_null(frame_feed_open(&s, error, sizeof error));
 }
 
-/* A permutation of the topics by its number, 0..23. */
+/* Returns permutation number 0..23 of the topics. */
 static void put_order(int number, int order[FRAME_FEED_TOPICS])
 {
     int left[FRAME_FEED_TOPICS] = {0, 1, 2, 3};
@@ -260,7 +260,7 @@ TEST(queues_are_bounded)
         heard h;
         begin(&h, true, queue);
         send_info(&h);
-        for (int i = 1; i < 200; i++) { /* no pose ever, and time stands still */
+        for (int i = 1; i < 200; i++) { /* never a pose, and time does not advance */
             send(&h, FRAME_FEED_COLOUR, i * 33, 0);
             send(&h, FRAME_FEED_DEPTH, i * 33, 0);
             assert_true(h.held <= 2 * queue + 2);
@@ -287,9 +287,9 @@ TEST(time_goes_on)
     send_info(&h);
     send(&h, FRAME_FEED_COLOUR, 5000, 0);
     send(&h, FRAME_FEED_COLOUR, 5000, 0); /* twice */
-    assert_string_equal(h.reason, "the stamp is not behind that of the message before");
+    assert_string_equal(h.reason, "the stamp is not after the previous message's");
     assert_int_equal(h.held, 1);
-    send(&h, FRAME_FEED_COLOUR, 1000, 1); /* a clock that was set */
+    send(&h, FRAME_FEED_COLOUR, 1000, 1); /* the clock was set back */
     assert_non_null(strstr(h.reason, "time went back"));
     assert_int_equal(h.held, 1);
     h.stamp_ns = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Settings that cannot be used are refused with a reason; which frames become keyframes. */
+/* Unusable settings are refused with a reason; the choice of keyframes. */
 #include <string.h>
 
 #include "ros/keyframe_map.h"
@@ -58,7 +58,8 @@ TEST(settings_are_checked)
     refused(s, "width");
 }
 
-/* A wall a metre away, seen by a camera that goes `step` millimetres to the right a frame; the keyframes among six. */
+/* Feeds six frames of a wall a metre away, seen by a camera that moves `step` millimetres to the right each; returns
+ * the number of keyframes. */
 static uint32_t keyframes_of(const keyframe_map_settings *s, int step_mm)
 {
     char error[512] = "";

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the scripts of this folder share."""
+"""Shared by the scripts of this folder."""
 
 from checks import check, done, near, run, skip  # noqa: F401
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""configure.py CMAKE: on a bare system the build says what is missing, all of it at once, and does without the tests."""
+"""configure.py CMAKE: on a bare system the build lists all missing packages at once, and omits the tests."""
 import os
 import pathlib
 import subprocess
@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def packages(folder, without):
-    """A folder with what pkg-config finds here, but for some."""
+    """Makes a folder with the packages of pkg-config, except some."""
     path = subprocess.run(["pkg-config", "--variable", "pc_path", "pkg-config"], capture_output=True, text=True,
                           check=True).stdout.strip()
     folder.mkdir()
@@ -26,7 +26,7 @@ def packages(folder, without):
 
 
 def configure(folder, without, *options):
-    """The exit status and what cmake says."""
+    """Returns the exit status and cmake's output."""
     name = f"build-{len(list(folder.iterdir()))}"
     environment = {**os.environ, "PKG_CONFIG_LIBDIR": packages(folder / f"{name}-packages", without)}
     environment.pop("PKG_CONFIG_PATH", None)

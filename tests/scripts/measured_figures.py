@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""measured_figures.py SCRIPTS: what the scripts that measure share: tables, means, blocks of a file, triplets, and files that
-are made once for each program and command."""
+"""measured_figures.py SCRIPTS: functions shared by the scripts that measure: tables, means, blocks of a file,
+triplets, and files that are made once for each program and command."""
 import contextlib
 import io
 import json
@@ -10,6 +10,8 @@ import stat
 import subprocess
 import sys
 import tempfile
+import time
+import xml.dom.minidom
 
 from checks import check, done
 
@@ -17,7 +19,7 @@ sys.path.insert(0, sys.argv[1])
 sys.dont_write_bytecode = True
 import measured  # noqa: E402
 
-# writes its arguments to the last of them, notes that it was called, and fails once where it is told to
+# writes its arguments to the last of them, records the call, and fails once on request
 PROGRAM = """#!/bin/sh
 if [ "$1" = --version ]; then
     echo "trim3r 1.0, bits epoch 7"
@@ -25,10 +27,7 @@ if [ "$1" = --version ]; then
 fi
 echo "$*" >>"{folder}/calls"
 for last; do :; done
-case $* in
-*--resume*) eval "last=\\${{$(($# - 1))}}" ;;
-esac
-echo "part of $*" >>"$last"
+echo "part of $*" >"$last"
 echo "told $1"
 if [ "$1" = fails ] && [ ! -e "{folder}/failed" ]; then
     touch "{folder}/failed"
@@ -75,14 +74,26 @@ def tables_and_means(folder):
     check(read(page) == new, "a file without the mark is left as it is")
 
 
+    check(list(measured.titled("aab", [["1"], ["2"], ["3"]])) == [["a", "1"], ["", "2"], ["b", "3"]], "a name once")
+
+
 def triplets():
-    told = {"triplets": [{"context": [0, 2], "target": 1}, {"context": [4, 9], "target": 6}]}
-    check(measured.triplets(told) == [("0,2", "1"), ("4,9", "6")], "as eval's options want them")
-    every = [{"context": [i, i + 2], "target": i + 1} for i in range(10)]
     still = {"context": [3, 3], "target": 3}
-    chosen = measured.even_triplets({"trim3r_triplets": [still, *every]})
-    check(chosen == [([i, i + 2], i + 1) for i in (0, 2, 5, 7)], f"four of ten, evenly, none of one frame: {chosen}")
-    check(measured.even_triplets({"trim3r_triplets": every[:2]}) == [([0, 2], 1), ([1, 3], 2)], "fewer where there are fewer")
+    told = {"triplets": [{"context": [0, 2], "target": 1}, still, {"context": [4, 9], "target": 6}]}
+    check(measured.triplets(told) == [("0,2", "1"), ("4,9", "6")], "as eval's options want them, none of one frame")
+    check(measured.evenly(list(range(10)), 4) == [0, 2, 5, 7], "four of ten, evenly")
+    check(measured.evenly([1, 2], 4) == [1, 2], "fewer where there are fewer")
+
+
+def pictures(folder):
+    pyplot = measured.pyplot()
+    for name in ("a", "b"):
+        figure, axes = pyplot.subplots()
+        axes.plot([1, 2], [3, 4], "o-")
+        measured.save(figure, f"{folder}/{name}.svg")
+        xml.dom.minidom.parse(f"{folder}/{name}.svg")
+    check(read(f"{folder}/a.svg") == read(f"{folder}/b.svg"), "the same bytes again")
+    check(all(len(line) > 1 for line in read(f"{folder}/a.svg").splitlines()), "an element a line")
 
 
 def program(folder, version):
@@ -101,12 +112,9 @@ def kept_files(folder):
     said = raises(SystemExit, measured.Measurements, "test", f"{folder}/none", f"{folder}/cache")
     check("none is not there" in said, said)
     measured.DATA = f"{folder}/data"
-    check("data is not there" in raises(SystemExit, measurements, 1), "so it is without scenes")
-    os.mkdir(measured.DATA)
-    write(f"{measured.DATA}/splits.json", json.dumps({"test": ["one"], "train": ["two"]}))
     m = measurements(1)
-    check(m.test_scenes == ["one"], "the test scenes")
-    check(m.bits_epoch() == "7", "the epoch of its figures")
+    check("data/one is not there" in raises(SystemExit, m.scene, "one"), "a scene that is not there is named")
+    check(measured.bits_epoch(m.program) == "7", "the epoch of its figures")
 
     with contextlib.redirect_stderr(io.StringIO()):
         path, log = m.made("a.txt", [m.program, "make", "OUT"])
@@ -122,15 +130,45 @@ def kept_files(folder):
         check(again != path and os.path.exists(path) and len(calls()) == 3, "made again when the program changed")
 
         command = [newer.program, "fails", "OUT"]
-        raises(subprocess.CalledProcessError, newer.made, "b.txt", command, ["--resume"])
+        raises(subprocess.CalledProcessError, newer.made, "b.txt", command)
         check(not os.path.exists(newer.path("b.txt", command)), "what failed is not kept as made")
-        path, _ = newer.made("b.txt", command, ["--resume"])
-        check(read(path).count("part of fails") == 2, f"what it left is gone on with: {read(path)}")
-        check(calls()[-1].endswith(" --resume") and len(calls()) == 5, f"by its option: {calls()}")
+        path, _ = newer.made("b.txt", command)
+        check(read(path).startswith("part of fails") and len(calls()) == 5, f"and is made anew: {calls()}")
+
+        seen = []
+        check(m.kept("c", 1, lambda: seen.append(1) or {"a": 1}) == m.kept("c", 1, list) == {"a": 1}, "a value is kept")
+        check(m.kept("c", 2, lambda: [2]) == [2] and seen == [1], "for its settings")
+
+
+def side_by_side(folder):
+    """As many measurements at a time as there are cores, one that is timed alone, and each once."""
+    m = measured.Measurements("test", program(folder, 3), f"{folder}/cache")
+    now, most, alone = [], [], []
+
+    def measure(i):
+        def make():
+            now.append(i)
+            most.append(len(now))
+            time.sleep(0.02)
+            if i == 5:
+                alone.extend(now)
+            now.remove(i)
+            return i
+
+        return m.kept("d", i % 8, make, alone=i == 5)
+
+    with contextlib.redirect_stderr(io.StringIO()) as said:
+        found = m.each(measure, range(16))
+    check(found == [*range(8), *range(8)], f"in order: {found}")
+    check(len(most) == 8 and max(most) <= measured.CORES, f"each once, no more than there are cores: {most}")
+    check(alone == [5], f"timed alone: {alone}")
+    check("test: 8 measured" in said.getvalue(), f"what is going on: {said.getvalue()}")
 
 
 with tempfile.TemporaryDirectory() as scratch:
     tables_and_means(scratch)
     triplets()
+    pictures(scratch)
     kept_files(scratch)
+    side_by_side(scratch)
 done()

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""pages.py SCRIPTS DOCS: `pages` reads the epochs that pages name, goes on where one page fails, notes how long each took, and
-the index of docs/study is as it would write it."""
+"""pages.py SCRIPTS DOCS: `pages` reads the epochs that pages name, continues after a page fails, records the time of
+each, and the index of docs/study equals its output."""
 import contextlib
 import importlib.machinery
 import importlib.util
@@ -21,10 +21,9 @@ pages = importlib.util.module_from_spec(importlib.util.spec_from_loader("pages",
 loader.exec_module(pages)
 
 HEADS = {
-    "Made by `x --write`, bits epoch 6. Pairs of 9 frames.": [6],
-    "Made by `x --write`, bits epoch 6 in *Heads*, 3 in the picture: 4 in all.": [3, 6],
-    "Made by\n`x`, bits\nepoch 12: the room": [12],
-    "Nobody says when.": [],
+    "Made by `x --write`: bits epoch 6, 2 cores.": 6,
+    "Made by\n`x`, bits\nepoch 12: the room": 12,
+    "Nobody says when.": None,
 }
 
 
@@ -42,19 +41,19 @@ def epochs(folder):
     pages.PAGES = folder
     for head, expected in HEADS.items():
         write(f"{folder}/page.md", f"# Page\n\n{head}\n")
-        check(pages.epochs_of("page.md") == expected, f"{head!r} is of {pages.epochs_of('page.md')}")
+        check(pages.epoch_of("page") == expected, f"{head!r} is of {pages.epoch_of('page')}")
 
 
 def made(folder):
-    """One page is made, one fails: told, noted, and the third made all the same."""
+    """One page is made, one fails: reported, recorded, and the third is still made."""
     pages.PAGES, pages.ROOT, pages.INDEX, pages.PROGRAM = folder, folder, f"{folder}/README.md", "/bin/true"
-    pages.epoch_of_program = lambda: 6
+    pages.bits_epoch = lambda program: "6"
     script = "for page; do printf 'bits epoch 6.' >\"$page\"; done"
     pages.MADE = {
-        "one": pages.Page("one.md", [["sh", "-c", script, "sh", "one.md"]]),
-        "fails": pages.Page("fails.md", [["false"]]),
-        "three": pages.Page("three.md", [["sh", "-c", script, "sh", "three.md"]]),
-        "new": pages.Page("new.md", [["false"]]),
+        "one": [["sh", "-c", script, "sh", "one.md"]],
+        "fails": [["false"]],
+        "three": [["sh", "-c", script, "sh", "three.md"]],
+        "new": [["false"]],
     }
     for name, epoch in (("one", 5), ("fails", 5), ("three", 4), ("new", 6)):
         write(f"{folder}/{name}.md", f"bits epoch {epoch}.")
@@ -64,15 +63,15 @@ def made(folder):
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(warned):
         sys.argv = ["pages", "--make"]
         status = pages.main()
-    check(status == 1 and "2 of 3 made; failed: fails" in said.getvalue(), f"{status}: {said.getvalue()}")
-    check("one, 1 of 3; left: 1 h 13 min and 1 whose time is not known" in warned.getvalue(), warned.getvalue())
-    check(pages.epochs_of("three.md") == [6] and pages.epochs_of("fails.md") == [5], "the others go on")
+    check(status == 1 and "2 of 3 made in 0 min; failed: fails" in said.getvalue(), f"{status}: {said.getvalue()}")
+    check("one, 1 of 3; 0 min so far, left: 73 min and 1 whose time is not known" in warned.getvalue(), warned.getvalue())
+    check(pages.epoch_of("three") == 6 and pages.epoch_of("fails") == 5, "the others go on")
     index = read(pages.INDEX)
     check("| `one` | 6 | 70 |\n| `fails` | 5 | 3 |\n| `three` | 6 | 0 |\n| `new` | 6 | - |" in index, f"what is noted: {index}")
 
 
 def index():
-    """What the repository tells is what its pages say."""
+    """The repository's index agrees with its pages."""
     told = read(os.path.join(docs, "study", "README.md"))
     stands = re.search(r"<!-- pages:begin -->\n(.*?)<!-- pages:end -->", told, re.DOTALL)[1].splitlines()
     check(stands == pages.lines(pages.minutes_told()), "docs/study/README.md: tools/study/scripts/pages --index")

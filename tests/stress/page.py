@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""page.py TRIM3R [FOLDER]: the page of `trim3r stress --html` in a headless Chromium: the worst cases in falling order as
-the table of the same run has them, what was refused, every picture there, light and dark, a phone; no errors, no
-requests. With FOLDER, what it looks like goes there."""
+"""page.py TRIM3R [FOLDER]: the page of `trim3r stress --html` in a headless Chromium: the worst cases in falling
+order as in the table of the same run, refused cells, every picture present, light and dark, a phone; no errors,
+no requests. With FOLDER, screenshots go there."""
 import csv
 import re
 import sys
@@ -39,7 +39,8 @@ def made(folder):
 
 
 def expected(rows):
-    """[(perturbation, strength, loss)]: of each perturbation the worst of the first method, the worst first."""
+    """Returns [(perturbation, strength, loss)]: for each perturbation the worst of the first method, the worst
+    first."""
     worst = {}
     for row in rows:
         if row["method"] == METHODS[0] and row["psnr_lost"] != "":

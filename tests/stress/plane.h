@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The plane of squares in small, to be measured cell by cell. */
+/* A small plane of squares, for measurements of single cells. */
 #ifndef TRIM3R_TESTS_STRESS_PLANE_H
 #define TRIM3R_TESTS_STRESS_PLANE_H
 

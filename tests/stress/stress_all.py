@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""stress_all.py TRIM3R ours|rivals|settings: every perturbation and drawn scene in every strength, small: nothing crashes,
-no invariant breaks, and with sanitizers nothing is found. ours: with noisy captures and still scenes, from as many
-Gaussians as SuperClusters up; rivals: as published, fine-tuned, and as points for our head; settings: budgets in other
-ways, `--auto`, depth by stereo."""
+"""stress_all.py TRIM3R ours|rivals|settings: every perturbation and drawn scene in every strength, small: no crash,
+no broken invariant, and no finding of sanitizers. ours: with noisy captures and still scenes, from as many
+Gaussians as SuperClusters up; rivals: as published, fine-tuned, and as points for our head; settings: budgets in
+other ways, `--auto`, depth by stereo."""
 import json
 import sys
 
@@ -11,7 +11,7 @@ from checks import check, done, run
 
 trim3r, part = sys.argv[1:]
 PERTURBATIONS, SCENES, STRENGTHS = 20, 5, 3
-MAY_REFUSE = {("depth-all", 99.9), ("depth-all", 100)}  # with so few pixels a view may have none
+MAY_REFUSE = {("depth-all", 99.9), ("depth-all", 100)}  # with few pixels a view may have none
 RIVALS = ("random", "eagles", "lightgaussian", "pup", "efficientgs")
 SMALL = ("--working", "24x24", "--clusters", "40")
 HARD = ("--rows", "noise,depth-blobs,pose,black,near,scene-foliage", "--strengths", "3")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""stress_recorded.py TRIM3R SHARED_DATA: what is guaranteed of a still scene, on the recorded test scenes with sensor depth at
-256x256, from few Gaussians to half of the points, with the shipped head and refinement."""
+"""stress_recorded.py TRIM3R SHARED_DATA: the guarantees for a still scene, on the recorded test scenes with sensor
+depth at 256x256, from few Gaussians to half of the points, with the shipped head and refinement."""
 import json
 import os
 import sys

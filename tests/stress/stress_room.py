@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""stress_room.py TRIM3R: `trim3r stress` on the built-in room, small: rows, columns, what eval says of the same frames,
-the page, the same figures twice, exit codes."""
+"""stress_room.py TRIM3R: `trim3r stress` on the built-in room, small: rows, columns, agreement with eval on the same
+frames, the page, the same figures twice, exit codes."""
 import csv
 import json
 import os

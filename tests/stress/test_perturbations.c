@@ -221,7 +221,7 @@ TEST(lattice_keeps_its_points)
     release(&it);
 }
 
-/* At least the share, and at most one disc more; all else is unchanged. */
+/* At least the requested share, and at most one disc more; all else is unchanged. */
 TEST(blobs_take_their_share)
 {
     pair it = perturbed(perturb_blobs, 30);
@@ -299,8 +299,8 @@ TEST(intrinsics_lie)
     release(&it);
 }
 
-/* Level ramps: a yaw moves what is seen by f tan(angle) where the ray is near the axis, up in the first rows, down in
- * the last; a plane's depth at the axis stays what it is but for the cosine. */
+/* Ramps of levels: a yaw moves the contents near the axis by f tan(angle), in opposite directions in the first and
+ * last rows; a plane's depth at the axis changes only by the cosine. */
 TEST(rolling_shutter_shears)
 {
     stress_capture c = sample();
@@ -309,7 +309,7 @@ TEST(rolling_shutter_shears)
         c.view[0].depth[i] = 2000;
     }
     assert_true(perturb_rolling(&c, 4, 0));
-    size_t middle = WIDTH / 2; /* half a pixel beside the axis */
+    size_t middle = WIDTH / 2; /* half a pixel from the axis */
     for (size_t y = 0; y < HEIGHT; y++) {
         double angle = 4 / 57.29578 * ((double)y / (HEIGHT - 1) - 0.5);
         double shift = 40 * tan(angle + atan(0.5 / 40)) - 0.5;

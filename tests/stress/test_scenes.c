@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The synthetic scenes: the target shows what the two context views show, except where something is in front of it. */
+/* The synthetic scenes: the target shows the same as the two context views, except where something is in front of it.
+ */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,8 +10,8 @@
 
 enum { WIDTH = 72, HEIGHT = 60 };
 
-/* Of view v's pixels, the share whose point lands in the target on a pixel of about its depth; and the mean difference
- * of colour there. Cameras look along z and differ in x alone. */
+/* Returns the share of view v's pixels whose point falls in the target on a pixel of about its depth; and the mean
+ * difference of colour there. Cameras look along z and differ only in x. */
 static double agreement(const stress_capture *c, int v, double *difference)
 {
     const t3r_recorded_camera *camera = &c->view[v].camera, *target = &c->view[2].camera;
@@ -55,7 +56,7 @@ TEST(views_agree)
     }
 }
 
-/* Grey levels' mean step from column to column: finer patterns have more, a blank wall next to none. */
+/* Returns the grey levels' mean step from column to column: finer patterns have more, a blank wall almost none. */
 static double roughness(const stress_scene *scene, double strength)
 {
     stress_capture c;

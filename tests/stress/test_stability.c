@@ -37,9 +37,10 @@ TEST_WITH(still_scene, open_plane, plane_close)
         assert_int_equal(row->status, STRESS_MEASURED);
         assert_int_equal((int)row->value[STRESS_GAUSSIANS], (2 * SIDE * SIDE + 2) / 5);
         double spacing = sqrt(2.0 * SIDE * SIDE / row->value[STRESS_GAUSSIANS]); /* pixels */
-        double expected = 0.002 * 0.954 * SIDE * 0.866 / spacing;                /* their distance cancels */
+        double expected = 0.002 * 0.954 * SIDE * 0.866 / spacing;                /* distance cancels */
         assert_true(fabs(stress_still_motion(&f->c.base, row->value[STRESS_GAUSSIANS]) / expected - 1) < 0.01);
-        /* a median of 900 has a deviation of 4 %; eagles: those that stay in both captures are no fair sample */
+        /* a median of 900 has a deviation of 4 %; for eagles, Gaussians that stay in both captures are a biased sample
+         */
         if (m != 2 && fabs(row->value[STRESS_MOTION] / expected - 1) > 0.12) {
             fail_msg("motion %g, not %g", row->value[STRESS_MOTION], expected);
         }
@@ -51,8 +52,8 @@ TEST_WITH(still_scene, open_plane, plane_close)
     assert_true(f->rows[2].value[STRESS_MASK_CHANGED] > f->rows[0].value[STRESS_MASK_CHANGED]);
 }
 
-/* The invariant where it can fail: the shipped head and refinement on every drawn scene, from as many Gaussians as
- * SuperClusters up. A mask that changed by nothing would say that nothing was captured anew. */
+/* Checks the invariant where it can fail: the shipped head and refinement on every drawn scene, from as many Gaussians
+ * as SuperClusters up. An unchanged mask would mean that nothing was captured again. */
 TEST_WITH(learned_and_refined, open_plane, plane_close)
 {
     plane *f = *state;
@@ -78,7 +79,7 @@ TEST_WITH(learned_and_refined, open_plane, plane_close)
             }
             assert_true(value[STRESS_GAUSSIANS] >= f->contest.settings.config.clusters);
             assert_true(value[STRESS_MASK_CHANGED] > 0 && value[STRESS_MOTION] > 0);
-            /* the bounds are not out of reach */
+            /* the bounds are within reach */
             assert_true(stress_mask_changed_most(value[STRESS_GAUSSIANS], 80) < 8 * value[STRESS_MASK_CHANGED]);
             assert_true(stress_motion_most(noise) < 12 * value[STRESS_MOTION]);
         }
@@ -86,7 +87,7 @@ TEST_WITH(learned_and_refined, open_plane, plane_close)
     }
 }
 
-/* A moved world is the same scene; a budget above the remaining points takes all of them; without points it is
+/* A moved world gives the same scene; a budget above the remaining points takes all of them; without points it is
  * refused. */
 TEST_WITH(budgets_and_refusals, open_plane, plane_close)
 {

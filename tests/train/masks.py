@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What a head is trained on for a rival's choice of points: the very points that `trim3r build --method RIVAL+head` keeps
+"""The points on which a head is trained for a rival's choice equal those that `trim3r build --method RIVAL+head` keeps
 of the same views.
 
-    masks.py TRAIN_FOLDER BUILD_FOLDER TRIM3R"""
+masks.py TRAIN_FOLDER BUILD_FOLDER TRIM3R"""
 import json
 import os
 import subprocess
@@ -29,7 +29,8 @@ RIVALS = samples.MASKS[1:]
 
 
 def posed(views, depth_unit=0.001):
-    """The views of a made-up room as a recording holds them: depth in whole millimetres, lenses in 16ths of a pixel."""
+    """Rounds the views of a synthetic room as a recording does: depth in whole millimetres, lenses in 16ths of a
+    pixel."""
     for view in views:
         lens = np.round(view["intrinsics"].astype(np.float64) * 16) / 16
         depth = np.rint(view["depth"] / depth_unit).astype(np.uint16)
@@ -51,7 +52,7 @@ def record(folder, views):
 
 
 def scene(recording, *options):
-    """The bytes of a build whose head makes nothing of the mask, so that its points are all that shows."""
+    """Returns the bytes of a build whose head ignores the mask, so that they depend only on its points."""
     path = recording + ".ply"
     command = [TRIM3R, "build", recording, "--head", "none", "--exposure", "off", *options, "-o", path]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
@@ -95,8 +96,8 @@ class Masks(unittest.TestCase):
             earlier.append(masks)
 
     def test_draws_of_a_run_are_of_the_mask(self):
-        """Whatever is drawn at random: crops and context views come with the points of the mask, the same views
-        prepared for another with others."""
+        """All random draws agree: crops and context views have the points of the mask, and the same views prepared
+        for another mask have others."""
         called, prepare_views = [], samples.prepare_views
 
         def noted(*arguments, **budget):

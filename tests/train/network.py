@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """The network that torch trains against the one that quant calibrates and the one that the runtime runs: the same graph
-of random weights in float, and rounded as integers round it; and a head that was widened against the narrow one.
+of random weights in float, and rounded like integers; and a widened head against the narrow one.
 
-    network.py TRAIN_FOLDER QUANT_TESTS_FOLDER PATH/TO/trim3r PATH/TO/float_driver PATH/TO/network_driver"""
+network.py TRAIN_FOLDER QUANT_TESTS_FOLDER PATH/TO/trim3r PATH/TO/float_driver PATH/TO/network_driver"""
 import os
 import subprocess
 import sys
@@ -29,16 +29,16 @@ HEADS = {
     "plain": head_file.plain()["layers"],
     "every_kind": head_file.every_kind()["layers"],
 }
-FLOAT_MOST = 1e-4  # of the largest output
-# What torch's rounding leaves unexplained of what the integers do, as a share of what rounding does at all. Near an
-# edge of rounding an activation or a weight falls on either side, for the integers' biases are rounded and their steps
-# have 15 bits: 0.26 to 0.35 after 5 layers, 0.27 to 0.44 after 12, 0.38 to 0.66 after 13 of every kind. Steps, limits
-# or phases other than quant's make it 0.55 to 6.
+FLOAT_MOST = 1e-4  # relative to the largest output
+# The difference between torch's rounding and the integers, as a share of the total effect of rounding. Near a rounding
+# boundary an activation or a weight may fall on either side, because the integers' biases are rounded and their steps
+# have 15 bits: 0.26 to 0.35 after 5 layers, 0.27 to 0.44 after 12, 0.38 to 0.66 after 13 of every kind. Other steps,
+# limits or phases than quant's give 0.55 to 6.
 UNEXPLAINED_MOST = {"tiny": 0.55, "small": 0.55, "plain": 0.45, "every_kind": 0.75}
 
 
 def random_head(name, seed):
-    """With biases and lively weights in the last layer, which Head() starts without."""
+    """Makes a head with biases and non-zero weights in the last layer, which Head() starts without."""
     head = head_net.Head(HEADS[name], seed)
     tensors = head_file.random_tensors({"layers": HEADS[name]}, np.random.default_rng(seed))
     with torch.no_grad():
@@ -49,7 +49,7 @@ def random_head(name, seed):
 
 
 def outputs_of(head, mode, features, mask):
-    """[retained pixels][9] in raster order."""
+    """Returns [retained pixels][9] in raster order."""
     head.mode = mode
     planes = torch.from_numpy(features).permute(2, 0, 1)[None].float() * head_net.FEATURE_STEP
     y, x = (torch.from_numpy(i) for i in np.nonzero(mask))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The made-up training pictures: repeatable, with the statistics of photographs, depth and poses that agree.
+"""The synthetic training pictures: repeatable, with the statistics of photographs, depth and poses that agree.
 
 Usage: procedural.py TOOLS_TRAIN BUILD_FOLDER"""
 import os
@@ -30,7 +30,8 @@ def grey_of(image):
 
 
 def amplitude_slope(pictures):
-    """s of amplitude ~ 1/f^s over 4 to 100 cycles a picture: Hann window, every picture's power scaled to one."""
+    """Returns s of amplitude ~ 1/f^s over 4 to 100 cycles a picture: Hann window, every picture's power scaled to
+    one."""
     window = np.hanning(SIDE)[:, None] * np.hanning(SIDE)[None]
     k = np.hypot(*np.meshgrid(*[np.fft.fftfreq(SIDE) * SIDE] * 2))
     rings, mean = np.arange(4, 100), 0
@@ -42,7 +43,8 @@ def amplitude_slope(pictures):
 
 
 def haar_deviations(picture, levels=4):
-    """Root mean square of the Haar details of ever coarser means, finest first: equal where amplitude falls as 1/f."""
+    """Returns the root mean square of the Haar details of successively coarser means, finest first: equal for
+    amplitudes ~ 1/f."""
     found = []
     for _ in range(levels):
         a, b, c, d = picture[::2, ::2], picture[1::2, ::2], picture[::2, 1::2], picture[1::2, 1::2]
@@ -53,14 +55,14 @@ def haar_deviations(picture, levels=4):
 
 
 def planar_share(depth):
-    """Share of pixels at which 1/z goes on straight: the middle of a plane."""
+    """Returns the share of pixels at which 1/z is linear: the inside of a plane."""
     w = 1 / depth.astype(np.float64)
     bend = np.abs(w[:, 2:] + w[:, :-2] - 2 * w[:, 1:-1])
     return (bend < 1e-5 * w[:, 1:-1]).mean()
 
 
 def warped(source, target, pose=None):
-    """source's colours at target's pixels by target's depth, and where source measured the same depth."""
+    """Returns source's colours at target's pixels by target's depth, and where source measured the same depth."""
     fx, fy, cx, cy = target["intrinsics"]
     y, x = np.mgrid[:SIDE, :SIDE]
     z = target["depth"].astype(np.float64)
@@ -114,15 +116,15 @@ class Leaves(unittest.TestCase):
             self.assertTrue(all(np.array_equal(a[key], b[key]) for key in a))
 
     def test_spectrum(self):
-        # 1.44 and 1.54 on the two real scenes trained on, by this measure; 1.2 in the literature, over all subjects
+        # by this measure 1.44 and 1.54 on the two real scenes of the training; 1.2 in the literature, over all subjects
         self.assertTrue(1.0 <= amplitude_slope(self.greys) <= 1.5, amplitude_slope(self.greys))
         k = np.maximum(np.hypot(*np.meshgrid(*[np.fft.fftfreq(SIDE) * SIDE] * 2)), 1)
         noise = np.fft.fft2(np.random.default_rng(1).normal(size=(8, SIDE, SIDE)))
-        for slope in (0, 1, 2):  # the measure itself
+        for slope in (0, 1, 2):  # checks the measure itself
             self.assertAlmostEqual(amplitude_slope(np.fft.ifft2(noise / k**slope).real), slope, delta=0.1)
 
     def test_scales(self):
-        """Details grow from octave to octave as in photographs: 10.7 14.7 17.6 22.3 and 11.9 16.3 19.9 25.9 there."""
+        """Details grow from octave to octave as in the real scenes: 10.7 14.7 17.6 22.3 and 11.9 16.3 19.9 25.9."""
         mean = np.mean([haar_deviations(g) for g in self.greys], 0)
         self.assertTrue(6 < mean[0] < 14, mean)
         ratios = mean[1:] / mean[:-1]
@@ -131,9 +133,9 @@ class Leaves(unittest.TestCase):
     def test_gradients_are_sparse(self):
         steps = np.stack([np.diff(g, axis=1) for g in self.greys])
         kurtosis = (steps**4).mean() / (steps**2).mean() ** 2
-        self.assertGreater(kurtosis, 10)  # 21 and 23 there, 3 for Gaussian noise
+        self.assertGreater(kurtosis, 10)  # 21 and 23 in the real scenes, 3 for Gaussian noise
         flat = (np.abs(steps) < 2).mean((1, 2))
-        self.assertTrue(0.35 < flat.mean() < 0.75, flat.mean())  # 0.64 and 0.61 there
+        self.assertTrue(0.35 < flat.mean() < 0.75, flat.mean())  # 0.64 and 0.61 in the real scenes
         self.assertGreater(np.quantile(flat, 0.9) - np.quantile(flat, 0.1), 0.4)  # blank walls and foliage
 
     def test_colours(self):
@@ -154,7 +156,7 @@ class Leaves(unittest.TestCase):
             if 0.01 < jump.mean() < 0.5:
                 edges.append(strength[jump[:, 1:]].mean() / max(strength[~jump[:, 1:]].mean(), 0.1))
         self.assertGreater(np.median(planar), 0.8)
-        self.assertGreater(np.median(edges), 2)  # depth changes where the picture does
+        self.assertGreater(np.median(edges), 2)  # depth changes where the picture changes
 
     def test_sides(self):
         image, depth = procedural.Procedural(1, build_folder=BUILD).leaves(123, 77)
@@ -206,7 +208,7 @@ class Rooms(unittest.TestCase):
                 moved[:3, 3] += 0.05 * moved[:3, 0]
                 colours, same, inside = warped(views[source], views[target], moved)
                 wrong.append(np.abs(colours - views[target]["image"]).mean(-1)[same].mean())
-        self.assertGreater(np.median(shares), 0.8)  # the rest is hidden, or at an edge
+        self.assertGreater(np.median(shares), 0.8)  # the others are hidden, or at an edge
         self.assertLess(np.mean(differences), 4)  # noise, resampling, vignetting, of 255
         self.assertLess(np.mean(differences), 0.75 * np.mean(wrong))
 
@@ -239,7 +241,7 @@ class Degradations(unittest.TestCase):
             made = procedural.degrade_depth(seed, depth, holes=False)
             self.assertTrue((made > 0).all() and made.dtype == np.float32)
             near, far = (made - depth)[:, :64].std(), (made - depth)[:, 64:].std()
-            if near > 0.001:  # where steps do not rule
+            if near > 0.001:  # where steps do not dominate
                 ratios.append(far / near)
         self.assertGreater(len(ratios), 15)
         self.assertTrue(12 < np.median(ratios) < 20, np.median(ratios))

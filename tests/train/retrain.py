@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""tools/study/train/retrain in its smallest: heads come with how they were trained, a run cut off goes on, what is there stays.
+"""The smallest run of tools/study/train/retrain: heads come with their training's settings, an interrupted run
+continues, existing results are kept.
 
-    retrain.py TRAIN_FOLDER BUILD_FOLDER TRIM3R"""
+retrain.py TRAIN_FOLDER BUILD_FOLDER TRIM3R"""
 import glob
 import json
 import os
@@ -75,7 +76,7 @@ class Retrain(unittest.TestCase):
 
         again = self.run_it("eagles", "rooms", "--steps", "4")
         self.assertIn("0 heads to be trained", again)
-        os.remove(os.path.join(self.out, "eagles.t3w"))  # as if cut off before: its steps are not made again
+        os.remove(os.path.join(self.out, "eagles.t3w"))  # as if interrupted earlier: its steps are not repeated
         self.assertNotIn("step", self.run_it("eagles", "--steps", "4").replace("--steps", ""))
         with open(os.path.join(self.out, "eagles.t3w"), "r+b") as head:
             kept = head.read()

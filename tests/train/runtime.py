@@ -69,7 +69,7 @@ class Runtime(unittest.TestCase):
         cls.library = tie()
 
     def test_footprints(self):
-        """Outputs up to the ends of their formats; spreads of at most 4 spacings, where the training holds them."""
+        """Draws outputs over their whole range; spreads of at most 4 spacings, to which the training limits them."""
         rng, count = np.random.default_rng(1), 4000
         outputs = rng.integers(-32768, 32768, (count, 9)).astype(np.int16)
         outputs[:, 2:4] = rng.integers(-4 * 8192, 2 * 8192 + 1, (count, 2))
@@ -93,9 +93,9 @@ class Runtime(unittest.TestCase):
         covariance = np.stack((l11 * l11, l11 * l21, l21 * l21 + l22 * l22), 1)
         size = np.maximum(l11, np.hypot(l21, l22))[:, None]
         self.assertLess(np.abs(made[:, 0:2] / 4096 - offset).max(), 1e-3)
-        # a step of the factor is 2^-12, of the covariance too, and 2^x is good to 2^-14
+        # a step of the factor and of the covariance is 2^-12, and the error of 2^x is at most 2^-14
         self.assertLess((np.abs(made[:, 2:5] / 4096 - covariance) / (size * size + 4 * size)).max(), 3e-4)
-        shown = outputs[:, 5] > 328  # the training holds opacity above 0.01, the runtime above 0
+        shown = outputs[:, 5] > 328  # the training keeps opacity above 0.01, the runtime above 0
         self.assertLess(np.abs(made[shown, 5] / 32768 - opacity[shown]).max(), 2e-4)
         self.assertLess(made[~shown, 5].max() / 32768, 0.0101)
         self.assertLess(np.abs(made[:, 6:] / (255 * 128) - colour).max(), 1e-5)
@@ -111,10 +111,10 @@ class Runtime(unittest.TestCase):
         return drawn
 
     def test_pictures(self):
-        """The same picture on a plane, analysed by the runtime for both; from there float32 against integers, of which the head
-        rounds as they do."""
+        """The same picture on a plane, analysed by the runtime for both; from there float32 against integers, with
+        the head rounded like the integers."""
         head, _ = head_net.load_safetensors(os.path.join(HEADS, "small.safetensors"))
-        head.mode = "quantized"  # or the integers' noise, on smooth pictures up to 0.3 dB, would be all that is seen
+        head.mode = "quantized"  # otherwise the integers' noise, up to 0.3 dB on smooth pictures, would dominate
         camera = (SIDE, SIDE, (SIDE - 1) / 2, (SIDE - 1) / 2)
         depth = np.full((SIDE, SIDE), samples.PLANE, np.uint16)
         counts = np.ones((1, SIDE, SIDE), np.uint8)

@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the training's float copies are held against, for runtime.py: a head's outputs to footprints, and a picture
- * taken through the runtime with the shipped `small` and drawn again. */
+/* References for the training's float copies, for runtime.py: footprints from a head's outputs, and a picture
+ * reconstructed by the runtime with the shipped `small` and drawn again. */
 #include <stdlib.h>
 #include <string.h>
 
-#include "head/head_learned.c" /* footprint_of() is its own */
+#include "head/head_learned.c" /* uses its footprint_of() */
 #include "trim3r_heads.h"
 
 typedef struct tie_settings {
     uint32_t gaussians, allocate, gamma_q8, clusters, cluster_batches, seed, refine;
 } tie_settings;
 
-/* Footprints of `count` pixels. outputs: [count][T3R_HEAD_OUTPUTS]; spacing_q12 [count]; own colours, three planes of
- * [count] levels. made: [count][9], offset x, y and covariance xx, xy, yy Q12, opacity Q15, red, green, blue Q7. */
+/* Computes footprints of `count` pixels. outputs: [count][T3R_HEAD_OUTPUTS]; spacing_q12 [count]; own colours, three
+ * planes of [count] levels. made: [count][9], offset x, y and covariance xx, xy, yy Q12, opacity Q15, red, green, blue
+ * Q7. */
 void tie_footprints(uint32_t count, const int16_t *outputs, const uint32_t *spacing_q12, uint8_t *own, int32_t *made)
 {
     t3r_view view = {.width = count, .height = 1, .colour = {own, own + count, own + 2 * (size_t)count}};
@@ -35,7 +36,7 @@ static t3r_status draw_on_plane(t3r_runtime *rt, const t3r_frame *frame, const t
     return status == T3R_OK ? t3r_render(rt, camera, &target) : status;
 }
 
-/* The picture rgb, [height][width][3], on a plane two metres away, reconstructed and drawn from the same camera into
+/* Reconstructs the picture rgb, [height][width][3], on a plane two metres away, and draws it from the same camera into
  * `drawn`, likewise. intrinsics: fx, fy, cx, cy. */
 int32_t tie_draw(uint32_t width, uint32_t height, const uint8_t *rgb, const double *intrinsics,
                  const tie_settings *settings, uint8_t *drawn)

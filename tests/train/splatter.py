@@ -34,7 +34,7 @@ def splats_of(seed, count=60, opacity=0.9):
 
 
 def drawn_by_loops(splats, order):
-    """The picture by the definition, pixel by pixel, in float64."""
+    """Draws the picture by the definition, pixel by pixel, in float64."""
     y, x = np.mgrid[0:SIDE, 0:SIDE]
     left, colour = np.ones((SIDE, SIDE)), np.zeros((3, SIDE, SIDE))
     for n in order:
@@ -113,7 +113,7 @@ class Splatter(unittest.TestCase):
         self.assertLess(float((kept - wanted_splats).abs().max()), 1e-4)
 
     def test_refinement_makes_up_for_what_is_missing(self):
-        """A splat left out: those about it come nearer to the picture, those that share no pixel with them stay."""
+        """A missing splat: its neighbours come nearer to the picture, and those that share no pixel with them stay."""
         rng, count, missing = np.random.default_rng(9), 120, 60
         everything = splats_of(9, count)
         place = torch.from_numpy(rng.uniform(0, SIDE, (count, 2))).float()
@@ -129,7 +129,7 @@ class Splatter(unittest.TestCase):
         order = splatting.order_by(np.delete(keys, missing), start)
         counts = np.ones((1, SIDE, SIDE), np.uint8)
         away = (rest[:, :2] - SIDE / 3).norm(dim=1)
-        far, near = away > 2 * 1.5 * 3.4, away < 3  # alpha 1/255 lies at 3.4 deviations at most
+        far, near = away > 2 * 1.5 * 3.4, away < 3  # alpha 1/255 is reached at 3.4 deviations at most
 
         def error(splats):
             return float(((splatting.draw(splats, start, order, SIDE, SIDE) - wanted) ** 2).mean())

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The perceptual terms of the loss: LPIPS' wiring by made-up weights, the stand-in by what it must and must not see;
-usage: terms.py TRAIN_FOLDER"""
+"""The perceptual terms of the loss: LPIPS' structure with random weights, the stand-in by differences that it must
+and must not notice; usage: terms.py TRAIN_FOLDER"""
 import os
 import sys
 import tempfile
@@ -23,7 +23,7 @@ TAPS = (1, 4, 7, 9, 11)  # the trunk's layers that LPIPS compares
 
 
 def alexnet():
-    """The trunk as torchvision builds it."""
+    """Builds the trunk like torchvision."""
     return nn.Sequential(
         nn.Conv2d(3, 64, 11, 4, 2), nn.ReLU(), nn.MaxPool2d(3, 2),
         nn.Conv2d(64, 192, 5, padding=2), nn.ReLU(), nn.MaxPool2d(3, 2),
@@ -34,7 +34,7 @@ def alexnet():
 
 
 def pictures(count=2, seed=1):
-    """Smooth patches with texture and hard edges, [count, 3, SIDE, SIDE] in 0.1..0.9."""
+    """Returns smooth patches with texture and hard edges, [count, 3, SIDE, SIDE] in 0.1..0.9."""
     made = torch.rand(count, 3, SIDE, SIDE, generator=torch.Generator().manual_seed(seed))
     coarse = F.interpolate(made[:, :, ::12, ::12], SIDE, mode="nearest")
     return 0.1 + 0.8 * (0.7 * coarse + 0.3 * made)
@@ -60,7 +60,7 @@ class Lpips(unittest.TestCase):
             self.term = perceptual.Lpips(*files)
 
     def by_definition(self, a, b):
-        """Zhang et al. 2018, eq. 1, layer after layer of the trunk."""
+        """Computes Zhang et al. 2018, eq. 1, layer after layer of the trunk."""
         shift = torch.tensor([-0.030, -0.088, -0.188])[:, None, None]
         scale = torch.tensor([0.458, 0.448, 0.450])[:, None, None]
         x, y = ((2 * p - 1 - shift) / scale for p in (a, b))

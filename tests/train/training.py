@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A run of training: repeatable, resumable, shared among processes, and rounded as integers will be; usage: training.py
+"""A training run: repeatable, resumable, shared among processes, and rounded like integers; usage: training.py
 TRAIN_FOLDER BUILD_FOLDER"""
 import json
 import os
@@ -46,11 +46,11 @@ def same(a, b):
 
 
 class Gradients(Exception):
-    """Raised in place of sharing: a step's own gradients are there."""
+    """Raised in place of sharing, when a step's own gradients are ready."""
 
 
 def step_as_two(one, two):
-    """A step of `one` with the mean of its gradients and those of `two`, which then is where `one` is."""
+    """Makes a step of `one` with the mean of its gradients and `two`'s; `two` then equals `one`."""
 
     def stop():
         raise Gradients
@@ -93,7 +93,7 @@ class Training(unittest.TestCase):
                 run_in(one, "--seed", "2")  # another run's checkpoint lies there
 
     def test_processes_share_a_step(self):
-        """Two processes end with the bits of one that takes the mean of both shares' gradients."""
+        """Two processes give the bits of one that takes the mean of both shares' gradients."""
         options = "--head tiny --steps 4 --crop 64 --batch 2 --novel 0 --quantized 0".split()
         with tempfile.TemporaryDirectory() as folder:
             shared, *alone = (os.path.join(folder, name) for name in ("shared", "first", "second"))
@@ -151,7 +151,7 @@ class Training(unittest.TestCase):
             loss, decibel = train.objective.novel_loss(head, context, target, train.perceptual.StandIn(), "cpu")
             if loss is not None:
                 loss.backward()
-                self.assertGreater(decibel, 12)  # drawn where it should be: noise would be 7
+                self.assertGreater(decibel, 12)  # drawn in the right place: noise would give 7
         self.assertTrue(all(torch.isfinite(p.grad).all() for p in head.parameters()))
 
 

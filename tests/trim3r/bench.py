@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""bench.py TRIM3R: every figure of `trim3r bench`, and K-means of points that are given."""
+"""bench.py TRIM3R: every figure of `trim3r bench`, and K-means of given points."""
 import os
 import struct
 
@@ -14,7 +14,7 @@ def points():
     check("kmeans_ms" in found and "texture_ns_per_pixel" in found and "stereo_ms" not in found, "bench --stages")
     check(found["kmeans_points"] == 400 and found["kmeans_msd"] < 1e-4,
           f"eight places need eight clusters: {found['kmeans_msd']}")
-    # any scale: a power of two less changes the distances by just that
+    # at any scale: dividing all by a power of two scales the distances exactly
     cloud = [[((i * (7919 + 2 * d)) % 4093) / 4093 for d in range(6)] for i in range(2000)]
     distance = {}
     for scale in (1.0, 2.0 ** -20, 2.0 ** 60):
@@ -76,7 +76,7 @@ def against():
     for key, row in found["stages"].items():
         check(0.2 < row["ratio_min"] <= row["ratio"] <= row["ratio_max"] < 5, f"{key} against itself: {row}")
     check(found["this_alone"] == found["other_alone"] == "", "the same program lacks a stage")
-    # half as fast, another name for a stage, and no --stages
+    # half the speed, another name for a stage, and no --stages
     slow = script("slow", f'[ "$2" = --help ] && exec {TRIM3R} "$@" | sed s/--stages/--rows/\n'
                   f"""exec {TRIM3R} bench --json --runs=1 --stages=texture_ns_per_pixel,kmeans_ms | sed '
                   s/"kmeans_ms"/"means_ms"/; s/"texture_ns_per_pixel":/"texture_ns_per_pixel":1000/' """)

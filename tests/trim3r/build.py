@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""build.py TRIM3R: what `trim3r build` refuses, and what it makes."""
+"""build.py TRIM3R: refusals and results of `trim3r build`."""
 import csv
 import os
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""calibrate.py TRIM3R: a machine is measured, and plans go by its file."""
+"""calibrate.py TRIM3R: a machine is measured, and plans use its file."""
 import json
 
 from program import check, expect, expect_full, expect_json, in_scratch
@@ -21,7 +21,7 @@ def calibrated():
     check(expect_json(*plan, "--refine", 16)["build_ms"] > found["build_ms"], "more passes take no longer")
     expect(0, *plan, out=" ms\n")
     expect(2, *plan, "--threads", 2, err="--threads 1")
-    # what a list promises is what plan says of the setting
+    # a list's entry agrees with plan for that setting
     best = expect_json("plan", "--size", "128x128", "--arena", "4M", "--time", "9s", "--machine", "machine.json")["choices"][0]
     again = expect_json("plan", "--size", "128x128", "--gaussians", best["gaussians"], "--head", best["head"], "--refine",
                         best["refine"], "--machine", "machine.json")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""colmap.py TRIM3R: `build --colmap` read back by an independent reader of COLMAP's text models: points stand where the
-pictures show them, to half a pixel and in colour."""
+"""colmap.py TRIM3R: `build --colmap` checked by an independent reader of COLMAP's text models: points agree with the
+pictures to half a pixel and in colour."""
 import json
 import math
 import os
@@ -20,7 +20,6 @@ from program import expect, expect_json  # noqa: E402
 
 
 
-# --- a reader of the format's documentation, colmap.github.io/format.html ----------------------------------------------
 
 
 def lines_of(path):
@@ -29,7 +28,7 @@ def lines_of(path):
 
 
 def read_model(folder):
-    """({image id: (name, R, t, K, points 2D, their points 3D)}, {point id: (xyz, rgb, error, track)})"""
+    """Returns ({image id: (name, R, t, K, points 2D, their points 3D)}, {point id: (xyz, rgb, error, track)})."""
     cameras, images, points = {}, {}, {}
     for line in lines_of(f"{folder}/sparse/0/cameras.txt"):
         number, model, *numbers = line.split()
@@ -56,7 +55,7 @@ def read_model(folder):
 
 
 def project(image, xyz):
-    """Pixels in COLMAP's measure, by OpenCV."""
+    """Projects to pixels in COLMAP's convention, with OpenCV."""
     _, rotation, translation, _, _, k = image[:6]
     if not len(xyz):
         return numpy.empty((0, 2))
@@ -90,7 +89,6 @@ def read_ply(path):
     return numpy.frombuffer(body, "<f4").reshape(-1, len(names))[:, :3]
 
 
-# --- the tests --------------------------------------------------------------------------------------------------------
 
 
 def retained_pixels(recording, folder, sizes, context):
@@ -127,7 +125,7 @@ def other_views(folder, images, points):
         far = numpy.array([(image[1] @ p[0] + image[2])[2] for p in own]) > 0
         inside = far & (xy >= 1).all(axis=1) & (xy < numpy.array([image[3], image[4]]) - 1).all(axis=1)
         check(inside.sum() > 50, "views overlap")
-        # pixel (i, j) covers i..i+1 here, so OpenCV's coordinates are half a pixel less
+        # pixel (i, j) covers i..i+1 here, so OpenCV's coordinates are smaller by half a pixel
         at = (xy[inside] - 0.5).astype(numpy.float32)
         shown = cv2.remap(picture, at[:, :1].reshape(-1, 1), at[:, 1:].reshape(-1, 1), cv2.INTER_LINEAR)[:, 0]
         error = numpy.abs(shown - numpy.array([p[1] for p in own])[inside]).mean(axis=1)
@@ -143,7 +141,7 @@ def adapted(recording, folder, sizes):
 
 
 def local(recording, folder, sizes):
-    """--local: the same, from the first camera's centre."""
+    """With --local: the same, relative to the first camera's centre."""
     model = f"{folder}/local"
     count = json.loads(expect(0, "build", recording, "--context", "0,1", "--gaussians", "500", "--local", "--colmap", model,
                            "--json"))["gaussians"]

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""colours.py TRIM3R: errors, warnings and headings have colours on a terminal, and nowhere else."""
+"""colours.py TRIM3R: errors, warnings and headings are coloured on a terminal, and only there."""
 import os
 import re
 import subprocess

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""commands.py TRIM3R: what every command answers: help, unknown options, a full disk."""
+"""commands.py TRIM3R: common behaviour of all commands: help, unknown options, a full disk."""
 import subprocess
 
 from program import TRIM3R, check, expect, fill_disk, in_scratch

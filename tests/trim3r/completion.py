@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""completion.py TRIM3R: shells complete commands, options and files; a word that is nearly one is answered with it."""
+"""completion.py TRIM3R: shells complete commands, options and files; the answer to a misspelt word suggests the
+right one."""
 import os
 import shutil
 import subprocess
@@ -9,7 +10,7 @@ from program import TRIM3R, check, expect, in_scratch, write
 
 
 def completed(*words):
-    """What bash offers for the last word."""
+    """Returns bash's suggestions for the last word."""
     line = " ".join(f"'{word}'" for word in words)
     script = (f"source script.bash; COMP_WORDS=('{TRIM3R}' {line}); COMP_CWORD={len(words)}; _trim3r; "
               "printf '%s\\n' \"${COMPREPLY[@]}\"")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""diff.py TRIM3R: scenes and pictures compared, and what differs."""
+"""diff.py TRIM3R: compares scenes and pictures, and reports their differences."""
 import json
 import struct
 

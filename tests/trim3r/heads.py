@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""heads.py TRIM3R: `--head`: each gives another scene and is named; weights that are refused say why. `--preset`."""
+"""heads.py TRIM3R: `--head`: each gives another scene and is named; refused weights give a reason. `--preset`."""
 import json
 import os
 import struct
@@ -29,7 +29,7 @@ def heads():
     check(len(set(hashes.values())) == len(hashes), f"heads give the same scene: {hashes}")
     crc = expect_json(*base, "--head", "mine.t3w")["head_crc"]
     check(crc == expect_json("head-info", "mine.t3w")["crc"] == whole[15:11:-1].hex(), "the CRC")
-    # the closed forms never see weights, networks the same bits however many bytes and threads there are
+    # the closed forms use no weights; networks give the same bits for any arena and number of threads
     check(len({expect_json(*base, "--head", "wide.t3w", "--arena", arena, "--threads", threads)["hash"]
                for arena, threads in (("min", 1), ("full", 3))}) == 1, "arena or threads change a learned scene")
     # weights that are refused say why
@@ -44,7 +44,7 @@ def heads():
 
 
 def haze_head(path):
-    """The float head small with a last layer that says the same everywhere: faint, and 16 spacings wide."""
+    """Makes the float head small with a last layer that gives the same everywhere: faint, and 16 spacings wide."""
     raw = bytearray(open(os.path.join(HEADS, "small.safetensors"), "rb").read())
     data = 8 + struct.unpack("<Q", raw[:8])[0]
     tensors = json.loads(raw[8:data])

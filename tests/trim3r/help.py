@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""help.py TRIM3R: how help reads. A command and a switch say in the imperative what they do, an option with a value says in
-a noun phrase what that value is: lower case first, no full stop, then range and default as `1..16 (4)`."""
+"""help.py TRIM3R: the style of help. A command or a switch says in the imperative what it does; an option with a
+value names the value in a noun phrase: lower case first, no full stop, then range and default as `1..16 (4)`."""
 import os
 import re
 import subprocess
@@ -9,7 +9,7 @@ import subprocess
 from program import TRIM3R, check, expect, in_scratch
 
 BANNED = r"\b(tell|tells|telling|told|said|says|aside|promises?|sights?|workshop)\b"
-FRAGMENT = r"(of|to|for|than|with|which|where|what|how|that|likewise|wider) "  # hangs in the air
+FRAGMENT = r"(of|to|for|than|with|which|where|what|how|that|likewise|wider) "  # an incomplete phrase
 PROPER = r"SuperClusters|Gaussians|TUM|FLIP|PNG|MiB"
 WORDS = 35
 WIDTH = 78
@@ -20,7 +20,7 @@ def commands_of(summary):
 
 
 def options_of(text):
-    """Each option and its text; a long option has its text in the line below."""
+    """Yields each option and its text; a long option has its text in the line below."""
     for line in re.sub(r"\n {29}(?=\S)", " ", text).splitlines():
         found = re.match(r" {2,6}(-\w [A-Z]+|(?:-\w, )?--[a-z0-9-]+\S*)\s+(\S.*)$", line)
         if found and not re.search(r"--(help|usage)$", found[1]):

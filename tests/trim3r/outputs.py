@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""outputs.py TRIM3R: no command writes over what it reads, or twice to one file, or over a file of another kind.
+"""outputs.py TRIM3R: no command overwrites its inputs, writes twice to one file, or overwrites a file of another kind.
 
 Every output option of every command against every input and every other output, from the commands' own tables
-(--file-options): refused before the rest of the line is looked at, so no command needs a valid one.
+(--file-options): refused before the rest of the line is checked, so no command needs a valid one.
 """
 import json
 import os
@@ -100,7 +100,7 @@ def every_pair():
         for output in outputs:
             for other in rows:
                 if other is output or (other["writes"] and other["folder"] != output["folder"]):
-                    continue # a file and a folder are told apart by what is there
+                    continue # files and folders are distinguished by what exists
                 make(output, "one.t3w")
                 refused(command, output, other)
                 pairs += 1

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""parts.py TRIM3R: nothing half done stays, whether a signal ends a command or the disk is full; and what could not be
-printed is an error."""
+"""parts.py TRIM3R: nothing partial stays, whether a signal ends a command or the disk is full; and a failed output
+is an error."""
 import os
 import shutil
 import signal
@@ -12,10 +12,10 @@ from outputs import commands
 from program import HEADS, TRIM3R, check, expect, fill_disk, in_scratch, room, write
 
 SIZE = ("--size", "64x64")
-# A line for each command that ends well and prints something; and what it writes.
+# For each command, a line that succeeds and prints something; and its outputs.
 LINES = {
     "import": (["posed", "-o", "out.mcap"], ["out.mcap"]),
-    "capture": (["--source", "replay:room.mcap", "-o", "out.mcap"], []), # a recording that was cut off is one, too
+    "capture": (["--source", "replay:room.mcap", "-o", "out.mcap"], []), # a truncated recording is one, too
     "room": ([*SIZE, "-o", "out.mcap"], ["out.mcap"]),
     "info": (["scene.ply", "--svg", "out.svg"], ["out.svg"]),
     "build": (["room.mcap", "--keep", "10", "-o", "out.ply", "--colmap", "start"], ["out.ply", "start"]),
@@ -77,7 +77,7 @@ def to_a_full_terminal():
             shutil.rmtree(path) if os.path.isdir(path) else os.unlink(path)
 
 
-# Lines that write for longer than it takes to see their part.
+# Lines that write long enough for their partial file to be seen.
 LONG = {
     "a recording": ["room", "--size", "640x480", "--frames", "1000", "-o", "long.mcap"],
     "a folder": ["build", "room.mcap", "--context", "0,1,2,3,4,5", "--keep", "20", "--method", "pup+finetune",
@@ -110,7 +110,7 @@ def by_a_signal():
             check(running.returncode == -number, f"{what}: ended by {running.returncode}, not {number.name}")
             check(parts() == [] and not any(name.startswith("long") for name in os.listdir(".")) and
                   os.listdir("empty") == [], f"{what}: {number.name} leaves {parts()}, {os.listdir('.')}")
-    # one that is ignored stays so, and a second one ends a capture
+    # an ignored signal stays ignored, and a second one ends a capture
     ignored = subprocess.Popen([TRIM3R, "room", "--size", "320x240", "--frames", "8", "-o", "done.mcap"],
                                stdout=subprocess.DEVNULL, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
     while not parts() and ignored.poll() is None:
@@ -119,7 +119,7 @@ def by_a_signal():
     check(ignored.wait(timeout=60) == 0 and os.path.exists("done.mcap"), "a signal that is ignored ended the command")
 
 
-# Lines that make rows for long, beside a table that is there.
+# Lines that make rows for long, while a table exists.
 ROWS = {
     "eval": ["eval", "room.mcap", "--keep", "60,50,40", "--methods", "trim3r,pup+finetune", "--finetune-iterations",
              "2000", "--csv", "rows.csv"],
@@ -128,7 +128,8 @@ ROWS = {
 
 
 def until_a_row_is_made(line, beside):
-    """Starts it and waits for the second line of the table that it writes, beside the one that is there or in its place."""
+    """Starts the command and waits for the second line of the table that it writes, `beside` the existing one or in
+    its place."""
     running = subprocess.Popen([TRIM3R, *line], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                preexec_fn=as_usual)
     end = time.monotonic() + 60
@@ -142,7 +143,7 @@ def until_a_row_is_made(line, beside):
 
 
 def an_older_table():
-    """It stands until the new one is whole; where there is none, rows appear as they are made."""
+    """An older table stays until the new one is complete; without one, rows appear as they are made."""
     for what, line in ROWS.items():
         write("rows.csv", "")
         running = until_a_row_is_made(line, False)
@@ -156,7 +157,7 @@ def an_older_table():
         running.send_signal(signal.SIGINT)
         running.wait(timeout=60)
         check(open("rows.csv", encoding="utf-8").read() == table and parts() == [], f"{what}: the older table is lost")
-    # refused cases leave it, rows of any kind replace it
+    # refused cases leave the table, rows of any kind replace it
     expect(1, "eval", "room.mcap", "--keep", 10, "--context", "0,5", "--target", 1, "--depth", "stereo", "--working",
            "32x32", "--csv", "rows.csv")
     check(open("rows.csv", encoding="utf-8").read() == table and parts() == [], "a refusal replaced the older table")
@@ -166,7 +167,7 @@ def an_older_table():
 
 
 def left_by_the_killed():
-    """A killed process leaves a part; it stands in nobody's way."""
+    """A killed process leaves a partial file, which does no harm."""
     line = [TRIM3R, *LONG["a folder that was there"]]
     running = subprocess.Popen(line, stdout=subprocess.DEVNULL)
     while not parts() and running.poll() is None:

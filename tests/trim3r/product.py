@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""product.py TRIM3R STUDY_LIBRARY...: the program without the study does a user's work, has nothing of the study in it,
-and names the build that has the commands asked for."""
+"""product.py TRIM3R STUDY_LIBRARY...: the program without the study does a user's work, contains none of the study,
+and names the build with the requested commands."""
 import shutil
 import subprocess
 import sys
@@ -52,7 +52,7 @@ def the_study_is_named():
 
 
 def functions(*files):
-    """The functions and data that the files define, by name."""
+    """Returns the functions and data that the files define, by name."""
     listed = subprocess.run(["nm", "--defined-only", "--extern-only", "--format=posix", *files], capture_output=True,
                             text=True, check=True).stdout
     return {fields[0] for fields in map(str.split, listed.splitlines()) if len(fields) > 1 and fields[1] in "TDBR"}

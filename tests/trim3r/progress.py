@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""progress.py TRIM3R: what long commands say on a terminal: how much is done, and of an evaluation how many rows and how
-long it goes on, by what this run has made; nothing of it where stderr is no terminal."""
+"""progress.py TRIM3R: the progress of long commands on a terminal: the part done, and for an evaluation the rows and
+the remaining time, estimated from this run; nothing if stderr is no terminal."""
 import os
 import re
 import subprocess

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""render.py TRIM3R: what `trim3r render` refuses, and what it draws."""
+"""render.py TRIM3R: refusals and results of `trim3r render`."""
 import json
 import os
 import struct
@@ -59,7 +59,7 @@ def render():
 
 
 def haze(path, count):
-    """A .ply of faint Gaussians, each wider than any picture."""
+    """Writes a .ply of faint Gaussians, each wider than any picture."""
     names = ["x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1",
              "rot_2", "rot_3"]
     header = "ply\nformat binary_little_endian 1.0\nelement vertex %d\n" % count
@@ -76,7 +76,7 @@ def slow_scenes():
     view = ["render", "haze.ply", "--pose", "here.json", "-o", "haze.png"]
     expect(1, *view, "--max-ms", 50, err="--max-ms")
     check(not os.path.exists("haze.png"), "a view that was given up is written")
-    # a bound of the splats in a tile is one of the time, and as wide as the list it changes nothing
+    # a bound on the splats in a tile bounds the time; at the list's length it changes nothing
     bounded = expect_json(*view, "--tile-splats", 20)
     check(bounded["render_ms"] < 1000, f"20 splats a tile take {bounded['render_ms']} ms")
     small = ["render", "haze.ply", "--pose", "here.json", "--size", "16x16", "-o", "small.png"]

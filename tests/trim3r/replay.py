@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""replay.py TRIM3R: replays agree with what is expected, however they run, or say where they differ."""
+"""replay.py TRIM3R: replays agree with the expectation, however they run, or report the first difference."""
 import json
 
 from program import check, expect, expect_json, in_scratch, room, write

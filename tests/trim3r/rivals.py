@@ -12,7 +12,7 @@ def vertices(path, count=68):
 
 
 def rivals():
-    """Scenes of the rivals: exact counts, Gaussians of the unpruned scene or tuned ones; no hash."""
+    """Scenes of the rivals: exact counts, Gaussians of the unpruned scene or fine-tuned ones; no hash."""
     recording = room()
     small = ["build", recording, "--context", "0,2", "--working", "32x32", "--refine", 1]
     whole = expect_json(*small, "--keep", 100, "--comments", "-o", "whole.ply")

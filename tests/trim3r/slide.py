@@ -28,7 +28,7 @@ def slide():
 
 
 def large():
-    """Pictures of usual sizes are planned, built and drawn."""
+    """Plans, builds and draws pictures of usual sizes."""
     for size in ("640x480", "1280x720"):
         width, height = map(int, size.split("x"))
         recording = room(size, f"room-{size}.mcap", frames=2)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""stream.py TRIM3R: `trim3r replay --stream`: keyframes, views that are held back, the same bits every time."""
+"""stream.py TRIM3R: `trim3r replay --stream`: keyframes, held-out views, the same bits every time."""
 import json
 import os
 
@@ -8,7 +8,7 @@ from program import check, expect, expect_json, in_scratch, room, run, write
 
 
 def the_map_in_a_file(recording, base):
-    """What is written is the map as it is in the end: a held-back frame drawn from the file is that of the run."""
+    """The written file is the final map: a held-out frame drawn from it equals the run's."""
     for name, least in (("map.ply", 60), ("map.spz", 30)):
         told = expect_json(*base, "--gaussians", 500, "-o", name)
         check(told["scene"] == name and expect_json("info", name)["scenes"][0]["gaussians"] == 500, f"{name} holds no 500 Gaussians")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""times.py TRIM3R: each kind of work has a time of its own, and they add up to no more than the command took."""
+"""times.py TRIM3R: each kind of work has its own time, and their sum is at most the command's time."""
 import re
 import time
 
@@ -10,7 +10,8 @@ KINDS = ("read_ms", "pose_ms", "build_ms", "render_ms", "write_ms")
 
 
 def times_of(kinds, count, *command):
-    """The times in ms, of which those kinds are there and no other; `count` views have those of drawing and writing."""
+    """Returns the times in ms, which must be of exactly these kinds, and their share of the elapsed time; drawing
+    and writing count for `count` views."""
     start = time.monotonic()
     found = expect_json(*command)
     elapsed = (time.monotonic() - start) * 1e3
@@ -64,7 +65,7 @@ STAGES = ["image", "depth", "pointmap", "wavelet", "superclusters", "budget", "h
 
 
 def table_of(text):
-    """{stage: ms} of a printed table."""
+    """Returns {stage: ms} of a printed table."""
     return {name: float(ms) for name, ms in re.findall(r"^(\w+) +([0-9.]+) +[0-9.]+$", text, flags=re.M)}
 
 

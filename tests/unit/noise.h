@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A small repeatable generator of noise. */
+/* A small repeatable random generator. */
 #ifndef T3R_TESTS_NOISE_H
 #define T3R_TESTS_NOISE_H
 

@@ -20,7 +20,7 @@ typedef struct rig {
     t3r_view view[VIEWS];
 } rig;
 
-/* Places a camera that looks along +z from x, 0, z at a plane across at depth `plane` from the origin, measured in
+/* Places a camera that looks along +z from x, 0, z at a parallel plane at depth `plane` from the origin, measured in
  * steps of that many world units. */
 static inline void place_view_in_steps(rig *s, int v, double x, double z, double plane, uint64_t unit_q40)
 {

@@ -10,7 +10,7 @@
 #include "noise.h"
 #include "test.h"
 
-/* Exactly count x bytes, so that a sanitizer sees the first one beyond. */
+/* Allocates exactly count x bytes, so that a sanitizer notices an access beyond. */
 static inline void *unit_array(size_t count, size_t bytes)
 {
     void *memory = calloc(count, bytes);

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the scripts of this folder share."""
+"""Shared by the scripts of this folder."""
 
 import browser  # noqa: F401
 from checks import check, done, run, skip  # noqa: F401
 
 
 def need_page(trim3r, folder):
-    """Makes the room and a scene of it. The program must hold a page: else it was built without clang and lld."""
+    """Makes the room and a scene of it. The program must contain a page, else it was built without clang and lld."""
     room, scene = f"{folder}/room.mcap", f"{folder}/scene.ply"
     run(trim3r, "room", "--size", "64x48", "-o", room)
     run(trim3r, "build", room, "--context", "0,2", "--keep", "10", "-o", scene)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """page.py TRIM3R [FOLDER]: the viewer in a headless Chromium: its hash is the native one, the slider rebuilds, every
-overlay differs, mouse and keyboard move the camera, a phone; no errors, no requests. With FOLDER, what it looks like
-goes there."""
+overlay differs, mouse and keyboard move the camera, a phone; no errors, no requests. With FOLDER, screenshots go
+there."""
 import json
 import sys
 import tempfile
@@ -24,7 +24,7 @@ STAGES = "Object.fromEntries([...document.querySelectorAll('#stages tbody tr')].
 
 
 def drawn(page, action):
-    """The picture after an action that draws."""
+    """Returns the picture after an action that draws."""
     page.wait("!busy")
     before = page.value("Number(document.body.dataset.drawn ?? 0)")
     action()
@@ -42,7 +42,7 @@ def slide(page, value):
 
 
 def budget(page, room):
-    """The slider from 100 to 2 %: another picture each time, and the bits of the native program."""
+    """Moves the slider from 100 to 2 %: another picture each time, and the bits of the native program."""
     seen = set()
     for share in (100, 30, 10, 2):
         wanted = max(1, round(page.value("data.valid") * share / 100))

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Bands of tiles: whatever their number and the room at their borders, each Gaussian's sums get every tile's share
- * once, and no two bands write to the same place. */
+/* Bands of tiles: for any number of them and any room at their borders, each Gaussian's sums get every tile's
+ * contribution once, and no two bands write to the same place. */
 #include "unit/unit.h"
 
 #include "refine/refine_bands.h"
@@ -50,7 +50,7 @@ static t3r_binning bin_splats(uint64_t capacity)
     return bin;
 }
 
-/* What a tile adds to a splat. */
+/* Returns a tile's contribution to a splat. */
 static int32_t share_of(uint32_t tile, uint32_t index)
 {
     return (int32_t)(tile * 31 + index % 13 + 1);
@@ -99,7 +99,7 @@ TEST(every_share_counts_once)
                 assert_true(borders.most == SPLATS ? count == borders.bands || count == last - first : true);
                 assert_int_equal(bands[0].begin, first);
                 assert_int_equal(bands[count - 1].end, last);
-                for (uint32_t b = count; b-- > 0;) { /* the last first: no band leans on an earlier one */
+                for (uint32_t b = count; b-- > 0;) { /* the last first: no band depends on an earlier one */
                     assert_true(b == 0 || bands[b].begin == bands[b - 1].end);
                     accumulate(&bin, begin, bands, b, &borders, &slice);
                 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Order and lists of splats: stable by depth whatever bytes the depths share, and the same lists for any number of
+/* Order and lists of splats: stable by depth for any shared bytes of the depths, and the same lists for any number of
  * workers and any room for them. */
 #include "unit/unit.h"
 
@@ -64,7 +64,7 @@ static void place_splats(uint64_t *seed)
     }
 }
 
-/* Whether the list has the splats of the tile and no others, in their order. */
+/* Checks that the list has exactly the splats of the tile, in their order. */
 static void judge_list(uint32_t tile, const uint32_t *list, uint32_t length)
 {
     const uint32_t left = tile % ACROSS * T3R_TILE_SIDE, top = tile / ACROSS * T3R_TILE_SIDE;

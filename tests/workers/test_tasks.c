@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tasks: who runs them, and which part of the work each takes. */
+/* Tasks: their workers, and the part of the work that each does. */
 #include "unit/unit.h"
 
 #include "core/workers.h"
@@ -28,7 +28,7 @@ static void note_rows(void *context, uint32_t begin, uint32_t end, uint32_t work
     noted->workers[noted->calls++] = worker;
 }
 
-/* A caller's hook: the last task first, by worker 3. */
+/* A caller's hook: runs the last task first, all by worker 3. */
 static void backwards(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
                       void *context)
 {
@@ -65,7 +65,7 @@ TEST(without_a_hook)
     assert_int_equal(hooked, 0);
 }
 
-/* A single task is not worth the hook; two are. */
+/* A single task does not use the hook; two do. */
 TEST(by_a_hook)
 {
     uint32_t hooked = 0;
@@ -83,7 +83,7 @@ TEST(by_a_hook)
     }
 }
 
-/* Two bands a worker, and none without a row unless there is no row at all. */
+/* Two bands per worker, and none without a row unless there is no row at all. */
 TEST(rows_by_a_hook)
 {
     uint32_t hooked = 0;

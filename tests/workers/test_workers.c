@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Builds and views of the built-in room by threads, and by tasks in reverse order whose workers take turns: each stage
- * has the hash that one worker gives it. */
+/* Builds and views of the built-in room by threads, and by tasks in reverse order with alternating workers: each stage
+ * has its hash with one worker. */
 #include "rgbd_frame.h"
 #include "sanitized_cpu.h"
 #include "unit/unit.h"
@@ -20,7 +20,7 @@ typedef struct frame_memory {
 
 static frame_memory frames[KEYFRAMES];
 
-/* Which stages were hashed, and what came out, one after the other. */
+/* Hashed stages, and the results, one after the other. */
 typedef struct trace {
     uint32_t count;
     t3r_stage stage[256];
@@ -87,7 +87,7 @@ static t3r_runtime *open_runtime(t3r_config config, const way *w, host *h, void 
     assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
     const size_t bytes = w->least ? plan.min_bytes : plan.bytes;
     *memory = aligned_alloc(T3R_ARENA_ALIGN, bytes / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN);
-    memset(*memory, 0xa5, bytes); /* nobody may read what was not written */
+    memset(*memory, 0xa5, bytes); /* unwritten memory must not be read */
     t3r_runtime *rt;
     assert_int_equal(t3r_init(&rt, *memory, bytes, &config), T3R_OK);
     vectors_if_sanitized(rt);
@@ -139,7 +139,7 @@ static void check_ways(const t3r_config *config)
 {
     static const way ways[] = {
         {2, true, false}, {3, true, true},
-#ifndef __SANITIZE_THREAD__ /* which sees races of two threads as well, and takes its time */
+#ifndef __SANITIZE_THREAD__ /* finds races of two threads as well, but is slow */
         {8, true, false}, {2, false, false}, {3, false, true}, {8, false, false},
 #endif
     };

@@ -19,7 +19,7 @@
 #define TURN_SECONDS 600.0
 #define THIS "/proc/self/exe"
 
-/* What both programs time, or only one of them. */
+/* State of a contest between the two programs. */
 typedef struct contest_state {
     const bench_contest *contest;
     bool has_stages;                /* the other program takes --stages */
@@ -35,8 +35,7 @@ static void add_word(char list[LIST_BYTES], const char *word)
     snprintf(list + length, LIST_BYTES - length, "%s%s", length > 0 ? "," : "", word);
 }
 
-/* ---- one run ------------------------------------------------------------------------------------------------------
- */
+/* ---- one run --------------------------------------------------------------------------------------------------- */
 
 /* Returns the object that `bench --json` of that program prints; NULL after a message. If `allowed`, refused options
  * give no message. */
@@ -99,7 +98,8 @@ static int ask_for_help(contest_state *s)
     const bool known = status == 0 && strstr(text, "kmeans_ms") != NULL && strstr(text, "--json") != NULL;
     s->has_stages = strstr(text, "--stages") != NULL;
     free(text);
-    return known ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s: not a trim3r: its bench --help is none of a bench", other);
+    return known ? CLI_OK
+                 : cli_error(CLI_BAD_INPUT, "%s: not a trim3r program: its bench --help is not a bench's", other);
 }
 
 static bool ends_a_row(const char *key)
@@ -169,8 +169,7 @@ static int share_stages(contest_state *s, const cJSON *theirs)
                : cli_error(CLI_BAD_INPUT, "%s: it has none of the stages: %s", s->contest->other, s->this_alone);
 }
 
-/* ---- the turns ----------------------------------------------------------------------------------------------------
- */
+/* ---- the turns ------------------------------------------------------------------------------------------------- */
 
 static int take_turns(contest_state *s)
 {
@@ -203,7 +202,7 @@ static int take_turns(contest_state *s)
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */
 
-/* Returns how many times as fast this program is, over the pairs of all turns. */
+/* Returns the ratio of this program's speed to the other's, over the pairs of all turns. */
 static spread ratio_of(const contest_state *s, uint32_t stage)
 {
     double ratios[BENCH_TURNS_MOST];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* This program's bench and another program's, in turns: how many times as fast each stage is. */
+/* Runs this program's bench and another program's in turns, and compares the speed of each stage. */
 #ifndef TRIM3R_TOOLS_BENCH_AGAINST_H
 #define TRIM3R_TOOLS_BENCH_AGAINST_H
 

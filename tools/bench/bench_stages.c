@@ -11,8 +11,7 @@
 #include "bench/bench_stereo.h"
 #include "wavelet/wavelet.h"
 
-/* ---- runs
- * ---------------------------------------------------------------------------------------------------------- */
+/* ---- runs ------------------------------------------------------------------------------------------------------ */
 
 static bool run_raster_full(bench_work *w)
 {
@@ -90,8 +89,7 @@ static bool run_copy(bench_work *w)
     return true;
 }
 
-/* ---- items per run
- * --------------------------------------------------------------------------------------------------- */
+/* ---- items per run --------------------------------------------------------------------------------------------- */
 
 static double pairs_of(bench_work *w, bench_scene scene, bool (*run)(bench_work *w))
 {
@@ -149,8 +147,7 @@ static double bytes_copied(bench_work *w)
     return 2.0 * BENCH_COPY_BYTES; /* read and written */
 }
 
-/* ---- the rows ------------------------------------------------------------------------------------------------------
- */
+/* ---- the rows -------------------------------------------------------------------------------------------------- */
 
 const bench_stage bench_stages[BENCH_STAGES_MOST + 1] = {
     {"raster_131k_ms", run_raster_full, BENCH_FULL, pairs_of_full, "ns a blended pair", "raster_131k_ns_per_pair"},

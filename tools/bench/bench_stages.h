@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the bench times: a row for each stage, for whole builds, and for the machine's upper limits. */
+/* The rows of the bench: each stage, whole builds, and the machine's upper limits. */
 #ifndef TRIM3R_TOOLS_BENCH_STAGES_H
 #define TRIM3R_TOOLS_BENCH_STAGES_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The work that the bench times: two 256x256 views of the built-in room, the scenes made of them, and what single
- * stages need besides. */
+/* The bench's work: two 256x256 views of the built-in room, the scenes made of them, and the inputs of single stages.
+ */
 #ifndef TRIM3R_TOOLS_BENCH_WORK_H
 #define TRIM3R_TOOLS_BENCH_WORK_H
 
@@ -51,7 +51,7 @@ typedef struct bench_work {
         t3r_runtime *runtime;
         void *arena;
     } scene[BENCH_SCENES];
-    t3r_gaussian *start; /* what each measured refinement pass starts from: its scene as built */
+    t3r_gaussian *start; /* start of each measured refinement pass: its scene as built */
     void *stereo_work;   /* for a pair matched with eight paths */
     int8_t *features;    /* input of the network alone */
     chosen_head small, measured;

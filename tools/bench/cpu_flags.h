@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the system reports about the processor. */
+/* The system's report about the processor. */
 #ifndef TRIM3R_TOOLS_CPU_FLAGS_H
 #define TRIM3R_TOOLS_CPU_FLAGS_H
 

@@ -15,8 +15,6 @@
 #define LEAST_EXPLAINED 0.5
 #define TERMS 2 /* rotation, translation */
 
-/* ---- pictures ---- */
-
 /* Returns a brightness of 0..255: the green of colours, the luma of YUV. */
 static float brightness(const t3r_frame *f, uint32_t x, uint32_t y)
 {
@@ -110,8 +108,6 @@ void clock_motion_of(const clock_picture *before, const clock_picture *after, cl
     out->down = (down - MOST_SHIFT + more_down) / CLOCK_ROWS;
 }
 
-/* ---- poses ---- */
-
 /* Predicts how the picture moves between two poses: right and down, by rotation (radians) and by translation (world
  * units), in the first camera. */
 static void expected(const rigid *a, const rigid *b, double right[TERMS], double down[TERMS])
@@ -197,13 +193,13 @@ int clock_offset_estimate(const clock_motion *motions, size_t count, const traje
     /* excludes offsets at which much of the capture lies outside the trajectory */
     size_t enough = count / 2 > LEAST_MOTIONS ? count / 2 : LEAST_MOTIONS;
     if (count < LEAST_MOTIONS || moved / (double)count < 0.2 / CLOCK_COLUMNS) {
-        return t3r_reason(error, error_bytes, "the clocks' offset is not to be told: %s",
+        return t3r_reason(error, error_bytes, "the clocks' offset cannot be estimated: %s",
                           count < LEAST_MOTIONS ? "fewer than 13 frames" : "the picture hardly moves");
     }
     search coarse = best_between(motions, count, t, around_ns - range_ns, around_ns + range_ns, COARSE_NS, enough);
     if (coarse.explained < 0) {
         return t3r_reason(error, error_bytes,
-                          "the clocks' offset is not to be told: half of the frames lie outside the trajectory");
+                          "the clocks' offset cannot be estimated: half of the frames lie outside the trajectory");
     }
     search fine =
         best_between(motions, count, t, coarse.offset_ns - COARSE_NS, coarse.offset_ns + COARSE_NS, FINE_NS, enough);

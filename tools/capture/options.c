@@ -61,8 +61,8 @@ static const struct argp_option options[] = {
      0},
     {"pose-topic", OPTION_TO(capture_options, pose_topic), "TOPIC", 0, "topic of the bag (the only one with poses)", 0},
     {"clock-offset", KEY_OFFSET, "S|estimate[:S]", 0,
-     "seconds that the poses' clock is ahead of the camera's (0), or estimate: found from how the picture moves, "
-     "within a second of S; S is 0 where the times overlap, else what brings their starts together",
+     "seconds that the poses' clock is ahead of the camera's (0), or estimate: from the motion of the picture, "
+     "within a second of S; S is 0 if the times overlap, else the difference of their starts",
      0},
     {NULL, 0, NULL, 0, "What is written:", 4},
     {"output", 'o', "REC.mcap", OPTION_WRITES(FILE_RECORDING),
@@ -77,8 +77,7 @@ static const struct argp_option options[] = {
      "are there",
      0},
     {"every", KEY_EVERY, "N", 0,
-     "distance in frames of further builds, each of a frame and the one N before it; SCENE.ply is that of the last one",
-     0},
+     "distance in frames of further builds, each of a frame and the Nth before it; SCENE.ply is the last one's", 0},
     {"local", OPTION_TO(capture_options, local), NULL, 0, "write positions from the first context camera's centre", 0},
     {"hash", OPTION_TO(capture_options, hash), NULL, 0,
      "print the hash of all frames: a replay of the recording has the same", 0},
@@ -133,7 +132,7 @@ static void parse_intrinsics(struct argp_state *state, const char *text, capture
     double numbers[9] = {0};
     const uint32_t count = numbers_of_text(text, numbers, 9);
     if (count != 4 && count != 8 && count != 9) {
-        argp_error(state, "--intrinsics takes fx,fy,cx,cy, with k1,k2,p1,p2,k3 behind them or not, not '%s'", text);
+        argp_error(state, "--intrinsics takes fx,fy,cx,cy, optionally followed by k1,k2,p1,p2,k3, not '%s'", text);
     }
     o->intrinsics.fx = numbers[0];
     o->intrinsics.fy = numbers[1];
@@ -167,7 +166,7 @@ static const struct {
     {KEY_STALL, "v4l2 libcamera opencv", false},  {KEY_RECONNECT, "v4l2 libcamera opencv", false},
 };
 
-/* Whether the word is one of the words, which are separated by spaces. */
+/* Whether the word is in `words`, which are separated by spaces. */
 static bool is_among(const char *word, size_t length, const char *words)
 {
     for (const char *at = words; *at != '\0'; at += strspn(at, " ")) {
@@ -208,7 +207,7 @@ static void check(struct argp_state *state, capture_options *o)
     if (o->source == NULL) {
         argp_error(state, "--source is missing (--list shows what there is)");
     } else if (o->output == NULL && o->scene == NULL && !o->hash) {
-        argp_error(state, "neither -o REC.mcap nor --build SCENE.ply says what is to become of the frames");
+        argp_error(state, "-o REC.mcap or --build SCENE.ply is missing");
     } else if (o->scene == NULL && (o->every > 0 || budget || o->build.context_count > 0 || o->local)) {
         argp_error(state, "--every, --local, --context and budgets belong to --build");
     } else if (o->scene != NULL && o->build.config.allocate == T3R_ALLOCATE_GIVEN) {

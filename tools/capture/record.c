@@ -90,7 +90,7 @@ static int end_file(capture_record *record)
     return wrong != 0 || closed != 0 ? failed(record) : 0;
 }
 
-/* Begins another file when this one has no room for so many bytes and its end. */
+/* Begins another file when this one has no room for `bytes` and its end. */
 static int make_room(capture_record *record, uint64_t bytes)
 {
     if (record->max_bytes == 0 ||

@@ -14,7 +14,7 @@
 #include "messages/pixel_layout.h"
 #include "scene/scene_file.h"
 
-#define MOST_FAILED 100u /* so many unreadable frames in a row: the source is unusable */
+#define MOST_FAILED 100u /* consecutive unreadable frames after which the source counts as unusable */
 #define RETRY_NS 100000000
 
 typedef struct run_state {
@@ -227,7 +227,6 @@ static int make_scene(run_state *s, const t3r_capture_frame *frame)
     return s->plan->every > 0 ? CLI_OK : write_scene(s);
 }
 
-/* Builds once, from the chosen frames. */
 static int build_chosen(run_state *s, const t3r_capture_frame *frame)
 {
     uint32_t wanted = context_at(s->plan, s->next_context);

@@ -22,15 +22,15 @@ typedef struct capture_plan {
     const trajectory *poses;               /* NULL = the source's own */
     int64_t offset_ns;                     /* their clock minus the camera's */
     const t3r_recorded_camera *intrinsics; /* NULL = the source's own; the size must be the frames' */
-    uint64_t frames;                       /* stop after so many; 0 = no limit */
-    double seconds;                        /* stop after so long; 0 = no limit */
+    uint64_t frames;                       /* stop after this many; 0 = no limit */
+    double seconds;                        /* stop after this long; 0 = no limit */
     double reconnect_seconds;              /* how long to try to reopen a lost device */
     const reconstruction_options *build;   /* NULL = no Gaussians */
     uint32_t every;    /* build again from each N-th frame and the one N before; 0: once, from build->context */
     const char *scene; /* file for the newest scene; NULL = none */
     int scene_flags;
     bool hash;                         /* hash all frames */
-    const volatile sig_atomic_t *stop; /* not 0: stop and keep what there is */
+    const volatile sig_atomic_t *stop; /* not 0: stop and keep what was captured */
     bool quiet;                        /* no progress line */
 } capture_plan;
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What every subcommand shares. The state here is per process: its name in messages and its progress line. */
+/* Shared by all subcommands. The state here is per process: its name in messages and its progress line. */
 #include "cli/cli.h"
 
 #include <inttypes.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What every subcommand shares: exit codes, messages, progress, one JSON object on stdout. */
+/* Shared by all subcommands: exit codes, messages, progress, one JSON object on stdout. */
 #ifndef TRIM3R_TOOLS_CLI_H
 #define TRIM3R_TOOLS_CLI_H
 
@@ -12,7 +12,7 @@ enum { CLI_OK = 0, CLI_BAD_INPUT = 1, CLI_BAD_USAGE = 2, CLI_BUDGET_TOO_SMALL = 
 /* Prints "trim3r COMMAND: message" on stderr; returns `code`, for use as `return cli_error(CLI_BAD_INPUT, ...)`. */
 int cli_error(int code, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Makes cli_error() write its messages, without the names before them, into text[] instead of stderr, each replacing
- * the one before; NULL: stderr again. For callers that treat an error as a result. */
+ * the previous one; NULL: stderr again. For callers that treat an error as a result. */
 void cli_keep_errors(char *text, size_t bytes);
 /* Sets the command's name for messages; called by main. */
 void cli_set_command(const char *name);
@@ -22,8 +22,8 @@ const char *cli_command(void);
 void cli_progress(const char *what, uint32_t done, uint32_t total);
 void cli_progress_end(void);
 /* Sets the outer work of the following progress lines: "12 of 400 rows, 3 min left", estimated from the time since the
- * first of these calls; nothing once all is done. before: how many of `done` were there from the start and took no
- * time. */
+ * first of these calls; nothing once all is done. before: number of `done` items that were there from the start and
+ * took no time. */
 void cli_progress_within(const char *what, uint32_t before, uint32_t done, uint32_t total);
 /* Silences all progress from here on: for a process that works for another. */
 void cli_progress_silence(void);

@@ -36,7 +36,7 @@ static void scene_name(const char *path, uint32_t parts, char *name, size_t byte
     }
 }
 
-/* The first pair of inputs that would share a name; false = all differ. */
+/* Finds the first pair of inputs that would share a name; false = all differ. */
 static bool share_name(char *const *inputs, uint32_t count, uint32_t parts, uint32_t pair[2])
 {
     char name[EVALUATION_NAME_BYTES], other[EVALUATION_NAME_BYTES];
@@ -177,7 +177,7 @@ static int find_places(const t3r_recording *recording, const char *path, view_pl
     return CLI_OK;
 }
 
-/* How far away things are: what the first frame measured, or stereo makes of the case's own frames. */
+/* Finds the median depth: from the first frame's measurements, or by stereo of the case's own frames. */
 static int find_depth(const evaluation_case *what, const t3r_capture_frame *first,
                       const reconstruction_options *settings, double *depth)
 {
@@ -198,8 +198,8 @@ static int find_depth(const evaluation_case *what, const t3r_capture_frame *firs
                      what->path, what->context[0]);
 }
 
-/* One of several cases whose own frames do not tell how far away things are stays as it is: it will be refused in its
- * turn, for the same reason. */
+/* Fills a case's context. Of several cases, one without a known depth is left unchanged: it will be refused later, for
+ * the same reason. */
 static int fill_context(evaluation_case *what, const view_place *places, uint32_t count,
                         const reconstruction_options *settings, bool alone)
 {
@@ -238,7 +238,7 @@ static int fill_contexts(evaluation_cases *cases, const reconstruction_options *
     for (uint32_t i = 0; i < cases->count && code == CLI_OK; i++) {
         evaluation_case *what = &cases->list[i];
         uint32_t count = t3r_recording_frame_count(what->recording);
-        if (what->recording != known) { /* the cases of a recording stand together */
+        if (what->recording != known) { /* the cases of a recording are consecutive */
             free(places);
             places = calloc(count + 1, sizeof *places);
             known = what->recording;
@@ -294,7 +294,7 @@ void evaluation_cases_close(evaluation_cases *cases)
     *cases = (evaluation_cases){0};
 }
 
-/* The case's recording once more, as its frames are targets of other cases; NULL after a message. */
+/* Opens the case's recording again, because its frames are targets of other cases; NULL after a message. */
 static t3r_recording *posed_anew(const evaluation_case *what, poses_source source)
 {
     char error[512] = "";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What an evaluation goes through: the triplets of recordings, or images, each on a plane. */
+/* The cases of an evaluation: triplets of recordings, or images, each on a plane. */
 #ifndef TRIM3R_TOOLS_EVALUATION_CASES_H
 #define TRIM3R_TOOLS_EVALUATION_CASES_H
 
@@ -9,7 +9,7 @@
 #define EVALUATION_NAME_PARTS_MOST 8u
 
 typedef struct evaluation_cases {
-    char **inputs; /* the caller's */
+    char **inputs; /* owned by the caller */
     uint32_t input_count;
     bool planar;
     uint32_t width, height; /* for planar images */

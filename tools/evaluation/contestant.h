@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Whatever has rows of its own in an evaluation: trim3r once a head, or what a program adds. */
+/* A contestant has its own rows in an evaluation: trim3r once per head, or a program's addition. */
 #ifndef TRIM3R_TOOLS_EVALUATION_CONTESTANT_H
 #define TRIM3R_TOOLS_EVALUATION_CONTESTANT_H
 
@@ -12,7 +12,7 @@
 typedef struct evaluation_contestant {
     reconstruction_options settings;
     const char *ablation;               /* the row's; "" = none */
-    char label[EVALUATION_LABEL_BYTES]; /* over its pictures and in their names */
+    char label[EVALUATION_LABEL_BYTES]; /* above its pictures and in their names */
 } evaluation_contestant;
 
 typedef struct evaluation_contestants {
@@ -25,12 +25,12 @@ typedef struct evaluation_contestants {
 void evaluation_contestants_add(evaluation_contestants *chosen, const reconstruction_options *settings,
                                 const char *ablation);
 
-/* Adds trim3r by these settings: once for each of `heads`, or of none with the head of the settings. Opens every head
- * once: a bad one is reported before the work. An exit status of cli.h after a message. */
+/* Adds trim3r with these settings: once for each of `heads`, or, without heads, with the settings' head. Opens every
+ * head once, so that a bad one is reported before the work. Returns an exit status of cli.h after a message. */
 int evaluation_contestants_add_heads(evaluation_contestants *chosen, char *const *heads, uint32_t head_count,
                                      const reconstruction_options *settings);
 
-/* The settings' scene file alone. */
+/* Adds only the settings' scene file. */
 void evaluation_contestants_scene(evaluation_contestants *chosen, const reconstruction_options *settings);
 
 #endif

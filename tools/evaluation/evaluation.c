@@ -45,7 +45,7 @@ int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluatio
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, "render", &r->config, r->arena_bytes);
 }
 
-/* ---- what the rows of a case share -------------------------------------------------------------------------- */
+/* ---- shared by the rows of a case --------------------------------------------------------------------------- */
 
 void evaluation_views_free(evaluation_views *views)
 {
@@ -114,7 +114,7 @@ static int have_depth(const evaluation_case *what, bool *all)
 
 int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings)
 {
-    /* all points of the raw depth with the plain analytic head, whatever is compared; the sensor's depth if all
+    /* all points of the raw depth with the plain analytic head for every comparison; the sensor's depth if all
      * frames have it */
     reconstruction_options options = *settings;
     bool sensed;
@@ -208,7 +208,7 @@ static int score(evaluation_row *row, uint8_t *render, uint8_t *rgb, uint16_t *a
     return CLI_OK;
 }
 
-/* The scene of `built` by way of a file: *loaded holds what was read back. */
+/* Passes the scene of `built` through a file: *loaded is the scene read back. */
 static int through_file(reconstruction *loaded, const reconstruction *built, const evaluation_views *views,
                         const reconstruction_options *options)
 {
@@ -282,7 +282,7 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, evalua
     }
     row->method = settings->method->name;
     const bool allocated = settings->method->allocates;
-    const bool built = allocated || settings->points_of == NULL; /* others take Gaussians out of the file */
+    const bool built = allocated || settings->points_of == NULL; /* others take Gaussians from the file */
     if (built) {
         snprintf(row->refine, sizeof row->refine, "%" PRIu32, settings->config.refine);
         row->wavelet = t3r_wavelet_name(settings->config.wavelet);
@@ -351,7 +351,7 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, evaluation_views *v
     reconstruction_options options = *settings;
     options.gaussians = budget.gaussians;
     options.keep_percent = budget.keep;
-    options.hash = false; /* timed without */
+    options.hash = false; /* timed without hashing */
     options.context_count = what->context_count;
     memcpy(options.context, what->context, sizeof options.context);
 

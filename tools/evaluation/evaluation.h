@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How well a reconstruction shows a view it was not given.
+/* Scores of views that a reconstruction was not given.
  *
  * A case is one (scene, context, target). evaluation_views_make() prepares what all of its rows share: the recorded
- * pictures through the image stage, their cameras and their masks. evaluation_measure() builds one scene and scores
- * it: one row. Functions that can fail report on stderr and return an exit status of cli.h. */
+ * pictures through the image stage, their cameras and their masks. evaluation_measure() builds one scene and scores it:
+ * one row. Functions that can fail report on stderr and return an exit status of cli.h. */
 #ifndef TRIM3R_TOOLS_EVALUATION_H
 #define TRIM3R_TOOLS_EVALUATION_H
 
@@ -21,7 +21,7 @@
 
 /* The number of Gaussians of a row. */
 typedef struct evaluation_budget {
-    double keep;        /* percent of the valid points, where no count is given */
+    double keep;        /* percent of the valid points, if no count is given */
     uint32_t gaussians; /* a count, or all valid points if they are fewer; 0 = not given */
 } evaluation_budget;
 
@@ -50,7 +50,7 @@ typedef struct evaluation_views {
     method_source source; /* shared by the rows of a method */
 } evaluation_views;
 
-/* Makes the masks from the frames' own depth if every context view has one, whatever the rows are made of. Call
+/* Makes the masks from the frames' own depth if every context view has one, for every kind of row. Call
  * evaluation_views_free() after CLI_OK, and only then. */
 int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings);
 void evaluation_views_free(evaluation_views *views);
@@ -70,7 +70,7 @@ typedef enum evaluation_value {
     EVALUATION_BUILD_MS,  /* frames to scene: the image stage and all later steps, including scoring and fine-tuning */
     EVALUATION_RENDER_MS, /* the target view */
     EVALUATION_ARENA_BYTES,
-    EVALUATION_SCENE_BYTES, /* the Gaussians as the arena holds them */
+    EVALUATION_SCENE_BYTES, /* size of the Gaussians in the arena */
     EVALUATION_PLANAR_PSNR, /* all pixels of a planar case, dB */
     EVALUATION_BITS_EPOCH,
     EVALUATION_VALUE_COUNT
@@ -86,23 +86,23 @@ typedef struct evaluation_row {
     double value[EVALUATION_VALUE_COUNT];
 } evaluation_row;
 
-/* The row's scene, context and target. */
+/* Sets the row's scene, context and target. */
 void evaluation_name_case(evaluation_row *row, const evaluation_case *what);
 
-/* Fills in what is known of the row in advance: every text except the ablation and the picture, and the budget;
- * other values are NaN. Returns an exit status of cli.h, because it reads the head. */
+/* Fills in the values known in advance: every text except the ablation and the picture, and the budget; other values
+ * are NaN. Returns an exit status of cli.h, because it reads the head. */
 int evaluation_name_row(evaluation_row *row, const evaluation_case *what, evaluation_budget budget,
                         const reconstruction_options *settings);
 
-/* Builds `what` by the settings' method with so many Gaussians, renders and scores it. The views keep what the rows
- * of a method share, so `settings` must be the same for all of these rows. With from_file the scene is written as
+/* Builds `what` by the settings' method with that number of Gaussians, renders and scores it. The views keep what the
+ * rows of a method share, so `settings` must be the same for all of these rows. With from_file the scene is written as
  * .ply, read back and rendered from that file. If the settings name a scene file, that scene is rendered and nothing
  * is built. `render` (width x height x 3) gets the target view. */
 int evaluation_measure(evaluation_row *row, uint8_t *render, evaluation_views *views, const evaluation_case *what,
                        evaluation_budget budget, bool from_file, const reconstruction_options *settings);
 
-/* The steps of evaluation_measure() after the build, for callers that build from other frames than those of the
- * views (stress). evaluation_draw() renders the scene as `camera` sees it; rgb (width x height x 3) or alpha (width
+/* The steps of evaluation_measure() after the build, for callers that build from frames other than the views' (stress)
+ * . evaluation_draw() renders the scene as `camera` sees it; rgb (width x height x 3) or alpha (width
  * x height, 32767 = opaque) may be NULL. evaluation_score() renders the target into `render` and fills the scores
  * and render_ms of *row; context_psnr is NaN if the views hold no context. */
 int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluation_views *views, uint8_t *rgb,

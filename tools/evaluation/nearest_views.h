@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which recorded frames show most of what a target shows: the frames that `eval --views` adds to a triplet's own. */
+/* Chooses the recorded frames that show most of a target's surface: `eval --views` adds them to a triplet's own. */
 #ifndef TRIM3R_TOOLS_NEAREST_VIEWS_H
 #define TRIM3R_TOOLS_NEAREST_VIEWS_H
 
@@ -16,10 +16,10 @@ typedef struct view_place {
     int32_t axis_q30[3]; /* the direction of view, of length 1 */
 } view_place;
 
-/* The place of a camera in its documented range. */
+/* Returns the place of a camera in its documented range. */
 view_place view_place_of(const t3r_camera *camera);
 
-/* The median of a frame's valid depths in world units; 0 where none is valid. */
+/* Returns the median of a frame's valid depths in world units; 0 if none is valid. */
 double view_median_depth(const t3r_frame *frame);
 
 /* Returns the distance of two views: the root of (distance of the centres / depth)^2 + (distance of the directions

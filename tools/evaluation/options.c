@@ -167,13 +167,13 @@ static const struct argp_option options[] = {
     {"keep", KEY_KEEP, "P,P,...", 0, "percents of the valid points, one row each; with --auto the upper bound (100)",
      0},
     {"gaussians", KEY_GAUSSIANS, "Z,Z,...", 0,
-     "numbers of Gaussians, one row each, behind those of --keep: all valid points where there are fewer", 0},
+     "numbers of Gaussians, one row each, after those of --keep: all valid points if there are fewer", 0},
     {"prune", OPTION_TO(evaluation_options, settings.points_of), "SCENE.ply", OPTION_READS,
      "scene, made elsewhere of the views of --context, to prune: percents are of its Gaussians; trim3r makes new ones "
      "of points among their means; where a view has no depth, the mask is of the means",
      0},
     {"scene", OPTION_TO(evaluation_options, settings.scene), "SCENE", OPTION_READS,
-     "scene file, of trim3r or made elsewhere, to score as it is: nothing is built; it stands in the recording's "
+     "scene file, of trim3r or made elsewhere, to score as it is: nothing is built; it is in the recording's "
      "world, and the frames of --context, or of the triplets, make the mask alone; where one has no depth, the mask is "
      "of the "
      "scene's means",
@@ -187,7 +187,7 @@ static const struct argp_option options[] = {
      "write each scene as .ply, read it back and draw that", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
     {"csv", OPTION_TO(evaluation_options, to.csv), "FILE", OPTION_WRITES(FILE_TABLE),
-     "table to write; each row appears when it is made, or without --resume all at the end where a table stands", 0},
+     "table to write; each row appears when it is made, or without --resume all at the end if a table exists", 0},
     {"images", OPTION_TO(evaluation_options, to.images), "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
      "folder to write pictures into: DIR/<target>/<method>_<keep>.png, target.png, mask.png, context_a.png, ...; with "
      "--heads <head> is in the name, and settings that are not the default come before <keep>, as in "
@@ -256,16 +256,16 @@ const struct argp evaluation_argp = {
            "transmittance below 0.3.\n"
            "\n"
            "--views N: the frames of the triplet, or of --context, come first. Then come the other frames that have "
-           "pose, intrinsics and (but for --depth stereo) depth, the nearest to the target's camera first. Two "
-           "parts make up the distance, as the root of their squares: the distance of the centres over the median "
-           "depth of the first frame, and that of the directions of view as unit vectors. Of equal ones the lower "
-           "index is taken, the target never. The mask is that of all N. A recording with too few frames is refused.\n"
+           "pose, intrinsics and (but for --depth stereo) depth, the nearest to the target's camera first. The "
+           "distance is the root of a sum of two squares: the distance of the centres over the median depth of the "
+           "first frame, and the distance of the viewing directions as unit vectors. Of equal ones the lower index "
+           "is taken; the target is never taken. The mask is of all N. A recording with too few frames is refused.\n"
            "\n"
-           "--poses estimate: the first context view and the target keep their recorded poses, so that an error of the "
-           "others is seen. build_ms does not count the estimate.\n"
+           "--poses estimate: the first context view and the target keep their recorded poses, so that errors of "
+           "the others show. build_ms does not count the estimate.\n"
            "\n"
            "Refused cases (without depth or stereo match) are left out and reported, and --resume tries them again. "
-           "Where no case is left the exit status is 1.\n",
+           "If no case is left, the exit status is 1.\n",
     .help_filter = add_examples,
     .children = children,
 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The comparisons and outputs of `trim3r eval`, as the command line gives them. */
+/* The comparisons and outputs of `trim3r eval` from the command line. */
 #ifndef TRIM3R_TOOLS_EVALUATION_OPTIONS_H
 #define TRIM3R_TOOLS_EVALUATION_OPTIONS_H
 
@@ -27,7 +27,8 @@ typedef struct evaluation_options {
     evaluation_outputs to;
 } evaluation_options;
 
-/* Before evaluation_argp, which takes evaluation_options *; evaluation_options_free() after all use. */
+/* Sets defaults for evaluation_argp, which parses into evaluation_options *; call evaluation_options_free() after use.
+ */
 void evaluation_defaults(evaluation_options *options);
 extern const struct argp evaluation_argp;
 void evaluation_options_free(evaluation_options *options);

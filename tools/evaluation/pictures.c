@@ -75,7 +75,7 @@ void evaluation_page_views(html_page *page, const evaluation_views *views, const
         snprintf(text, sizeof text, "%s: frame %" PRIu32, what->scene, what->target);
     }
     html_page_section(page, text, views->width, views->height, views->target.rgb);
-    html_page_strip(page, what->planar ? "Recorded" : "Recorded: what goes in, and the view to be met");
+    html_page_strip(page, what->planar ? "Recorded" : "Recorded: the input, and the target view");
     for (uint32_t v = 0; v < views->context_count && !what->planar; v++) {
         snprintf(text, sizeof text, "context %c: frame %" PRIu32, (char)('a' + v), what->context[v]);
         html_page_picture(page, text, views->width, views->height, 3, views->context[v].rgb, 0);

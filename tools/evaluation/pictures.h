@@ -6,9 +6,9 @@
 #include "evaluation/evaluation.h"
 #include "pictures/html_page.h"
 
-/* FOLDER/target.png, mask.png, context_a.png, ... of a case (planar: target.png alone). */
+/* Writes FOLDER/target.png, mask.png, context_a.png, ... of a case (planar: only target.png). */
 int evaluation_write_views(const char *folder, const evaluation_views *views, const evaluation_case *what);
-/* FOLDER and the row's `picture`. */
+/* Writes the row's `picture` in FOLDER. */
 int evaluation_write_render(const char *folder, const evaluation_views *views, const evaluation_row *row,
                             uint8_t *render);
 

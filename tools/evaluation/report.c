@@ -18,7 +18,7 @@
 static int open_page(evaluation_report *report)
 {
     char error[ERROR_BYTES] = "";
-    report->page = html_page_new("trim3r: rendered views beside recorded ones",
+    report->page = html_page_new("trim3r: rendered views next to recorded ones",
                                  "A scene is built from the context views alone, with the share of their points that "
                                  "stands under each picture, and drawn from where the target was taken.");
     if (report->page == NULL) {
@@ -54,7 +54,7 @@ int evaluation_report_open(evaluation_report *report, const evaluation_outputs *
     return code;
 }
 
-/* ---- what is written as rows arrive --------------------------------------------------------------------------- */
+/* ---- output as rows arrive ------------------------------------------------------------------------------------ */
 
 /* Whether rows of the same target, seen from other frames, have its folder. */
 static bool folder_taken(const evaluation_report *report, const evaluation_row *names)
@@ -189,7 +189,7 @@ void evaluation_report_refuse(evaluation_report *report, const evaluation_case *
     cli_progress_within("rows", report->known_count, report->row_count, report->row_total);
 }
 
-/* ---- what is written at the end --------------------------------------------------------------------------------- */
+/* ---- output at the end ------------------------------------------------------------------------------------------ */
 
 static void print_json(const evaluation_report *report, const evaluation_row *means, uint32_t mean_count)
 {
@@ -206,7 +206,7 @@ static void print_json(const evaluation_report *report, const evaluation_row *me
     json_print(object);
 }
 
-/* Columns that say the same in every row stand once above the table: a phone shows few columns at a time. */
+/* Lists columns with the same value in every row above the table, because a phone shows few columns. */
 static void note_columns(const evaluation_row *rows, uint32_t count, bool planar, bool same[EVALUATION_COLUMNS],
                          char *note, size_t note_bytes)
 {

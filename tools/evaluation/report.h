@@ -17,8 +17,7 @@ typedef struct evaluation_outputs {
     const char *csv, *images, *page; /* paths; NULL = none */
     bool json, planar;
     bool resume; /* add to the rows of `csv` */
-    /* Prints one table of the means at the end, in the place of rows as they arrive; NULL = rows. False without memory.
-     */
+    /* Prints one table of the means at the end instead of rows as they arrive; NULL = rows. False if out of memory. */
     bool (*table)(FILE *out, const evaluation_row *means, uint32_t count, bool planar);
     bool folder_each;                       /* a folder within `images` for each scene */
     char suffix[EVALUATION_SETTINGS_BYTES]; /* part of picture names: settings of all rows that are not the default */
@@ -41,20 +40,20 @@ typedef struct evaluation_report {
 /* Opens every output possible, so that a bad path is reported before the work. Call evaluation_report_close() in any
  * case. */
 int evaluation_report_open(evaluation_report *report, const evaluation_outputs *to, uint32_t cases, uint32_t rows_each);
-/* Whether there are pictures or a page: else views and renders are not looked at. */
+/* Whether there are pictures or a page; otherwise views and renders are not used. */
 bool evaluation_report_shows(const evaluation_report *report);
-/* The recorded views of the rows that follow. */
+/* Adds the recorded views of the following rows. */
 int evaluation_report_case(evaluation_report *report, const evaluation_views *views, const evaluation_case *what);
-/* Writes a heading: what the next rows have in common. */
+/* Writes a heading for the following rows. */
 void evaluation_report_strip(evaluation_report *report, const char *label);
 /* Names the row's `picture` when there are pictures. */
 /* `known`: the row was in the table already. */
 int evaluation_report_row(evaluation_report *report, bool known, const evaluation_views *views, const char *label,
                           evaluation_row *row, uint8_t *render);
-/* Leaves out the case of the last rows, or of the next ones: it is reported, and is in no mean and no table. */
+/* Drops the case of the last or the next rows: it is reported, and is in no mean and no table. */
 void evaluation_report_refuse(evaluation_report *report, const evaluation_case *what, const char *reason);
-/* Means, JSON and page when `code` is CLI_OK; no half page otherwise. `code`, or what went wrong here: CLI_BAD_INPUT
- * when every case was refused. */
+/* Writes means, JSON and page if `code` is CLI_OK; otherwise no partial page. Returns `code`, or an error of its own;
+ * CLI_BAD_INPUT if every case was refused. */
 int evaluation_report_close(evaluation_report *report, int code);
 
 #endif

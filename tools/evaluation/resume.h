@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The rows that an evaluation cut off, or an earlier one, left in its table. */
+/* The rows in an existing table, of an interrupted or an earlier evaluation. */
 #ifndef TRIM3R_TOOLS_EVALUATION_RESUME_H
 #define TRIM3R_TOOLS_EVALUATION_RESUME_H
 
@@ -20,7 +20,7 @@ typedef struct evaluation_resume {
  * file. An exit status of cli.h; evaluation_resume_close() in any case. */
 int evaluation_resume_open(evaluation_resume *resume, const char *path, char *const *inputs, uint32_t input_count,
                            const char *scene, bool with_pictures);
-/* The row of the same case, contestant, budget and settings, or NULL. */
+/* Returns the row of the same case, contestant, budget and settings, or NULL. */
 const evaluation_row *evaluation_resume_find(evaluation_resume *resume, const evaluation_row *named);
 void evaluation_resume_close(evaluation_resume *resume);
 

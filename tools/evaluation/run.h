@@ -5,7 +5,7 @@
 
 #include "evaluation/options.h"
 
-/* Measures the contestants on every case at every budget of the options. An exit status of cli.h. */
+/* Measures the contestants on every case at every budget of the options. Returns an exit status of cli.h. */
 int evaluation_run(const evaluation_options *options, const evaluation_contestants *contestants);
 
 #endif

@@ -15,7 +15,7 @@ typedef struct words {
     char *text;
     size_t length;
     char separator;
-    bool leading; /* the separator stands before the first too */
+    bool leading; /* a separator also precedes the first */
 } words;
 
 static void add(words *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -64,8 +64,8 @@ static bool has_column(const setting *s)
     return found;
 }
 
-/* Adds the settings of the runtime that are not the default: those with a column of their own, or the others. A name
- * of an enumeration stands alone. */
+/* Adds the settings of the runtime that are not the default: those with a column of their own, or the others. Values
+ * of an enumeration have no name of their setting. */
 static void add_settings(words *w, bool columns, const t3r_config *config, const t3r_config *usual)
 {
     for (uint32_t i = 0; i < settings_count; i++) {

@@ -10,7 +10,8 @@
 /* Writes "flying-off gamma-0.5": the settings without a column of their own. "default" if there are none. */
 void evaluation_settings_rest(const reconstruction_options *settings, char text[EVALUATION_SETTINGS_BYTES]);
 
-/* "_moment_refine-0_clusters-50_flying-off": all of them; the head where it is `named`. An exit status of cli.h. */
+/* Writes "_moment_refine-0_clusters-50_flying-off": all non-default settings; the head if it is `named`. Returns an
+ * exit status of cli.h. */
 int evaluation_settings_suffix(const reconstruction_options *settings, bool named,
                                char text[EVALUATION_SETTINGS_BYTES]);
 

@@ -32,9 +32,9 @@ bool evaluation_same(const evaluation_row *a, const evaluation_row *b);
 /* Returns an object of all columns, null where one does not apply; NULL if out of memory. */
 cJSON *evaluation_json(const evaluation_row *row);
 
-/* Averages rows that differ in context and target alone (by_scene) or in the scene as well, in order of first
- * appearance; decibels are averaged as decibels, cells that do not apply are left out. Returns how many means there
- * are, at most `count`. */
+/* Averages rows that differ only in context and target (by_scene), or also in the scene, in order of first appearance;
+ * decibels are averaged as decibels, and inapplicable cells are skipped. Returns the number of means, at most `count`.
+ */
 uint32_t evaluation_means(const evaluation_row *rows, uint32_t count, bool by_scene, evaluation_row *means);
 
 /* Writes a cell for terminal and page: the main columns of recordings or of planar images, with fewer digits. False

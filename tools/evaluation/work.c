@@ -48,7 +48,7 @@ static void clear_desk(desk *d)
     *d = (desk){0};
 }
 
-/* Has the case on the desk. */
+/* Opens the case unless it is the current one. */
 static int turn_to(worker *w, uint32_t index)
 {
     desk *d = &w->desk;
@@ -71,7 +71,7 @@ static int turn_to(worker *w, uint32_t index)
     return d->render != NULL ? CLI_OK : cli_error(CLI_BAD_INPUT, "out of memory");
 }
 
-/* Measures the row unless it is known; its render is on the desk. */
+/* Measures the row unless it is known; the render goes to the desk. */
 static int measure_row(worker *w, uint32_t index, made_row *made)
 {
     const evaluation_work *work = w->work;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The rows of an evaluation made: every case with every contestant at every budget, on one process or several. */
+/* Makes the rows of an evaluation: every case with every contestant at every budget, in one process or several. */
 #ifndef TRIM3R_TOOLS_EVALUATION_WORK_H
 #define TRIM3R_TOOLS_EVALUATION_WORK_H
 

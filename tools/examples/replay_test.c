@@ -2,8 +2,8 @@
 /* A product's own regression test: frames that were recorded once must always give the same bits, on its processor,
  * with its compiler, with its next release. Every stage of every build and of every view is hashed:
  *
- *     replay_test room.mcap >room.txt        what it is now, a line a stage, to be kept beside the recording
- *     replay_test room.mcap room.txt         exit status 1 with the first line that is another, should a bit change */
+ *     replay_test room.mcap >room.txt        current results, a line a stage, to keep with the recording
+ *     replay_test room.mcap room.txt         exit status 1 with the first line that differs, if a bit changes */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>

@@ -105,7 +105,7 @@ int main(int argc, char **argv)
         }
     }
     if (got != T3R_CAPTURE_END) {
-        printf("%s: stop\n", t3r_capture_error(source)); /* without sight: stand still */
+        printf("%s: stop\n", t3r_capture_error(source)); /* without images the robot stops */
     }
     t3r_capture_close(source);
     return got == T3R_CAPTURE_END ? 0 : 1;

@@ -56,8 +56,8 @@ double matrix_determinant(const double m[9])
     return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
 }
 
-/* The nearest rotation: Newton's iteration for the polar factor, R <- R (3 I - R^T R) / 2. Quadratic: an error of
- * 1e-3 is below 1e-12 after two steps. */
+/* Replaces R by the nearest rotation: Newton's iteration for the polar factor, R <- R (3 I - R^T R) / 2. Quadratic: an
+ * error of 1e-3 is below 1e-12 after two steps. */
 static void orthonormalise(double r[9])
 {
     for (int step = 0; step < 3; step++) {

@@ -1,28 +1,28 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rotations in doubles, as quaternions w x y z and as row-major matrices. A rotation turns what a camera, or any child,
- * sees into the axes of its parent. Camera axes are x right, y down, z forward. */
+/* Rotations in doubles, as quaternions w x y z and as row-major matrices. A rotation turns vectors from the axes of a
+ * camera, or any child, to its parent's. Camera axes are x right, y down, z forward. */
 #ifndef TRIM3R_TOOLS_QUATERNION_H
 #define TRIM3R_TOOLS_QUATERNION_H
 
 double quaternion_norm(const double q[4]);
-/* Gives it the norm 1, which it must not be too small for. */
+/* Normalises q, whose norm must not be near 0. */
 void quaternion_normalise(double q[4]);
-/* First b, then a; `out` is neither of them. */
+/* Computes the rotation b followed by a; `out` must be neither of them. */
 void quaternion_multiply(const double a[4], const double b[4], double out[4]);
-/* The way back. */
+/* Computes the inverse rotation. */
 void quaternion_conjugate(const double q[4], double out[4]);
 /* Rotates v by a unit quaternion; `out` may be v. */
 void quaternion_rotate(const double q[4], const double v[3], double out[3]);
 
-/* Unit quaternion to matrix. */
+/* Converts a unit quaternion to a matrix. */
 void quaternion_matrix(const double q[4], double matrix[9]);
-/* Rotation matrix to unit quaternion, w >= 0. */
+/* Converts a rotation matrix to a unit quaternion, w >= 0. */
 void quaternion_of_rotation(const double matrix[9], double q[4]);
-/* The same of a matrix from elsewhere: entries finite, orthonormal within 1e-3, determinant +1. NULL, or what is wrong
- * with it. */
+/* Converts a matrix from elsewhere: its entries must be finite, orthonormal within 1e-3, determinant +1. Returns NULL,
+ * or what is wrong. */
 const char *quaternion_of(const double matrix[9], double q[4]);
 
-/* `out` is not v. */
+/* Computes the matrix times v; `out` must not be v. */
 void matrix_apply(const double matrix[9], const double v[3], double out[3]);
 double matrix_determinant(const double matrix[9]);
 

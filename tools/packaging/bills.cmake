@@ -35,7 +35,7 @@ if(CMAKE_C_COMPILER_ID STREQUAL GNU) # the libraries of its C++
 endif()
 
 # t3r_bill(COMPONENT PACKAGE [HEADS heads...] [TARGETS targets...] [NEEDS names...]): share/sbom/PACKAGE.spdx.json.
-# NEEDS: beside what the targets load. Each package but that of the modules has the runtime in it.
+# NEEDS: besides the libraries that the targets load. Each package except the modules' contains the runtime.
 set(bills)
 function(t3r_bill component package)
   cmake_parse_arguments(B "" "" "HEADS;TARGETS;NEEDS" ${ARGN})

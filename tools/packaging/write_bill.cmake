@@ -36,7 +36,7 @@ if(NOT COMPONENT MATCHES "^(cameras|poses)$")
   t3r_relation(runtime DEPENDS_ON NONE)
 endif()
 
-# Heads: the version is the CRC-32 of the weights, which t3r_head_crc() tells; it lies at byte 12.
+# Heads: the version is the CRC-32 of the weights, as t3r_head_crc() returns it; it is at byte 12.
 foreach(head ${HEADS})
   get_filename_component(name ${head} NAME_WE)
   file(SHA256 ${head} digest)

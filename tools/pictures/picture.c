@@ -276,8 +276,7 @@ static int read_jpeg(FILE *file, const char *path, bool header_only, picture *ou
     return 0;
 }
 
-/* ---- both
- * ---------------------------------------------------------------------------------------------------------- */
+/* ---- both ------------------------------------------------------------------------------------------------------ */
 
 static int read_stream(FILE *file, const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
 {

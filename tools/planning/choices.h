@@ -27,7 +27,7 @@ typedef struct choice {
     uint32_t gaussians, refine;
     size_t min_bytes, full_bytes; /* least bytes of its arena, and bytes for full speed */
     double price;                 /* of a build, in an arena of the limits; 0 without prices */
-    double loss;                  /* expected against the best settings known, in dB of PSNR (docs/study/plan.md) */
+    double loss;                  /* expected against the best settings known, in dB of PSNR (docs/study/cost.md) */
 } choice;
 
 /* Adds the settings with this head that fit to a list, which has room for CHOICES_MOST more. Of equal loss the lowest

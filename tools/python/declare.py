@@ -2,8 +2,8 @@
 """declare.py HEADER ROOT PACKAGE BUILD COMPILER OPTION...: what the Python package knows of C, out of the headers.
 
 PACKAGE/_declarations.py has every type and constant that HEADER leads to below ROOT, and the functions of the headers
-that HEADER itself includes, in the form that cffi loads. PACKAGE/_settings.py has the settings. BUILD/exports.ld makes the linker take these functions and
-data from their archives, and BUILD/exports.map exports nothing else.
+that HEADER itself includes, in the form that cffi loads. PACKAGE/_settings.py has the settings. BUILD/exports.ld makes
+the linker take these functions and data from their archives, and BUILD/exports.map exports nothing else.
 """
 import pathlib
 import re
@@ -38,7 +38,7 @@ def passages_of(header, root, compiler):
 
 
 def declarations(text):
-    """Without what cffi does not take: bodies of functions, pragmas, macros that are no whole number."""
+    """Removes everything that cffi does not accept: bodies of functions, pragmas, macros that are no whole number."""
     kept = [line for line in text.splitlines() if not line.startswith("#") or NUMBER.match(line)]
     kept = [NUMBER.sub(r"#define \1 \2", line) for line in kept]
     return INLINE.sub("", "\n".join(kept) + "\n")

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the Python package calls: every function that these headers declare. declare.py reads them. */
+/* The functions that the Python package calls: all that these headers declare. declare.py reads them. */
 #ifndef TRIM3R_PYTHON_INTERFACE_H
 #define TRIM3R_PYTHON_INTERFACE_H
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""For pip: what it makes of the package holds a shared library, so it is for this kind of machine alone."""
+"""For pip: the package holds a shared library, so its wheel is for this kind of machine only."""
 from setuptools import Distribution, setup
 
 

@@ -9,7 +9,7 @@
 #include "recording/recording.h"
 
 typedef struct pose_correction {
-    double degrees;  /* angle between the given pose and the one built with, 0..180 */
+    double degrees;  /* angle between the given pose and the one that the build used, 0..180 */
     double distance; /* distance between their centres, in the recording's unit */
 } pose_correction;
 
@@ -17,8 +17,8 @@ typedef struct pose_correction {
 int aligned_poses_of(const t3r_recording *recording, const char *path, const reconstruction_account *account,
                      pose_correction corrections[T3R_MAX_VIEWS]);
 
-/* Adds "aligned": one object per view with the correction and the pose built with. Nothing if the scene has no
- * views. */
+/* Adds "aligned": one object per view with the correction and the pose that the build used. Nothing if the scene has
+ * no views. */
 void aligned_poses_add_json(cJSON *object, const reconstruction_account *account, const pose_correction *corrections);
 /* Prints a line on stdout for each view whose pose was corrected. */
 void aligned_poses_print(const reconstruction_account *account, const pose_correction *corrections);

@@ -22,7 +22,7 @@ int colmap_start_write(const colmap_start *start, whole_folder *folder, const ch
                    ? cli_error(CLI_BAD_INPUT, "out of memory")
                    : developed_frame(start->recording, start->path, account->context[v], account->width,
                                      account->height, views[v].rgb, NULL, &views[v].camera);
-        if (account->has_cameras) { /* the points are where the aligned poses put them */
+        if (account->has_cameras) { /* the points were computed with the aligned poses */
             views[v].camera = account->camera[v];
         }
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Writes the start of an outside optimiser: a build's context views and points as a COLMAP model. */
+/* Writes the starting point of another optimiser: a build's context views and points as a COLMAP model. */
 #ifndef TRIM3R_TOOLS_COLMAP_START_H
 #define TRIM3R_TOOLS_COLMAP_START_H
 
@@ -11,9 +11,9 @@
 
 typedef struct colmap_start {
     const t3r_recording *recording;
-    const char *path; /* of the recording, for messages */
+    const char *path; /* the recording's, for messages */
     const t3r_scene *scene;
-    const reconstruction_account *account; /* the views, with the poses built with */
+    const reconstruction_account *account; /* the views, with the poses that the build used */
     bool local, sourced;                   /* as in colmap_model */
 } colmap_start;
 

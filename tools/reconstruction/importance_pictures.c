@@ -14,8 +14,8 @@
 
 #define PATH_BYTES 4096
 
-/* Returns the part below the 8 bits of a level, so that pixels of equal level are retained evenly; each view's map is
- * shifted as in the runtime. */
+/* Returns the grey level with blue noise in 8 lower bits, so that pixels of equal level are retained evenly; each
+ * view's noise is shifted as in the runtime. */
 static uint16_t level(uint8_t grey, uint32_t view, uint32_t x, uint32_t y)
 {
     uint32_t row = (y + 23 * view) % T3R_BLUE_NOISE_SIDE, column = (x + 46 * view) % T3R_BLUE_NOISE_SIDE;

@@ -14,7 +14,7 @@ typedef struct importance_pictures {
 /* Reads the pictures. `text` names a picture per context view, separated by commas, in the order of the views, or a
  * folder with <frame>.png for each of the frames `context`. They are grey, width x height: 16 bits are used unchanged;
  * levels of 8 bits are multiplied by 256, and ties broken by blue noise. Returns an exit status of cli.h after a
- * message; importance_pictures_free() is due either way. */
+ * message; call importance_pictures_free() in either case. */
 int importance_pictures_read(importance_pictures *pictures, const char *text, const uint32_t *context, uint32_t count,
                              uint32_t width, uint32_t height);
 void importance_pictures_free(importance_pictures *pictures);

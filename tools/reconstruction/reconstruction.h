@@ -24,7 +24,7 @@ typedef enum arena_choice { ARENA_FULL, ARENA_MIN, ARENA_BYTES } arena_choice;
 
 #define RECONSTRUCTION_MAX_LOSS 0.5 /* dB, for --auto */
 
-/* Settings as the command line gives them. reconstruction_defaults() fills every field. */
+/* Settings from the command line. reconstruction_defaults() fills every field. */
 typedef struct reconstruction_options {
     /* Configuration of the runtime: settings.h has the settings of a user. Views, head and budget are set by the build;
      * a width of 0 is the first context frame's size, a render_width of 0 the working size. */
@@ -37,7 +37,7 @@ typedef struct reconstruction_options {
     double keep_percent;             /* budget as percent of the valid points, (0, 100]; 0 = not given */
     bool automatic;                  /* fewer than the budget if they lose less than max_loss */
     double max_loss;                 /* dB, relative to all points; 0 unless automatic */
-    const struct method *method;     /* for callers that build by several (method.h); NULL = not asked for */
+    const struct method *method;     /* for callers that build by several methods (method.h); NULL = none given */
     uint32_t finetune_iterations;    /* of methods that fine-tune; 0 = their own number */
     const char
         *importance; /* for the allocation `given`: a text for importance_pictures_read(); NULL = the planes below */
@@ -58,9 +58,8 @@ typedef struct reconstruction_options {
 
 void reconstruction_defaults(reconstruction_options *options);
 
-/* argp children; each parent's parser hands reconstruction_options * on in state->child_inputs[].
- * `settings`: --auto --allocate --head --wavelet ... --arena --threads; `budget`: --context --gaussians
- * --keep. */
+/* argp children; each parent's parser passes a reconstruction_options * in state->child_inputs[]. `settings`: --auto
+ * --allocate --head --wavelet ... --arena --threads; `budget`: --context --gaussians --keep. */
 extern const struct argp reconstruction_settings_argp;
 extern const struct argp reconstruction_budget_argp;
 extern const struct argp reconstruction_argp; /* both */
@@ -90,14 +89,14 @@ typedef struct reconstruction {
     bool stage_hashed[T3R_STAGE_COUNT];
 } reconstruction;
 
-/* What is reported about a build, however it was made. */
+/* The report on a build, by any method. */
 typedef struct reconstruction_account {
     char head[16], bits[8], crc[9]; /* as in chosen_head */
     uint32_t width, height;         /* working size */
     uint32_t context[T3R_MAX_VIEWS];
     uint32_t context_count;
     bool has_cameras;                 /* false for a scene made elsewhere */
-    t3r_camera camera[T3R_MAX_VIEWS]; /* of the context views, as built with: `align` may have moved them */
+    t3r_camera camera[T3R_MAX_VIEWS]; /* of the context views, as the build used them: `align` may have moved them */
     uint32_t valid_points, requested;
     size_t arena_bytes;
     double seconds; /* from recorded frames to the scene */
@@ -110,7 +109,7 @@ void reconstruction_warn_of_budget(const reconstruction_options *options, uint32
 /* Returns the budget for a share of the points: rounded half up, at least 1. */
 uint32_t reconstruction_budget(uint32_t valid_points, double keep_percent);
 
-/* Builds the scene. Only after CLI_OK something needs closing. */
+/* Builds the scene. It must be closed only after CLI_OK. */
 int reconstruction_build(reconstruction *r, const t3r_recording *recording, const char *path,
                          const reconstruction_options *options);
 
@@ -134,14 +133,14 @@ t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *
 t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *options);
 
 /* Fills an arena that only renders with a scene from a file; targets up to width x height. Only the options for arena,
- * threads and hash are read. `r` owns the scene, whatever is returned: *scene is left empty. */
+ * threads and hash are read. `r` takes ownership of the scene in every case: *scene is left empty. */
 int reconstruction_load(reconstruction *r, scene_file *scene, uint32_t width, uint32_t height,
                         const reconstruction_options *options);
 /* Gives a loaded scene the colours and opacities that a camera sees; later t3r_render() calls draw them. Scenes that
  * look the same from everywhere are unchanged. */
 int reconstruction_look_from(reconstruction *r, const t3r_camera *camera, uint32_t width, uint32_t height);
 
-/* What the frames of a scene hold before it is built: valid points, and by stereo the scene's depth in world units, a
+/* Contents of a scene's frames before it is built: valid points, and by stereo the scene's depth in world units, a
  * power of two times 1.5 (0 by sensor). */
 typedef struct reconstruction_points {
     uint32_t valid;

@@ -21,8 +21,8 @@ typedef struct scene_frames {
 
 /* Replaces pictures, depth and cameras of the `count` frames, whose indices are `context`, by the recording's pictures
  * at width x height, undistorted, and the depth of the scene in the file `scene` (splat_depth.h). The scene must be in
- * the recording's world. A view that sees none of it is refused. Returns an exit status of cli.h after a message;
- * scene_frames_free() is due either way, once the frames are no longer used. */
+ * the recording's world. A view that sees none of it is refused. Returns an exit status of cli.h after a message; call
+ * scene_frames_free() in either case, once the frames are no longer used. */
 int scene_frames_make(scene_frames *made, const char *scene, int flags, const t3r_recording *recording,
                       const char *path, const uint32_t *context, uint32_t count, uint32_t width, uint32_t height,
                       t3r_capture_frame *frames);

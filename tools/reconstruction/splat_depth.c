@@ -10,7 +10,7 @@
 #define MOST_STEPS 65535.0
 #define FARTHEST 0x1p22 /* world units; 65535 steps of the largest unit are twice that */
 
-/* What a pixel has seen so far. */
+/* The means seen so far at a pixel. */
 typedef struct seen_mean {
     float nearest; /* depth of the foremost mean, scene units; 0 = none */
     float depth;   /* depth of the chosen mean */

@@ -10,8 +10,9 @@
 #include "trim3r.h"
 
 #define SPLAT_DEPTH_OPACITY_Q15 1638u /* 0.05; fainter Gaussians are no surface */
-#define SPLAT_DEPTH_SURFACE 0.0625    /* of the depth: means so little behind the foremost are of its surface */
-#define SPLAT_DEPTH_MEDIANS 32        /* depths beyond so many median depths are clamped */
+#define SPLAT_DEPTH_SURFACE                                                                                            \
+    0.0625 /* relative to the depth: means up to this distance after the foremost belong to its surface */
+#define SPLAT_DEPTH_MEDIANS 32 /* depths beyond this many median depths are clamped */
 
 /* The depth plane of a frame. */
 typedef struct splat_depth {

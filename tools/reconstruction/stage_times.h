@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where the time of a build went, by stage. */
+/* The times of a build by stage. */
 #ifndef TRIM3R_TOOLS_STAGE_TIMES_H
 #define TRIM3R_TOOLS_STAGE_TIMES_H
 
@@ -21,13 +21,13 @@ void stage_times_begin(stage_times *times, uint32_t threads);
 /* Ends a stage, as the hook stage_hash reports: it took the time since the previous one. */
 void stage_times_end(stage_times *times, t3r_stage stage);
 double stage_times_sum(const stage_times *times);
-/* Replaces each stage's time by that of `other` if that is less, or if it has none. */
+/* Replaces each stage's time by `other`'s if that is less, or if it has none. */
 void stage_times_keep_least(stage_times *times, const stage_times *other);
 
 /* A runtime whose stages are only timed. */
 typedef struct stage_clock {
     stage_times times;
-    t3r_threads *threads; /* the caller's; NULL: none */
+    t3r_threads *threads; /* the caller's; NULL = none */
 } stage_clock;
 
 /* Returns the hooks that measure the times; the clock must not move. */

@@ -12,8 +12,6 @@
 #define HALF_STEP_Q14 330          /* half the tangent of half the rotation between frames: 4.6 degrees, 0.21 m */
 #define SUBSAMPLES 2               /* per side */
 
-/* ---- camera ----------------------------------------------------------------------------------------------------- */
-
 typedef struct view {
     int32_t rotation_q30[4]; /* w x y z */
     int64_t matrix_q30[9];
@@ -98,8 +96,6 @@ void room_recorded_camera(uint32_t index, uint32_t width, uint32_t height, t3r_r
     }
 }
 
-/* ---- light ------------------------------------------------------------------------------------------------------ */
-
 static const int64_t light[3] = {ROOM_MM(350), ROOM_MM(-1480), ROOM_MM(1500)};
 
 /* Returns the light from a ceiling lamp of 0.3 x 0.3 m (each subsample uses its own quarter of it) and ambient light,
@@ -131,8 +127,6 @@ static int64_t shade(const room_scene *scene, const room_hit *hit, uint32_t quar
     /* 220 cos / (0.6 + 0.14 d^2) */
     return around + 220 * cosine_q14 * 4 / (39322 + distance_squared_q16 * 9 / 64);
 }
-
-/* ---- pictures --------------------------------------------------------------------------------------------------- */
 
 typedef struct canvas {
     room_scene scene;

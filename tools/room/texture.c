@@ -3,8 +3,6 @@
 
 #include "core/fixed.h"
 
-/* ---- noise ------------------------------------------------------------------------------------------------------ */
-
 static uint32_t hash3(uint32_t seed, int64_t x, int64_t y)
 {
     return t3r_mix32(t3r_mix32(seed + (uint32_t)x * 0x9e3779b1u) + (uint32_t)y * 0x85ebca77u);
@@ -48,8 +46,6 @@ static int64_t octaves(uint32_t seed, int64_t u, int64_t v, int64_t cell, uint32
     return sum >> 16;
 }
 
-/* ---- colours ---------------------------------------------------------------------------------------------------- */
-
 static room_colour rgb(int32_t r, int32_t g, int32_t b)
 {
     return (room_colour){{r * 16, g * 16, b * 16}};
@@ -89,8 +85,6 @@ static int64_t from_multiple(int64_t x, int64_t pitch)
     int64_t rest = x % pitch;
     return rest > pitch / 2 ? rest - pitch : rest;
 }
-
-/* ---- surfaces --------------------------------------------------------------------------------------------------- */
 
 static room_colour wood(room_colour base, uint32_t seed, int64_t across, int64_t length, int64_t footprint)
 {

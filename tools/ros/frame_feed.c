@@ -14,7 +14,7 @@
 #include "ros/throttle.h"
 
 #define POSES_MOST 256u
-#define JUMP_NS INT64_C(1000000000) /* stamps that go back so far mean that the clock was set */
+#define JUMP_NS INT64_C(1000000000) /* stamps that go back this far mean that the clock was reset */
 #define WHAT_BYTES 160u
 
 typedef struct image_slot {
@@ -57,8 +57,7 @@ static int verdict(const char *wrong, char *reason)
     return wrong == NULL ? 0 : t3r_reason(reason, FRAME_FEED_REASON_BYTES, "%s", wrong);
 }
 
-/* ---- opening and closing
- * -------------------------------------------------------------------------------------------- */
+/* ---- opening and closing --------------------------------------------------------------------------------------- */
 
 frame_feed_settings frame_feed_defaults(void)
 {
@@ -137,8 +136,7 @@ frame_feed_counts frame_feed_counts_of(const frame_feed *feed)
     return feed->counts;
 }
 
-/* ---- warnings
- * -------------------------------------------------------------------------------------------------------- */
+/* ---- warnings -------------------------------------------------------------------------------------------------- */
 
 void frame_feed_warn(frame_feed *feed, frame_feed_topic topic, const char *reason, int64_t now_ns)
 {
@@ -148,7 +146,7 @@ void frame_feed_warn(frame_feed *feed, frame_feed_topic topic, const char *reaso
     }
     char line[FRAME_FEED_REASON_BYTES];
     if (more > 0) {
-        t3r_reason(line, sizeof line, "%s (%" PRIu64 " more like the one before)", reason, more);
+        t3r_reason(line, sizeof line, "%s (%" PRIu64 " more like the previous one)", reason, more);
     } else {
         t3r_reason(line, sizeof line, "%s", reason);
     }
@@ -167,18 +165,17 @@ static bool is_in_order(frame_feed *feed, frame_feed_topic topic, int64_t stamp_
     const int64_t last_ns = feed->last_ns[topic];
     if (last_ns != INT64_MIN && stamp_ns <= last_ns) {
         if (last_ns - stamp_ns < JUMP_NS) {
-            frame_feed_warn(feed, topic, "the stamp is not behind that of the message before", now_ns);
+            frame_feed_warn(feed, topic, "the stamp is not after the previous message's", now_ns);
             return false;
         }
-        frame_feed_warn(feed, topic, "time went back: what waited is dropped, the map stays", now_ns);
+        frame_feed_warn(feed, topic, "time went back: waiting messages are dropped, the map stays", now_ns);
         empty_queues(feed);
     }
     feed->last_ns[topic] = stamp_ns;
     return true;
 }
 
-/* ---- poses
- * ----------------------------------------------------------------------------------------------------------- */
+/* ---- poses ----------------------------------------------------------------------------------------------------- */
 
 static int64_t apart(int64_t a, int64_t b)
 {
@@ -255,8 +252,7 @@ static frame_feed_found locate(frame_feed *feed, const image_slot *colour, t3r_c
     return verdict(t3r_message_pose(pose, camera), reason) == 0 ? FRAME_FEED_FOUND : FRAME_FEED_NEVER;
 }
 
-/* ---- a pair to a frame
- * --------------------------------------------------------------------------------------------- */
+/* ---- a pair to a frame ----------------------------------------------------------------------------------------- */
 
 static int take_depth(frame_feed *feed, const image_slot *slot, t3r_frame *frame, char *reason)
 {
@@ -356,8 +352,7 @@ static bool finish_pair(frame_feed *feed, int64_t now_ns)
     return true;
 }
 
-/* ---- the queues
- * ------------------------------------------------------------------------------------------------------ */
+/* ---- the queues ------------------------------------------------------------------------------------------------ */
 
 void frame_feed_tick(frame_feed *feed, int64_t now_ns)
 {

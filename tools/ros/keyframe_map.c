@@ -96,7 +96,7 @@ size_t keyframe_map_arena_bytes(const keyframe_map *map)
     return map->r.arena_bytes;
 }
 
-/* Whether a keyframe is due: every so many frames, and when the overlap with the last keyframe is small. */
+/* Whether a keyframe is due: at the interval, and when the overlap with the last keyframe is small. */
 static t3r_status is_due(const keyframe_map *map, const t3r_frame *frame, const t3r_camera *camera, bool *due)
 {
     *due = !map->begun || map->since >= map->every;

@@ -56,7 +56,7 @@ template <class Visit> void visit_parameters(parameters &p, Visit visit)
     visit("scene", p.scene);
 }
 
-// What the wrapper does for the node.
+// The wrapper's services for the node.
 class outlet
 {
   public:

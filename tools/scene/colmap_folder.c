@@ -35,8 +35,6 @@ typedef struct writer {
     size_t error_bytes;
 } writer;
 
-/* ---- geometry ---------------------------------------------------------------------------------------------------- */
-
 /* Returns the point relative to the world's origin, or to the scene frame's. */
 static void point_of(const writer *w, uint32_t index, double point[3])
 {
@@ -89,8 +87,6 @@ static void observe(writer *w)
         w->observed[i].index = seen ? counts[v]++ : NOWHERE;
     }
 }
-
-/* ---- files ------------------------------------------------------------------------------------------------------- */
 
 static void write_cameras(FILE *file, const writer *w)
 {

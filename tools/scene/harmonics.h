@@ -19,7 +19,7 @@ static inline uint32_t harmonics_rest(uint32_t degree)
 /* Evaluates the harmonics above degree 0 at a unit vector, from the camera to the Gaussian. */
 void harmonics_of(const double direction[3], double values[HARMONICS_REST_MOST]);
 
-/* How a rotation of the scene changes coefficients: a matrix for each degree, row-major. */
+/* The effect of a scene's rotation on coefficients: a matrix for each degree, row-major. */
 typedef struct harmonics_turn {
     double degree_1[9], degree_2[25], degree_3[49];
 } harmonics_turn;

@@ -13,7 +13,7 @@
  * are those of nianticlabs/spz, whose files can declare any of them; half of them mirror a scene. From SCENE_AXES_LFD
  * on that library turns the axes with the number 8 less by a quarter about x, which is not what its names say. */
 typedef enum scene_axes {
-    SCENE_AXES_AS_THEY_ARE, /* the scene's axes, whatever they are */
+    SCENE_AXES_AS_THEY_ARE, /* the scene's axes, unchanged */
     SCENE_AXES_LDB,
     SCENE_AXES_RUB = 4, /* x right, y up, z backward */
     SCENE_AXES_RDF = 6, /* x right, y down, z forward: as scenes */

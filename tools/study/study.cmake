@@ -19,6 +19,6 @@ add_custom_command(
   VERBATIM)
 target_sources(tools_study_chart PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/chart_page.c)
 
-# gcc unrolls loops over eight columns before it sees that they are vectors: without this, half as fast
+# gcc unrolls loops over eight columns before it recognises them as vectors; without this they are half as fast.
 set_source_files_properties(study/rivals/splat_differentiate.c study/rivals/splat_draw.c PROPERTIES
   COMPILE_OPTIONS $<$<C_COMPILER_ID:GNU>:--param=max-completely-peel-times=4>)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Does with an operating system's calls what a debugger does for a board, so that the firmware runs as a program. */
+/* Implements a debugger's services by an operating system's calls, so that the firmware runs as a program. */
 #include "semihost_call.h"
 
 #include <fcntl.h>
@@ -55,7 +55,7 @@ static int32_t length_of(int file)
     return fstat(file, &told) == 0 ? (int32_t)told.st_size : -1;
 }
 
-/* Copies the words that the program was started with, separated by spaces. */
+/* Copies the program's arguments, separated by spaces. */
 static int32_t command_line(char *text, size_t room)
 {
     const int file = open("/proc/self/cmdline", O_RDONLY);

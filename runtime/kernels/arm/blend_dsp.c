@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Blending for a Cortex-M with products of 16 bits: pixel by pixel, and none where the splat cannot be seen. */
+/* Blending for a Cortex-M with 16-bit products: pixel by pixel, skipping those where the splat is invisible. */
 #include "variants.h"
 
 #ifdef T3R_DSP
@@ -12,10 +12,11 @@
 #include "core/fixed.h"
 #include "products.h"
 
-/* Of less than this no alpha comes to 1/255, whatever the opacity. */
+/* With less of T3R_ALPHA_RANGE left no alpha reaches 1/255, at any opacity. */
 #define LEAST_LEFT 3791
 
-/* alphas_of() in blend.c, of what is left of T3R_ALPHA_RANGE. Factors below 2^15 take one instruction with the sum. */
+/* Computes alphas_of() of blend.c from the rest of T3R_ALPHA_RANGE. Factors below 2^15 take one instruction including
+ * the sum. */
 static inline uint32_t alpha_of(int32_t s, uint32_t opacity_q32)
 {
     const int32_t p3 = __smlawb(s, T3R_ALPHA_C4, T3R_ALPHA_C3), p2 = __smlawb(s, p3, T3R_ALPHA_C2);
@@ -27,18 +28,18 @@ static inline uint32_t alpha_of(int32_t s, uint32_t opacity_q32)
     return T3R_MIN((uint32_t)((uint64_t)p * opacity_q32 >> 32), (uint32_t)T3R_ALPHA_MOST_Q16);
 }
 
-/* A place of a column: transmittance, and behind it the planes of the colours. */
+/* Offset between a pixel's transmittance and its colour planes. */
 enum { PLANE = T3R_TILE_SIDE * T3R_TILE_SIDE };
 
 _Static_assert(offsetof(t3r_tile, colour_q7) == PLANE * sizeof(uint16_t), "planes lie one behind the other");
 
-/* Adds (w colour + 2^15) / 2^16, of w 2^15 and twice the colour. */
+/* Adds (w colour + 2^15) / 2^16, given w 2^15 and twice the colour. */
 static inline void add_colour(uint16_t *to, int32_t w_q31, int32_t twice_colour)
 {
     *to = (uint16_t)t3r_add_high_product(*to, w_q31, twice_colour);
 }
 
-/* rows: where what is blended is kept if it `keeps` it, 0 so far. Returns all bits of the weights kept. */
+/* rows: where blended rows are kept if it `keeps` them, 0 before. Returns the bitwise or of the kept weights. */
 static inline __attribute__((always_inline)) uint32_t blend_group(t3r_tile *restrict tile, const t3r_tile_splat *splat,
                                                                   uint32_t group, bool keeps,
                                                                   t3r_blended_row *restrict rows)

@@ -9,8 +9,8 @@
 #include "core/alpha.h"
 #include "core/memory.h"
 
-/* What is left of T3R_ALPHA_RANGE when q / 8 is taken away, 16 times, with the half that rounds, in the even and the
- * odd columns; from row to row, and what steps lose. Modulo 2^32, as plain C's sums are without overflow. */
+/* T3R_ALPHA_RANGE - q / 8, times 16, plus half for rounding, in the even and the odd columns; its change from row to
+ * row, and the change of that change. Modulo 2^32, like plain C's sums without overflow. */
 typedef struct quadratic {
     uint32x4_t left[2], step[2];
     uint32_t bend;
@@ -50,7 +50,7 @@ static inline void add_colour(uint16_t *to, uint16x8_t weight, uint16_t colour_q
     vst1q_u16(to, vaddq_u16(vld1q_u16(to), vrmulhq_u16(weight, vdupq_n_u16(colour_q7))));
 }
 
-/* rows: where what is blended is kept, or NULL; known where this is inlined. Returns all bits of the weights kept. */
+/* rows: where blended rows are kept, or NULL; constant once inlined. Returns the bitwise or of the kept weights. */
 static inline __attribute__((always_inline)) uint16x8_t
 blend_group(t3r_tile *restrict tile, const t3r_tile_splat *splat, uint32_t group, t3r_blended_row *restrict rows)
 {

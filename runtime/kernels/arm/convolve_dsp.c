@@ -9,9 +9,9 @@
 #include "core/fixed.h"
 #include "core/little_endian.h"
 
-typedef const int16_t *columns[T3R_BLOCK_PIXELS]; /* behind the last pixel, the last again */
+typedef const int16_t *columns[T3R_BLOCK_PIXELS]; /* after the last pixel, the last one repeated */
 
-/* Four taps at a time; x is aligned to 4. From intrinsics gcc 12 takes half as many instructions more. */
+/* Adds four taps at a time; x is aligned to 4. With intrinsics gcc 12 takes half as many instructions again. */
 static inline void dot(const columns x, const uint8_t *weights, uint32_t taps, int32_t sum[T3R_BLOCK_PIXELS])
 {
     const int16_t *x0 = x[0], *x1 = x[1], *x2 = x[2], *x3 = x[3];
@@ -56,8 +56,7 @@ static inline void dot(const columns x, const uint8_t *weights, uint32_t taps, i
     sum[0] = s0, sum[1] = s1, sum[2] = s2, sum[3] = s3;
 }
 
-/* How the sums of an output become activations, by 32-bit shifts alone, exactly: kernels/lanes/packed_scaling.h has the
- * reason. */
+/* Scaling of an output's sums by 32-bit shifts only, exactly: kernels/lanes/packed_scaling.h has the reason. */
 typedef struct scaling {
     int32_t multiplier, limit, half, zero;
     uint32_t left, right;

@@ -10,12 +10,12 @@
 #include "core/fixed.h"
 #include "core/little_endian.h"
 
-/* A column for each pixel; behind the last pixel, the last again. */
+/* A column for each pixel; after the last pixel, the last one repeated. */
 typedef struct columns {
     const int16_t *x[T3R_BLOCK_PIXELS];
 } columns;
 
-/* An output's sums of products, eight taps at a time. From intrinsics gcc 12 keeps sums in memory. */
+/* Adds an output's products, eight taps at a time. With intrinsics gcc 12 keeps sums in memory. */
 static inline int32x4_t dot(const columns *c, const uint8_t *weights, uint32_t taps)
 {
     const int16_t *x0 = c->x[0], *x1 = c->x[1], *x2 = c->x[2], *x3 = c->x[3];
@@ -40,7 +40,7 @@ static inline int32x4_t dot(const columns *c, const uint8_t *weights, uint32_t t
     return vsetq_lane_s32(s3, vsetq_lane_s32(s2, low, 2), 3);
 }
 
-/* Sums to activations by 32-bit shifts alone, exactly: kernels/lanes/packed_scaling.h has the reason. */
+/* Scales sums to activations by 32-bit shifts only, exactly: kernels/lanes/packed_scaling.h has the reason. */
 static inline int32x4_t scaled(int32x4_t sum, const t3r_convolution *layer, uint32_t output)
 {
     const int32_t shift = (int8_t)layer->shift[output];

@@ -5,8 +5,8 @@
 
 #ifdef T3R_NEON_LEARNED
 
-/* Who has to know that there are dot products. Where clang tells its assembler by the function's target, gcc would then
- * not inline what is built for more than that. */
+/* The compiler or its assembler needs the dot-product target: clang's assembler takes the function's target, with
+ * which gcc would not inline functions compiled for less. */
 #if defined(__ARM_FEATURE_DOTPROD)
 #define FOR_DOT_PRODUCTS
 #elif defined(__clang__)
@@ -24,7 +24,7 @@
 typedef uint8_t activation;
 typedef int32x4_t ints;
 
-/* Strips of bytes have activations + 128. */
+/* Strips of bytes hold activations + 128. */
 T3R_LANES_INLINE lanes taps_at(const activation *x)
 {
     uint32_t four;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The instructions that lanes/ takes, in NEON, under the names that x86 has for them. */
+/* The instructions that lanes/ uses, in NEON, under their x86 names. */
 #ifndef T3R_KERNELS_ARM_INSTRUCTIONS_NEON_H
 #define T3R_KERNELS_ARM_INSTRUCTIONS_NEON_H
 
@@ -21,7 +21,7 @@ typedef int32_t quad_there __attribute__((vector_size(16), aligned(1), may_alias
 #define FROM_S16 vreinterpretq_s32_s16
 #define FROM_U16 vreinterpretq_s32_u16
 
-/* An operation of NEON on vectors of another type. */
+/* Defines an operation of NEON on vectors of another type. */
 #define NEON(name, operation, to, from)                                                                                \
     T3R_LANES_INLINE quad neon_##name(quad a, quad b)                                                                  \
     {                                                                                                                  \
@@ -56,7 +56,7 @@ NEON(unpackhi_epi64, vzip2q_s64, vreinterpretq_s64_s32, vreinterpretq_s32_s64);
 NEON(shuffle_epi8, vqtbl1q_u8, vreinterpretq_u8_s32, vreinterpretq_s32_u8);
 #undef NEON
 
-/* -1 times -1 is -1, as modulo 2^16: the instruction holds it to the largest number. */
+/* -1 times -1 wraps to -1; the instruction saturates instead. */
 T3R_LANES_INLINE quad neon_mulhrs_epi16(quad a, quad b)
 {
     const int16x8_t least = vdupq_n_s16(INT16_MIN);
@@ -84,7 +84,7 @@ T3R_LANES_INLINE quad neon_blendv_epi8(quad a, quad b, quad mask)
     return vbslq_s32(U32(mask), b, a);
 }
 
-/* The even numbers of 16 bits of one, and the odd ones of the other: 0x55 or 0xaa says of which are b's. */
+/* Joins the even 16-bit numbers of one and the odd ones of the other: of_b is 0x55 or 0xaa and selects those of b. */
 T3R_LANES_INLINE quad neon_blend_epi16(quad a, quad b, int of_b)
 {
     return vbslq_s32(vdupq_n_u32(of_b == 0xaa ? 0xffff0000u : 0xffffu), b, a);
@@ -104,7 +104,7 @@ T3R_LANES_INLINE quad neon_set1_epi16(int16_t x)
 #define neon_setr_epi16(...) FROM_S16(((int16x8_t){__VA_ARGS__}))
 #define neon_setr_epi8(...) vreinterpretq_s32_s8(((int8x16_t){__VA_ARGS__}))
 
-/* Shifts by a constant below the bits. */
+/* Shift by a constant less than the bits. */
 T3R_LANES_INLINE quad neon_slli_epi32(quad x, int by)
 {
     return FROM_U32(U32(x) << by);
@@ -137,7 +137,7 @@ T3R_LANES_INLINE quad neon_srli_epi64(quad x, int by)
 
 #define neon_srli_si128(x, bytes) vreinterpretq_s32_u8(vextq_u8(vreinterpretq_u8_s32(x), vdupq_n_u8(0), bytes))
 
-/* Shifts by the first number of a vector: below the bits. */
+/* Shift by the first number of a vector, less than the bits. */
 T3R_LANES_INLINE quad neon_sll_epi16(quad x, quad by)
 {
     return FROM_S16(vshlq_s16(S16(x), vdupq_laneq_s16(S16(by), 0)));
@@ -163,7 +163,7 @@ T3R_LANES_INLINE quad neon_abs_epi32(quad x)
     return vabsq_s32(x);
 }
 
-/* Of the low halves of 64 bits. */
+/* Multiply the low halves of 64 bits. */
 T3R_LANES_INLINE quad neon_mul_epi32(quad a, quad b)
 {
     return vreinterpretq_s32_s64(vmull_s32(vmovn_s64(vreinterpretq_s64_s32(a)), vmovn_s64(vreinterpretq_s64_s32(b))));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Four numbers of 32 bits, and of 64 where a product has them: in vectors of NEON. */
+/* Four lanes of 32 bits, or 64 for products, in vectors of NEON. */
 #ifndef T3R_KERNELS_ARM_LANES_NEON_H
 #define T3R_KERNELS_ARM_LANES_NEON_H
 
@@ -18,18 +18,19 @@ typedef quad_there lanes_there;
 
 #include "kernels/lanes/vectors/operations.h"
 
-/* 64 bits of each lane. "even" are lanes 0 and 1 and "odd" 2 and 3: products come so, and kernels don't ask. */
+/* 64 bits of each lane. "even" are lanes 0 and 1, "odd" 2 and 3: products come in this order, on which kernels don't
+ * depend. */
 typedef struct wide {
     lanes even, odd;
 } wide;
 
-/* A lane in the low half of its 64 bits; the high one is of no use. */
+/* Puts each lane in the low half of its 64 bits; the high half is unused. */
 T3R_LANES_INLINE wide spread(lanes x)
 {
     return (wide){vzip1q_s32(x, x), vzip2q_s32(x, x)};
 }
 
-/* A lane in the high half of its 64 bits, above 0. */
+/* Puts each lane in the high half of its 64 bits, above 0. */
 T3R_LANES_INLINE wide lifted(lanes x)
 {
     return (wide){vzip1q_s32(all(0), x), vzip2q_s32(all(0), x)};
@@ -67,7 +68,7 @@ T3R_LANES_INLINE wide all_wide(int64_t x)
     return (wide){ALL_64(x), ALL_64(x)};
 }
 
-/* Unsigned shifts: of the result only what bits had is right. */
+/* Shift as unsigned: only the bits that were there are valid. */
 T3R_LANES_INLINE wide right(wide x, uint8_t shift)
 {
     return (wide){OF_LANES(srli_epi64)(x.even, shift), OF_LANES(srli_epi64)(x.odd, shift)};
@@ -95,7 +96,7 @@ T3R_LANES_INLINE void store_quad(void *to, quad x)
     *(quad_there *)to = x;
 }
 
-/* The first 64 bits, or 32 of a store; the others are 0. */
+/* Load the first 64 bits, or store 32; others are 0. */
 T3R_LANES_INLINE quad load_half_quad(const void *from)
 {
     return vreinterpretq_s32_u8(vcombine_u8(vld1_u8(from), vdup_n_u8(0)));
@@ -112,7 +113,7 @@ T3R_LANES_INLINE void store_quarter_quad(void *to, quad x)
     __builtin_memcpy(to, &first, sizeof first);
 }
 
-/* The least of four numbers of 32 bits. */
+/* Returns the least of four numbers of 32 bits. */
 T3R_LANES_INLINE int32_t least_of_quad(quad x)
 {
     return vminvq_s32(x);
@@ -129,20 +130,20 @@ T3R_LANES_INLINE quad part(lanes x, int i)
     return x;
 }
 
-/* The same 128 bits throughout. */
+/* Repeats 128 bits. */
 T3R_LANES_INLINE lanes repeated(quad x)
 {
     return x;
 }
 
-/* a bit of each lane's sign */
+/* Returns one bit per lane, its sign. */
 T3R_LANES_INLINE uint32_t signs_of(lanes x)
 {
     return vaddvq_u32(vshlq_u32(vshrq_n_u32(U32(x), 31), (int32x4_t){0, 1, 2, 3}));
 }
 
-/* Shifts of each lane by its own count: counts beyond the bits give 0, or the sign. An instruction takes the last 8
- * bits of the count, signed. */
+/* Shift each lane by its own count: counts beyond the bits give 0, or the sign. The instruction uses the last 8 bits
+ * of the count, signed. */
 T3R_LANES_INLINE lanes up_to_63(lanes by)
 {
     return OF_LANES(min_epu32)(by, all(63));
@@ -163,7 +164,7 @@ T3R_LANES_INLINE lanes signed_right_each(lanes x, lanes by)
     return vshlq_s32(x, vnegq_s32(up_to_63(by)));
 }
 
-/* Likewise two of 64 bits, by counts below 2^32: 64 gives 0. */
+/* Limits two 64-bit counts below 2^32 in the same way: 64 gives 0. */
 T3R_LANES_INLINE int64x2_t up_to_64(lanes by)
 {
     return vreinterpretq_s64_s32(OF_LANES(min_epu32)(by, all(64)));
@@ -184,7 +185,7 @@ T3R_LANES_INLINE wide left_by(wide x, wide by)
     return (wide){shifted_64(x.even, up_to_64(by.even)), shifted_64(x.odd, up_to_64(by.odd))};
 }
 
-/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: how far. */
+/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: the shift. */
 T3R_LANES_INLINE lanes normal_of(lanes x, int first_step, lanes *by)
 {
     (void)first_step;
@@ -192,13 +193,13 @@ T3R_LANES_INLINE lanes normal_of(lanes x, int first_step, lanes *by)
     return vshlq_s32(x, *by);
 }
 
-/* Two neighbours in the table, for each of two entries. */
+/* Loads two neighbours in the table, for each of two entries. */
 T3R_LANES_INLINE quad pairs_at(const uint32_t *table, uint32_t first, uint32_t second)
 {
     return FROM_U32(vcombine_u32(vld1_u32(table + first), vld1_u32(table + second)));
 }
 
-/* Entries 0..127 of a table of 129, and those after them. */
+/* Looks up entries 0..127 of a table of 129, and the next ones. */
 T3R_LANES_INLINE void look_up(const uint32_t *table, lanes index, lanes *entry, lanes *next)
 {
     const uint32x4_t at = U32(index);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The nearest centre for a Cortex-M with sums of two products: of a few centres by looking at all of them. With more,
- * plain C's neighbours are quicker. */
+/* The nearest centre for a Cortex-M with sums of two products: compares all centres if there are few; otherwise plain
+ * C's neighbours are faster. */
 #include "variants.h"
 
 #ifdef T3R_DSP
@@ -12,7 +12,7 @@
 
 enum { FEW = 96, PAIRS = T3R_DIMENSIONS / 2 };
 
-/* In the place of the neighbours. */
+/* Stored in place of the neighbours. */
 typedef struct packed_centre {
     int32_t half_norm;
     int16x2_t less_pair[PAIRS]; /* of features, negative */
@@ -40,7 +40,7 @@ void t3r_nearest_begin_dsp(const t3r_centres *centres, uint32_t first, uint32_t 
     }
 }
 
-/* Scores are below 2^31 in size, as are their parts (nearest.h). From intrinsics gcc 12 has a load for each word. */
+/* Scores and their parts are below 2^31 in size (nearest.h). With intrinsics gcc 12 takes one load per word. */
 static inline uint32_t nearest_of(const packed_centre *c, uint32_t count, const int16_t p[T3R_DIMENSIONS])
 {
     const int16x2_t p01 = pair_of(p[0], p[1]), p23 = pair_of(p[2], p[3]), p45 = pair_of(p[4], p[5]);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The nearest centre by looking at all of them, four at a time, in vectors of Helium. */
+/* The nearest centre by comparing all of them, four at a time, in vectors of Helium. */
 #include "variants.h"
 
 #ifdef T3R_MVE
@@ -11,7 +11,7 @@
 
 enum { FOUR = 4 };
 
-/* Four centres, in the place of the neighbours; behind the last, centres that are nearest to nothing. */
+/* Four centres, stored in place of the neighbours; after the last, padding centres that never win. */
 typedef struct four_centres {
     int32_t half_norm[FOUR];
     int16_t less_feature_q11[T3R_DIMENSIONS][FOUR]; /* negative */
@@ -38,8 +38,8 @@ static uint16_t nearest_of(const t3r_neighbours *packed, uint32_t count, const i
     const int32_t p0 = p[0], p1 = p[1], p2 = p[2], p3 = p[3], p4 = p[4], p5 = p[5];
     uint32_t predicate, groups = (count + FOUR - 1) / FOUR;
     int32x4_t here = vreinterpretq_s32_u32(vidupq_n_u32(0, 1)), first = here, least = vdupq_n_s32(INT32_MAX);
-    /* Scores are below 2^31 in size, as are their parts (nearest.h). A lane keeps the earlier of equals. From
-     * intrinsics gcc 12 has loads ahead of all sums, and no registers left. */
+    /* Scores and their parts are below 2^31 in size (nearest.h). A lane keeps the earlier of equals. With intrinsics
+     * gcc 12 moves loads before all sums and runs out of registers. */
     __asm__("vmrs %[predicate], p0\n\t" /* compilers have no common name for it */
             "dls lr, %[groups]\n\t"
             "mov %[groups], #4\n"

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The upper halves of products of 32 bits, which a Cortex-M with DSP instructions rounds in one. */
+/* Upper halves of 32-bit products, which a Cortex-M with DSP instructions computes and rounds in one instruction. */
 #ifndef T3R_KERNELS_ARM_PRODUCTS_H
 #define T3R_KERNELS_ARM_PRODUCTS_H
 
 #include <stdint.h>
 
-/* sum + (a b + 2^31) / 2^32, rounded down */
+/* Returns sum + (a b + 2^31) / 2^32, rounded down. */
 static inline int32_t t3r_add_high_product(int32_t sum, int32_t a, int32_t b)
 {
     int32_t to;
@@ -13,7 +13,7 @@ static inline int32_t t3r_add_high_product(int32_t sum, int32_t a, int32_t b)
     return to;
 }
 
-/* The same without a sum. */
+/* Returns the same without a sum. */
 static inline int32_t t3r_high_product(int32_t a, int32_t b)
 {
     int32_t to;

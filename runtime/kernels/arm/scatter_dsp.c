@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Scattering for a Cortex-M with sums of two products: pixels in which the splat has no weight add nothing, the others
+/* Scattering for a Cortex-M with sums of two products: pixels in which the splat has no weight are skipped, the others
  * are gathered and summed two at a time. */
 #include "variants.h"
 
@@ -15,7 +15,7 @@
 
 enum { PIXELS_MOST = T3R_BLENDED_ROWS_MOST * T3R_LANES };
 
-/* What a pixel adds, before it is brought to 16 bits, and where it is: terms_of() in scatter.c. */
+/* A pixel's terms before the reduction to 16 bits, and its place: terms_of() in scatter.c. */
 typedef struct pixel_term {
     uint32_t square;
     int32_t product;
@@ -34,7 +34,7 @@ static inline int32_t mulr_q15(int32_t a, int32_t b)
     return __smlabb(a, b, 1 << 14) >> 15;
 }
 
-/* Takes a pixel off; false where it counts for nothing, and otherwise its term, unless `term` is NULL. */
+/* Removes the splat from a pixel. Returns whether the pixel counts, and its term unless `term` is NULL. */
 static inline __attribute__((always_inline)) bool take_pixel_off(off_job *job, uint32_t weight, int32_t alpha,
                                                                  uint32_t row, uint32_t column, pixel_term *term)
 {
@@ -63,7 +63,7 @@ static inline __attribute__((always_inline)) bool take_pixel_off(off_job *job, u
     return true;
 }
 
-/* Takes the splat off, and notes the terms of its pixels unless `terms` is NULL; returns how many. */
+/* Removes the splat, and stores the terms of its pixels unless `terms` is NULL; returns their number. */
 static inline __attribute__((always_inline)) uint32_t take_splat_off(off_job *job, const t3r_scatter_splat *splat,
                                                                      pixel_term *terms)
 {
@@ -88,7 +88,7 @@ static inline __attribute__((always_inline)) uint32_t take_splat_off(off_job *jo
     return terms == NULL ? 0 : (uint32_t)(term - terms);
 }
 
-/* The sizes of all terms: their bits, and their sum, each less its last 8 bits. */
+/* Sizes of all terms: the bitwise or, and the sum, each without its last 8 bits. */
 typedef struct term_sizes {
     uint32_t squares, products, squares_sum, products_sum;
 } term_sizes;
@@ -125,7 +125,7 @@ static inline uint32_t added_alone(uint32_t sum, factor a)
 
 #include "kernels/lanes/scatter_moments.h"
 
-enum { CHUNK = 32 }; /* pairs whose factors are kept at a time */
+enum { CHUNK = 32 }; /* pairs whose factors are kept at the same time */
 
 static void factors_of(const pixel_term *term, uint32_t count, const t3r_shift_steps square_by,
                        const t3r_shift_steps product_by, factors *f)
@@ -165,7 +165,7 @@ void t3r_scatter_dsp(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, 
     }
     pixel_term terms[PIXELS_MOST + 1];
     const uint32_t count = take_splat_off(&job, splat, terms);
-    terms[count] = (pixel_term){0, 0, 0, 0}; /* behind the last, for a whole pair */
+    terms[count] = (pixel_term){0, 0, 0, 0}; /* after the last, to complete a pair */
     const term_sizes sizes = sizes_of(terms, count);
     const uint32_t square_shift = t3r_term_shift(sizes.squares, sizes.squares_sum, all_rows);
     const uint32_t product_shift = t3r_term_shift(sizes.products, sizes.products_sum, all_rows);

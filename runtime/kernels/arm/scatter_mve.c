@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Scattering, eight pixels at a time, in vectors of Helium. Rows in which the splat has no weight add nothing. */
+/* Scattering, eight pixels at a time, in vectors of Helium. Rows in which the splat has no weight are skipped. */
 #include "variants.h"
 
 #if defined(T3R_MVE) && T3R_FEATURE_REFINEMENT
@@ -10,7 +10,7 @@
 #include "kernels/lanes/vectors/inline.h"
 #include "kernels/scatter_bits.h"
 
-/* What the pixels of a row add, before it is brought to 16 bits: first the even columns, then the odd ones. */
+/* Terms of a row's pixels before the reduction to 16 bits: first the even columns, then the odd ones. */
 typedef struct row_terms {
     uint32x4_t square[2];
     int32x4_t product[2];
@@ -21,14 +21,14 @@ typedef struct off_job {
     t3r_wanted *tile;
     int16_t colour[3];
     int32_t scale, less;
-    uint32x4_t squares, products; /* all bits, as terms_of() in scatter.c has them */
+    uint32x4_t squares, products; /* bitwise or, as in terms_of() in scatter.c */
     uint32_t squares_sum, products_sum;
     int32_t lacking[3], weight;
 } off_job;
 
 enum { PLANE = T3R_TILE_SIDE * T3R_TILE_SIDE };
 
-/* Takes a row off; false where the splat has no weight in it, and otherwise its terms, unless `terms` is NULL. */
+/* Removes the splat from a row. Returns whether it has weight there, and the terms unless `terms` is NULL. */
 static inline __attribute__((always_inline)) bool take_row_off(off_job *job, const t3r_blended_row *row, uint32_t place,
                                                                row_terms *terms)
 {
@@ -72,7 +72,7 @@ static inline __attribute__((always_inline)) bool take_row_off(off_job *job, con
     return true;
 }
 
-/* Takes the splat off, and notes the terms of the rows that have any unless `terms` is NULL; returns how many. */
+/* Removes the splat, and stores the terms of rows with weight unless `terms` is NULL; returns their number. */
 static inline __attribute__((always_inline)) uint32_t take_splat_off(off_job *job, const t3r_scatter_splat *splat,
                                                                      row_terms *terms)
 {
@@ -93,7 +93,7 @@ static inline __attribute__((always_inline)) uint32_t take_splat_off(off_job *jo
     return count;
 }
 
-/* Of a row's pixels. */
+/* A factor of a row's pixels. */
 typedef int16x8_t factor;
 
 static inline uint32_t added(uint32_t sum, factor a, factor b)
@@ -108,7 +108,7 @@ static inline uint32_t added_alone(uint32_t sum, factor a)
 
 #include "kernels/lanes/scatter_moments.h"
 
-enum { CHUNK = 8 }; /* rows whose factors are kept at a time */
+enum { CHUNK = 8 }; /* rows whose factors are kept at the same time */
 
 static inline int16x8_t coordinates(const t3r_scatter_splat *splat, uint32_t k, const row_terms *row)
 {

@@ -8,7 +8,7 @@
 
 #include "kernels/seed.h"
 
-/* The distances of four points with this centre more: differences have 16 bits, squares 30. */
+/* Returns the distances of four points with this centre added: differences have 16 bits, squares 30. */
 static inline int32x4_t distances_with(const t3r_sample *sample, uint32_t i, const int16_t c[T3R_DIMENSIONS],
                                        mve_pred16_t there)
 {

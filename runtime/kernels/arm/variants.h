@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The variants for Arm. Those of a Cortex-M are there where the whole build is for one that has them: a firmware knows
- * its core. */
+/* The variants for Arm. Variants for a Cortex-M exist only in builds for a core that has the instructions, because a
+ * firmware knows its core. */
 #ifndef T3R_ARM_VARIANTS_H
 #define T3R_ARM_VARIANTS_H
 
@@ -34,7 +34,7 @@
 #define T3R_MVE_VARIANTS_(X)
 #endif
 
-/* Likewise. */
+/* Again only with optimization. */
 #if defined(__ARM_FEATURE_DSP) && defined(__OPTIMIZE__) && __ARM_ARCH_PROFILE == 'M' && !defined(T3R_MVE) &&           \
     !defined(__ARM_BIG_ENDIAN)
 #define T3R_DSP 1
@@ -60,7 +60,7 @@
 #define T3R_DSP_VARIANTS_(X)
 #endif
 
-/* Every 64-bit Arm has these, but for builds for general registers alone. */
+/* Every 64-bit Arm has NEON; builds for general registers only do not use it. */
 #if defined(__aarch64__) && defined(__ARM_NEON) && !defined(__ARM_BIG_ENDIAN)
 #define T3R_NEON 1
 /* A build for SVE without dot products has no assembler for both. */
@@ -70,7 +70,7 @@
 #define T3R_NEON_LEARNED_VARIANTS_(X)                                                                                  \
     X(pack_layer, T3R_CPU_ARM_DOTPROD_, t3r_pack_layer_dotprod)                                                        \
     X(convolve_packed, T3R_CPU_ARM_DOTPROD_, t3r_convolve_packed_dotprod)
-/* Of an activation that convolve_packed of these features reads. */
+/* Bytes of an activation that convolve_packed of these features reads. */
 #define T3R_ARM_STRIP_BYTES(cpu) (((cpu)&T3R_CPU_ARM_DOTPROD_) == T3R_CPU_ARM_DOTPROD_ ? 1u : 2u)
 #else
 #define T3R_NEON_LEARNED_VARIANTS_(X)
@@ -93,7 +93,7 @@
 #define T3R_NEON_VARIANTS_(X)
 #endif
 
-/* X(entry, features, function), as x86/variants.h has it. */
+/* X(entry, features, function), like x86/variants.h. */
 #define T3R_ARM_VARIANTS(X) T3R_DSP_VARIANTS_(X) T3R_MVE_VARIANTS_(X) T3R_NEON_VARIANTS_(X)
 
 #ifndef T3R_ARM_STRIP_BYTES

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Blending, PIXELS at a time: two rows of eight columns or a row of the tile, or eight columns of a row. Comes behind a
- * header of pixels, in a file that names the functions: BLEND and BLEND_KEEP. */
+/* Blending, PIXELS at a time: two rows of eight columns or a row of the tile, or eight columns of a row. Included
+ * after a header of pixels, in a file that names the functions BLEND and BLEND_KEEP. */
 #ifndef T3R_KERNELS_LANES_BLEND_PIXELS_H
 #define T3R_KERNELS_LANES_BLEND_PIXELS_H
 
 #include "core/alpha.h"
 #include "core/memory.h"
 
-/* (a b + 2^15) / 2^16 of 16 unsigned bits: the high half and the top bit of the low one. */
+/* Returns (a b + 2^15) / 2^16 of 16-bit unsigned numbers: the high half plus the top bit of the low half. */
 static inline T3R_LANES_TARGET lanes mulr_q16(lanes a, lanes b)
 {
     return OF_LANES(add_epi16)(OF_LANES(mulhi_epu16)(a, b), OF_LANES(srli_epi16)(OF_LANES(mullo_epi16)(a, b), 15));
 }
 
-/* The same from twice b: (a b / 2^15 + 1) / 2, both rounded down. */
+/* Returns the same from twice b: (a b / 2^15 + 1) / 2, both rounded down. */
 static inline T3R_LANES_TARGET lanes mulr_q16_doubled(lanes a, lanes twice_b)
 {
     return OF_LANES(avg_epu16)(OF_LANES(mulhi_epu16)(a, twice_b), all(0));
@@ -24,24 +24,23 @@ static inline T3R_LANES_TARGET lanes constant(uint32_t x)
     return OF_LANES(set1_epi16)((int16_t)x);
 }
 
-/* All bits where a >= b, of 16 unsigned bits. */
+/* Returns all bits set where a >= b, for 16-bit unsigned numbers. */
 static inline T3R_LANES_TARGET lanes at_least_16(lanes a, lanes b)
 {
     return OF_LANES(cmpeq_epi16)(OF_LANES(max_epu16)(a, b), a);
 }
 
-/* A number for each part of 128 bits. */
+/* Fills each part of 128 bits with a number. */
 static inline T3R_LANES_TARGET lanes each_half(int32_t low, int32_t high)
 {
     const quad both_of[2] = {OF_QUAD(set1_epi32)(low), OF_QUAD(set1_epi32)(high)};
     return joined(both_of);
 }
 
-/* Eight pixels of a row in each part of 128 bits: the first four columns of the parts, and the last four. What is left
- * of T3R_ALPHA_RANGE when q / 8 is taken away, 16 times, with the half that rounds; modulo 2^32, as plain C's sums are
- * without overflow. */
+/* Eight pixels of a row in each part of 128 bits: the first four columns of the parts, and the last four. `left` is
+ * T3R_ALPHA_RANGE - q / 8, times 16, plus half for rounding; modulo 2^32, like plain C's sums without overflow. */
 typedef struct quadratic {
-    lanes left[2], step[2], bend; /* from step to step, and what steps lose */
+    lanes left[2], step[2], bend; /* change from step to step, and the change of that change */
 } quadratic;
 
 static inline T3R_LANES_TARGET void advance(quadratic *q)
@@ -52,8 +51,7 @@ static inline T3R_LANES_TARGET void advance(quadratic *q)
     }
 }
 
-/* low, high: the halves' groups; rows: how far the high half's row is below the low one's, and `every` how many rows a
- * step goes down. */
+/* low, high: the halves' groups; rows: distance of the high half's row below the low one's; every: rows per step. */
 static inline T3R_LANES_TARGET quadratic quadratic_of(const t3r_tile_splat *s, uint32_t low, uint32_t high,
                                                       int32_t rows, int32_t every)
 {
@@ -77,7 +75,7 @@ static inline T3R_LANES_TARGET quadratic quadratic_of(const t3r_tile_splat *s, u
 
 static inline T3R_LANES_TARGET lanes alpha_of(const quadratic *q, lanes opacity_q16)
 {
-    /* packing holds it to 0 and above */
+    /* packing saturates below at 0 */
     lanes s = OF_LANES(packus_epi32)(OF_LANES(srai_epi32)(q->left[0], 4), OF_LANES(srai_epi32)(q->left[1], 4));
     s = OF_LANES(min_epu16)(s, constant(T3R_ALPHA_RANGE));
     lanes p = OF_LANES(add_epi16)(constant(T3R_ALPHA_C3), OF_LANES(mulhi_epu16)(s, constant(T3R_ALPHA_C4)));
@@ -91,13 +89,13 @@ static inline T3R_LANES_TARGET lanes alpha_of(const quadratic *q, lanes opacity_
     return both(alpha, at_least_16(alpha, constant(T3R_ALPHA_LEAST_Q16)));
 }
 
-/* What blending a splat needs at each step. */
+/* State of blending a splat. */
 typedef struct blend_job {
     t3r_tile *tile;
-    lanes opacity, colour[3];          /* colours twice */
-    lanes drawn;                       /* all bits in the halves that are */
-    lanes any;                         /* the bits of the weights that are kept */
-    t3r_blended_row *rows, *high_rows; /* of both halves, or NULL; known where this is inlined */
+    lanes opacity, colour[3];          /* colours are doubled */
+    lanes drawn;                       /* all bits set in the drawn halves */
+    lanes any;                         /* bitwise or of the kept weights */
+    t3r_blended_row *rows, *high_rows; /* of both halves, or NULL; constant once inlined */
 } blend_job;
 
 T3R_LANES_INLINE T3R_LANES_TARGET void blend_step(blend_job *job, const quadratic *q, uint32_t place, shape which)
@@ -125,7 +123,7 @@ T3R_LANES_INLINE T3R_LANES_TARGET void blend_step(blend_job *job, const quadrati
     }
 }
 
-/* One group, as many of its rows at a time as a vector takes. */
+/* Blends one group, a vector's worth of rows at a time. */
 T3R_LANES_INLINE T3R_LANES_TARGET void blend_group(blend_job *job, const t3r_tile_splat *splat, uint32_t group)
 {
     enum { ROWS = PIXELS / T3R_LANES };
@@ -140,7 +138,7 @@ T3R_LANES_INLINE T3R_LANES_TARGET void blend_group(blend_job *job, const t3r_til
     }
 }
 
-/* Both groups, a whole row of the tile at a time. */
+/* Blends both groups, a whole row of the tile at a time. */
 T3R_LANES_INLINE T3R_LANES_TARGET void blend_rows(blend_job *job, const t3r_tile_splat *splat)
 {
     quadratic q = quadratic_of(splat, 0, 1, 0, 1);
@@ -160,7 +158,7 @@ static inline T3R_LANES_TARGET blend_job begun(t3r_tile *tile, const t3r_tile_sp
     return job;
 }
 
-/* Of all pixels. */
+/* Returns the bitwise or of all pixels. */
 static inline T3R_LANES_TARGET uint16_t all_bits(lanes x)
 {
     quad bits = OF_QUAD(or_si128)(part(x, 0), part(x, LANES / 4 - 1));

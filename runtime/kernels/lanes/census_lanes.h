@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* census_costs in vectors of BYTES disparities; what path_lanes.h declares comes first. */
+/* census_costs in vectors of BYTES disparities; included after path_lanes.h's declarations. */
 #ifndef T3R_CENSUS_LANES_H
 #define T3R_CENSUS_LANES_H
 
-/* table[x] of each lane: x 0..15 */
+/* Returns table[x] of each lane, x 0..15. */
 static inline TARGET bytes look_up(const uint8_t table[16], bytes x);
 
 static inline TARGET bytes larger(bytes a, bytes b)
@@ -11,7 +11,7 @@ static inline TARGET bytes larger(bytes a, bytes b)
     return (bytes)OF(max_epu8)((vector)a, (vector)b);
 }
 
-/* 16-bit lanes, shifted down by 4 */
+/* Shifts 16-bit lanes down by 4. */
 static inline TARGET bytes fourth(bytes x)
 {
     return (bytes)OF(srli_epi16)((vector)x, 4);
@@ -26,23 +26,23 @@ static inline TARGET bytes count_ones(const uint8_t table[16], bytes x)
     return look_up(table, x & low) + look_up(table, fourth(x) & low);
 }
 
-/* Set bits of three bytes: those of their sum bit by bit, and twice those of its carries. */
+/* Counts set bits of three bytes by a full adder: bits of the sum once, bits of the carry twice. */
 static inline TARGET bytes differences(bytes a, bytes b, bytes c)
 {
     const bytes odd = a ^ b;
     return count_ones(ones, odd ^ c) + count_ones(twice_ones, (a & b) | (odd & c));
 }
 
-/* t3r_census_mirror() compiled for vectors. */
+/* Compiles t3r_census_mirror() for vectors. */
 static inline TARGET void mirror(const t3r_census_costs *row)
 {
     t3r_census_mirror(row);
 }
 
-/* count: the disparities */
+/* count: the number of disparities, as a constant */
 static inline __attribute__((always_inline)) TARGET void costs(const t3r_census_costs *given, const uint32_t count)
 {
-    const t3r_census_costs all = *given, *row = &all; /* a copy: writing bytes changes none of what it holds */
+    const t3r_census_costs all = *given, *row = &all; /* a copy, which byte writes cannot change */
     const size_t width = row->width, right = T3R_MATCH_RIGHT(width, count);
     for (size_t x = 0; x < width; x++) {
         const bytes a = all_of(row->bits[x]), b = all_of(row->bits[width + x]), c = all_of(row->bits[2 * width + x]);

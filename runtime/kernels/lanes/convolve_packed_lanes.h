@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A packed layer, LANES outputs a vector: TAPS activations, in all lanes, times as many weights of each. Comes behind a
- * header of lanes and one that multiplies, as pairs_of_taps.h does, in a file that names the functions: PACK_LAYER and
- * CONVOLVE_PACKED. */
+/* A packed layer, LANES outputs a vector: TAPS activations, in all lanes, times TAPS weights of each output. Included
+ * after a header of lanes and one that multiplies, such as pairs_of_taps.h, in a file that names the functions
+ * PACK_LAYER and CONVOLVE_PACKED. */
 #ifndef T3R_KERNELS_LANES_CONVOLVE_PACKED_LANES_H
 #define T3R_KERNELS_LANES_CONVOLVE_PACKED_LANES_H
 
@@ -18,13 +18,13 @@ T3R_LANES_TARGET void PACK_LAYER(const t3r_convolution *layer, uint32_t rows, vo
     t3r_pack_layer_with(layer, rows, TAPS, 0, BY_FACTORS, packed);
 }
 
-/* Where the outputs from `first` on lie in a packed layer. */
+/* The parts of a packed layer for the outputs from `first` on. */
 typedef struct place {
     const uint8_t *scaling, *weights;
     uint32_t whole, first;
 } place;
 
-/* The sums of `vectors` vectors of outputs at `pixels` pixels. */
+/* Adds up `vectors` vectors of outputs at `pixels` pixels. */
 INLINE void add_up(ints sum[MOST_SUMS], const t3r_block *block, const size_t *offset, const place *at, uint32_t vectors,
                    uint32_t pixels)
 {
@@ -54,7 +54,7 @@ INLINE void add_up(ints sum[MOST_SUMS], const t3r_block *block, const size_t *of
     }
 }
 
-/* Writes the first `count` activations of x, held within 8 or 16 bits. */
+/* Writes the first `count` activations of x, clamped to 8 or 16 bits. */
 INLINE void write(lanes x, uint32_t output_bits, uint32_t count, void *out, size_t at)
 {
     const quad held = OF_QUAD(packs_epi32)(part(x, 0), part(x, LANES / 4 - 1));
@@ -76,7 +76,7 @@ INLINE void write(lanes x, uint32_t output_bits, uint32_t count, void *out, size
     }
 }
 
-/* All pixels, `pixels` at a time; behind the last, it again. */
+/* Convolves all pixels, `pixels` at a time; pads by repeating the last. */
 INLINE void convolve(const t3r_convolution *layer, const t3r_block *block, const place *at, uint32_t vectors,
                      uint32_t pixels, void *out, uint32_t out_pitch)
 {

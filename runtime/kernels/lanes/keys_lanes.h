@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Keys, LANES at a time: keys.c step by step. Comes behind a header of lanes, in a file that names the functions:
- * WANTED_ROW and KEY_ROW. */
+/* Keys, LANES at a time, with the steps of keys.c. Included after a header of lanes, in a file that names the
+ * functions WANTED_ROW and KEY_ROW. */
 #ifndef T3R_KERNELS_LANES_KEYS_LANES_H
 #define T3R_KERNELS_LANES_KEYS_LANES_H
 
@@ -19,7 +19,7 @@ T3R_LANES_TARGET void WANTED_ROW(const uint16_t *restrict texture_q4, uint32_t c
     t3r_wanted_row_c(texture_q4 + i, count - i, gamma_q8, wanted_q10 + i);
 }
 
-/* t3r_mix32() */
+/* Returns t3r_mix32() of each lane. */
 static inline T3R_LANES_TARGET lanes mixed(lanes x)
 {
     x = multiply(different(x, OF_LANES(srli_epi32)(x, 16)), all(0x7feb352d));

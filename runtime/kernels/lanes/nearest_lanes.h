@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The nearest centre by looking at all of them, LANES at a time. Comes behind a header of lanes, in a file that names
- * the functions: NEAREST_BEGIN and NEAREST. */
+/* The nearest centre by comparing all of them, LANES at a time. Included after a header of lanes, in a file that names
+ * the functions NEAREST_BEGIN and NEAREST. */
 #ifndef T3R_KERNELS_LANES_NEAREST_LANES_H
 #define T3R_KERNELS_LANES_NEAREST_LANES_H
 
@@ -19,15 +19,15 @@ T3R_LANES_TARGET void NEAREST_BEGIN(const t3r_centres *centres, uint32_t first, 
                                         is_centre ? centres->feature_q11[2 * d + 1][k] : 0};
                 packed->pair[d][i] = t3r_pair_of(two, 0);
             }
-            packed->half_norm[i] = is_centre ? centres->half_norm[k] : INT32_MAX; /* no centre's score is so large */
+            packed->half_norm[i] = is_centre ? centres->half_norm[k] : INT32_MAX; /* larger than any centre's score */
         }
     }
 }
 
-/* Not `lanes`: where the least so far changes its type, gcc 12 copies it in every turn of a loop. */
+/* Not `lanes`: if the least so far changes its type, gcc 12 copies it in every iteration. */
 typedef int32_t ints __attribute__((vector_size(LANES * sizeof(int32_t))));
 
-/* A point, and in each lane the least score so far and the first centre of the vector that had it. */
+/* A point; in each lane the least score so far, and the first centre of the vector in which the lane had it. */
 typedef struct search {
     lanes pair[T3R_PAIRS];
     ints least, first;
@@ -42,8 +42,7 @@ static T3R_LANES_TARGET search search_of(const int16_t p[T3R_DIMENSIONS])
     return s;
 }
 
-/* Scores are below 2^31 in size, as are their parts: |p c| is at most 6 x 15000^2. A lane keeps the earlier of equals.
- */
+/* Scores and their parts are below 2^31 in size: |p c| is at most 6 x 15000^2. A lane keeps the earlier of equals. */
 static inline T3R_LANES_TARGET void look(search *s, const lanes pair[T3R_PAIRS], lanes half_norm, lanes here)
 {
     const ints score = (ints)half_norm - (ints)OF_LANES(madd_epi16)(s->pair[0], pair[0]) -
@@ -54,7 +53,7 @@ static inline T3R_LANES_TARGET void look(search *s, const lanes pair[T3R_PAIRS],
     s->first = (ints)chosen(less, here, (lanes)s->first);
 }
 
-/* The least number of a vector. */
+/* Returns the least number of a vector. */
 static inline T3R_LANES_TARGET int32_t least_of(lanes x)
 {
     quad least = part(x, 0);
@@ -64,7 +63,7 @@ static inline T3R_LANES_TARGET int32_t least_of(lanes x)
     return least_of_quad(least);
 }
 
-/* The least index of the least score. */
+/* Returns the least index with the least score. */
 static inline T3R_LANES_TARGET uint16_t nearest_of(const search *s)
 {
     static const int32_t numbers[8] = {0, 1, 2, 3, 4, 5, 6, 7};
@@ -77,7 +76,7 @@ T3R_LANES_TARGET void NEAREST(const t3r_centres *centres, const t3r_neighbours *
                               const int16_t (*feature_q11)[T3R_DIMENSIONS], uint16_t guess, uint16_t *nearest)
 {
     (void)guess;
-    for (uint32_t point = 0; point < points; point += 2) { /* two share the loads; behind the last, the last again */
+    for (uint32_t point = 0; point < points; point += 2) { /* two share the loads; pads by repeating the last */
         const uint32_t other = point + 1 < points ? point + 1 : point;
         search a = search_of(feature_q11[point]), b = search_of(feature_q11[other]);
         for (uint32_t group = 0; group < centres->count; group += T3R_CENTRE_GROUP) {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Layers in the order of the packed kernels. */
+/* Packs layers for the packed kernels. */
 #include "core/little_endian.h"
 #include "packed_scaling.h"
 
-/* The scaling of outputs behind the last is zero but for the shift, and so are their sums. */
+/* Padding outputs have zero scaling except for the shift, and zero sums. */
 static void pack_scaling(const t3r_convolution *layer, int32_t offset, bool factors, int32_t *scaling)
 {
     const uint32_t whole = t3r_packed_outputs(layer->outputs);

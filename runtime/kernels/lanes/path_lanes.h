@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* path_row in vectors of BYTES disparities. The file that includes this defines TARGET, BYTES, MOST_VECTORS, how its
- * instructions begin (OF) and the functions declared first. The path along the row stays in registers. */
+/* path_row in vectors of BYTES disparities. The including file defines TARGET, BYTES, MOST_VECTORS, the prefix of its
+ * instructions (OF) and the functions declared first. The path along the row stays in registers. */
 #ifndef T3R_PATH_LANES_H
 #define T3R_PATH_LANES_H
 
 typedef uint8_t bytes __attribute__((vector_size(BYTES)));
-typedef long long vector __attribute__((vector_size(BYTES), may_alias)); /* as instructions take it */
+typedef long long vector __attribute__((vector_size(BYTES), may_alias)); /* type of the instructions' operands */
 
-/* `count` may be 16, or BYTES and more: lanes beyond are 0 when loaded and not stored. */
+/* Load and store `count` bytes: 16, or BYTES and more. Other lanes are 0 when loaded and not stored. */
 static inline TARGET bytes load(const uint8_t *from, uint32_t count);
 static inline TARGET void store(uint8_t *to, bytes x, uint32_t count);
-/* Lanes below `count` of x, else of `other`. */
+/* Returns lanes below `count` of x, the others of `other`. */
 static inline TARGET bytes held(bytes x, bytes other, uint32_t count);
-/* Each lane's neighbour below and above; the ends take theirs of the next vector. */
+/* Return each lane's neighbour below and above; the ends take theirs from `next`. */
 static inline TARGET bytes below(bytes x, bytes next);
 static inline TARGET bytes above(bytes x, bytes next);
-/* The least of all lanes, in all lanes. */
+/* Returns the least of all lanes, in all lanes. */
 static inline TARGET bytes least_of(bytes x);
 static inline TARGET uint8_t first_of(bytes x);
-/* sums = a + b + c + d, with `add` sums + ...; of two paths c and d are not read. */
+/* Computes sums = a + b + c + d, or with `add` sums += ...; for two paths c and d are not read. */
 static inline TARGET void sum(int16_t *sums, const bytes values[T3R_PATH_LINKS], uint32_t paths, uint32_t count,
                               bool add);
 
@@ -32,7 +32,7 @@ static inline TARGET bytes all_of(uint8_t x)
     return (bytes)OF(set1_epi8)((char)x);
 }
 
-/* What a path adds to the cost. */
+/* Returns a path's addition to the cost. */
 static inline TARGET bytes relaxed(bytes lower, bytes same, bytes upper, bytes least, bytes p1, bytes p2)
 {
     return minimum(minimum(same, minimum(lower, upper) + p1) - least, p2);
@@ -40,20 +40,20 @@ static inline TARGET bytes relaxed(bytes lower, bytes same, bytes upper, bytes l
 
 #define PATH_INLINE static inline __attribute__((always_inline)) TARGET
 
-/* What stays the same along a row. */
+/* Constants of a row. */
 typedef struct path_walk {
     const t3r_path_row *row;
-    uint32_t count, paths; /* disparities; paths from the row before */
+    uint32_t count, paths; /* disparities; paths from the previous row */
     size_t pitch, state;   /* bytes from pixel to pixel, and from path to path */
     bytes guard, p1;
 } path_walk;
 
-/* The path along the row, as it was at the pixel before. */
+/* The path along the row at the previous pixel. */
 typedef struct path_along {
     bytes beside[MOST_VECTORS], least;
 } path_along;
 
-/* Follows a path from the row before to pixel x: vector n of its disparities. */
+/* Follows a path from the previous row to pixel x: vector n of its disparities. */
 PATH_INLINE bytes step_down(const path_walk *walk, uint32_t path, const t3r_path_link *link, size_t x, uint32_t n,
                             bytes own)
 {
@@ -67,7 +67,7 @@ PATH_INLINE bytes step_down(const path_walk *walk, uint32_t path, const t3r_path
     return value;
 }
 
-/* Follows the path along the row; *lower is its vector below, then this one. */
+/* Follows the path along the row; *lower is the previous vector below, then this one. */
 PATH_INLINE bytes step_along(const path_walk *walk, path_along *along, uint32_t n, bytes p2, bytes own, bytes *lower)
 {
     const uint32_t left = walk->count - n * BYTES;
@@ -78,7 +78,7 @@ PATH_INLINE bytes step_along(const path_walk *walk, path_along *along, uint32_t 
     return value;
 }
 
-/* Follows all paths to pixel x. along: NULL without sums; p2: its own. */
+/* Follows all paths to pixel x. along: NULL without sums; p2: for the path along the row. */
 PATH_INLINE void step_pixel(const path_walk *walk, size_t x, bytes p2, path_along *along)
 {
     const t3r_path_row *row = walk->row;
@@ -115,11 +115,11 @@ PATH_INLINE void step_pixel(const path_walk *walk, size_t x, bytes p2, path_alon
     }
 }
 
-/* Follows a row's paths. sums: whether there are any, of the path along the row, too. */
+/* Follows a row's paths. sums: whether there are sums and a path along the row. */
 PATH_INLINE void follow(const t3r_path_row *given, const uint32_t count, const uint32_t paths, const bool sums)
 {
-    t3r_path_row row = *given; /* a copy: writing bytes changes none of what it holds */
-    row.disparities = count;   /* as it is; this says so to compilers */
+    t3r_path_row row = *given; /* a copy, which byte writes cannot change */
+    row.disparities = count;   /* unchanged; makes it a constant for compilers */
     const path_walk walk = {
         .row = &row,
         .count = count,

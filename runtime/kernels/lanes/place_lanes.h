@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Splats in a tile, LANES at a time. Those centred far from it, whose quadratic takes more bits, are left to plain C.
- * Comes behind a header of lanes, in a file that names the function: PLACE. */
+/* Splats in a tile, LANES at a time. Splats centred far from it, whose quadratic takes more bits, are left to plain C.
+ * Included after a header of lanes, in a file that names the function PLACE. */
 #ifndef T3R_KERNELS_LANES_PLACE_LANES_H
 #define T3R_KERNELS_LANES_PLACE_LANES_H
 
@@ -36,14 +36,14 @@ static inline T3R_LANES_TARGET void take(const t3r_splat *splats, const uint32_t
     e->last = word[9];
 }
 
-/* All bits where a centre lies within T3R_SMALL_SPLAT pixels of the tile, along one axis. */
+/* Returns all bits set where a centre lies within T3R_SMALL_SPLAT pixels of the tile along one axis. */
 static inline T3R_LANES_TARGET lanes near(lanes centre_q12, uint32_t tile)
 {
     const lanes offset = subtract(centre_q12, all((int32_t)(tile - T3R_SMALL_SPLAT) * (1 << 12)));
     return at_least(all((2 * T3R_SMALL_SPLAT + T3R_TILE_SIDE - 1) << 12), offset);
 }
 
-/* A coordinate of the box's corners in the tile: what the box has of 0..15. */
+/* Return a coordinate of the box's corners in the tile, clamped to 0..15. */
 static inline T3R_LANES_TARGET lanes from_of(lanes first, uint32_t tile)
 {
     return OF_LANES(max_epi32)(subtract(first, all((int32_t)tile)), all(0));
@@ -54,26 +54,26 @@ static inline T3R_LANES_TARGET lanes to_of(lanes last, uint32_t tile)
     return OF_LANES(min_epi32)(subtract(last, all((int32_t)tile)), all(T3R_TILE_SIDE - 1));
 }
 
-/* x / 2^12, round-half-up */
+/* Returns x / 2^12, round-half-up. */
 static inline T3R_LANES_TARGET lanes rounded_q18(lanes x_q30)
 {
     return OF_LANES(srai_epi32)(add(OF_LANES(srai_epi32)(x_q30, 11), all(1)), 1);
 }
 
-/* A half-gradient times 2^12, to be rounded by 12, and what rounding adds. Its distances are below 2^18, so this is
+/* Returns a half-gradient times 2^12, plus half for the later rounding by 12. Distances are below 2^18, so this is
  * below 2^50. */
 static inline T3R_LANES_TARGET wide half_gradient(lanes a, lanes dx, lanes b, lanes dy)
 {
     return sum(sum(product(a, dx), product(b, dy)), all_wide(1 << 11));
 }
 
-/* Of the low halves of 64-bit lanes. */
+/* Multiplies the low halves of 64-bit lanes. */
 static inline T3R_LANES_TARGET wide half_product(wide a, wide b)
 {
     return (wide){OF_LANES(mul_epi32)(a.even, b.even), OF_LANES(mul_epi32)(a.odd, b.odd)};
 }
 
-/* The rounded half-gradient times a distance: its 18 upper bits and its 20 lower ones apart. */
+/* Returns the rounded half-gradient times a distance: its upper 18 and lower 20 bits are multiplied separately. */
 static inline T3R_LANES_TARGET wide along(wide gradient, wide distance)
 {
     const wide upper = half_product(right(gradient, 32), distance);
@@ -87,7 +87,7 @@ static inline T3R_LANES_TARGET wide along(wide gradient, wide distance)
     return lower;
 }
 
-/* What place_group() of plain C does: q, gx and gy about the pixel that is dx and dy from the centre. */
+/* Computes place_group() of plain C: q, gx and gy at the pixel that is dx and dy from the centre. */
 static inline T3R_LANES_TARGET void place_group(const fields *e, lanes dx, lanes dy, lanes group[3])
 {
     const wide hx = half_gradient(e->a_q30, dx, e->b_q30, dy), hy = half_gradient(e->b_q30, dx, e->c_q30, dy);
@@ -121,7 +121,7 @@ static inline T3R_LANES_TARGET spans spans_of(const fields *e, uint32_t left, ui
     return s;
 }
 
-/* The groups, a and b: the first eight words. */
+/* Stores the groups, a and b: the first eight words. */
 static inline T3R_LANES_TARGET void store_groups(const fields *e, const spans *s, uint32_t left, uint32_t top,
                                                  uint8_t *const to[LANES])
 {
@@ -140,7 +140,7 @@ static inline T3R_LANES_TARGET void store_groups(const fields *e, const spans *s
     write_four(word + 4, to, 16);
 }
 
-/* The other five words. */
+/* Stores the other five words. */
 static inline T3R_LANES_TARGET void store_rest(const fields *e, const spans *s, uint8_t *const to[LANES])
 {
     const lanes opacity_q16 = OF_LANES(slli_epi32)(OF_LANES(srli_epi32)(e->colours[1], 16), 1);
@@ -155,10 +155,10 @@ static inline T3R_LANES_TARGET void store_rest(const fields *e, const spans *s, 
     word[4] = either(s->y1, OF_LANES(slli_epi32)(s->x0, 8));
     word[4] = either(word[4], OF_LANES(slli_epi32)(s->x1, 16));
     write_four(word, to, offsetof(t3r_tile_splat, c));
-    write_four(word + 1, to, offsetof(t3r_tile_splat, opacity_q16)); /* three of them once more, and the last */
+    write_four(word + 1, to, offsetof(t3r_tile_splat, opacity_q16)); /* repeats three of them to store the last */
 }
 
-/* Returns a bit each of those that plain C has to place. */
+/* Returns a bit for each splat that plain C has to place. */
 static T3R_LANES_TARGET uint32_t place_lanes(const t3r_splat *splats, const uint32_t list[LANES], uint32_t left,
                                              uint32_t top, t3r_tile_splat placed[LANES])
 {
@@ -179,7 +179,7 @@ static T3R_LANES_TARGET uint32_t place_lanes(const t3r_splat *splats, const uint
 static T3R_LANES_TARGET void place_up_to_lanes(const t3r_splat *splats, const uint32_t *list, uint32_t count,
                                                uint32_t left, uint32_t top, t3r_tile_splat *placed)
 {
-    uint32_t filled[LANES]; /* behind the last splat, it again */
+    uint32_t filled[LANES]; /* pads by repeating the last splat */
     for (uint32_t i = 0; i < LANES && count < LANES; i++) {
         filled[i] = list[T3R_MIN(i, count - 1)];
     }

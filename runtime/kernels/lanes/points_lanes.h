@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* points.c with several points at a time, in 64-bit lanes: included once for each width, which defines LANES, TARGET,
- * how its instructions begin (OF), and the functions declared first. Lanes hold 32-bit numbers wherever they are
- * multiplied. */
+ * the prefix of its instructions (OF), and the functions declared first. Factors of products always fit 32 bits. */
 #include "core/fixed.h"
 #include "kernels/points_parts.h"
 
 typedef int64_t lanes __attribute__((vector_size(LANES * sizeof(int64_t))));
 typedef uint64_t wide __attribute__((vector_size(LANES * sizeof(uint64_t))));
-typedef long long vector __attribute__((vector_size(LANES * sizeof(int64_t)), may_alias)); /* as instructions take it */
+typedef long long vector
+    __attribute__((vector_size(LANES * sizeof(int64_t)), may_alias)); /* type of the instructions' operands */
 typedef long long half_there __attribute__((vector_size(LANES * sizeof(int32_t)), aligned(4), may_alias));
 
 /* Stores the lower halves. */
@@ -40,7 +40,7 @@ static inline TARGET lanes all(int64_t x)
     return (lanes){0} + x;
 }
 
-/* b where the mask has ones, else a */
+/* Returns b where the mask has ones, else a. */
 static inline TARGET lanes chosen(lanes mask, lanes b, lanes a)
 {
     return (b & mask) | (a & ~mask);
@@ -52,13 +52,13 @@ static inline TARGET lanes held(lanes x, int64_t most)
     return chosen(x < all(-most), all(-most), x);
 }
 
-/* x / 2^shift rounded down, |x| <= 2^62: without an arithmetic shift of 64 bits, which AVX2 lacks */
+/* Returns x / 2^shift rounded down, |x| <= 2^62, without a 64-bit arithmetic shift, which AVX2 lacks. */
 static inline TARGET lanes down(lanes x, int shift)
 {
     return (lanes)((wide)(x + all(INT64_C(1) << 62)) >> shift) - all(INT64_C(1) << (62 - shift));
 }
 
-/* t3r_round_shift64() */
+/* Returns t3r_round_shift64(). */
 static inline TARGET lanes rounded(lanes x, int shift)
 {
     return down(x + all(INT64_C(1) << (shift - 1)), shift);
@@ -69,7 +69,7 @@ static inline TARGET lanes ray(lanes at, int32_t centre_q16, int32_t inverse_q32
     return held(rounded(times((at << 16) - all(centre_q16), all(inverse_q32)), 24), T3R_RAY_MOST_Q24);
 }
 
-/* t3r_depth_q20(): the shift is 0..62, and a product of 48 bits plus half of 2^shift fits. */
+/* Returns t3r_depth_q20(): the shift is 0..62, and a product of 48 bits plus half of 2^shift fits. */
 static inline TARGET lanes depth_of(t3r_depth_scale scale, lanes step)
 {
     const uint64_t half = scale.shift > 0 ? UINT64_C(1) << (scale.shift - 1) : 0;
@@ -95,7 +95,7 @@ TARGET void UNPROJECT(const t3r_unprojection *restrict from, t3r_points *restric
     }
 }
 
-/* z in [2^15, 2^31) times 2^shift is in [2^31, 2^32): 1..16 */
+/* Returns 1..16: z in [2^15, 2^31) times 2^shift is in [2^31, 2^32). */
 static inline TARGET lanes leading_zeros(lanes z)
 {
     lanes shift = all(1);
@@ -106,9 +106,9 @@ static inline TARGET lanes leading_zeros(lanes z)
     return shift;
 }
 
-/* 2^62 / normal less 1 to 7, in (2^30 - 8, 2^31), of a normal in [2^31, 2^32): Newton's iteration r (2 - n r) from
- * 48/17 - 32/17 n, whose error is 1/17. It squares thrice, to 2^-32.7, and comes from below; what is rounded down on
- * the way makes at most 3 units of 2^-30 in either direction. */
+/* Returns 2^62 / normal minus 1 to 7, in (2^30 - 8, 2^31), for a normal in [2^31, 2^32). Newton's iteration r (2 - n
+ * r) starts from 48/17 - 32/17 n, whose error is 1/17, squares the error three times to 2^-32.7, and stays below the
+ * quotient; rounding down on the way adds at most 3 units of 2^-30 in either direction. */
 static inline TARGET lanes reciprocal(lanes normal)
 {
     lanes r_q30 = all(3031741621) - (lanes)((wide)times_unsigned(normal, all(2021161081)) >> 32);
@@ -119,7 +119,7 @@ static inline TARGET lanes reciprocal(lanes normal)
     return r_q30 - all(4);
 }
 
-/* place_by(): the coordinate plus 1/2, Q16. */
+/* Returns place_by(): the coordinate plus 1/2, Q16. */
 static inline TARGET lanes place(lanes x, lanes shift, lanes rn, int32_t focal_q16, int32_t centre_q16)
 {
     const lanes ratio_q25 = down(times(down(x << shift, 5), rn), 32);
@@ -132,7 +132,7 @@ static inline TARGET lanes is_between(lanes at_q16, int32_t focal_q16)
     return (part >= slack) & (part < all(1 << 16) - slack);
 }
 
-/* The pixels of LANES points; returns the lanes that only t3r_locate_point() can answer. */
+/* Finds the pixels of LANES points; returns the lanes that only t3r_locate_point() can decide. */
 static inline TARGET lanes locate(const t3r_pinhole *restrict view, const t3r_points *restrict points, uint32_t at,
                                   t3r_places *restrict places)
 {
@@ -140,7 +140,7 @@ static inline TARGET lanes locate(const t3r_pinhole *restrict view, const t3r_po
     lanes offset[3], camera[3], wide_offset = all(0);
     for (int i = 0; i < 3; i++) {
         offset[i] = widened(points->point_q20[i] + at) - all(view->pose.position_q20[i]);
-        wide_offset |= offset[i] > all(INT32_MAX); /* 2^31 itself: its product would be that of -2^31 */
+        wide_offset |= offset[i] > all(INT32_MAX); /* 2^31 itself would be multiplied as -2^31 */
     }
     for (int i = 0; i < 3; i++) {
         camera[i] = rounded(times(offset[0], all(r_q30[i])) + times(offset[1], all(r_q30[3 + i])) +

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Projection of LANES Gaussians at a time: project.c step by step, with its bounds. Where a number of project.c has 64
- * bits and that of a usual Gaussian 32, this is the usual one's; the others are marked, and plain C projects them.
- * Comes behind a header of lanes, in a file that names the function: PROJECT. */
+/* Projection of LANES Gaussians at a time, with the steps and bounds of project.c. Where a number of project.c has 64
+ * bits but fits 32 for usual Gaussians, it has 32 here; the other Gaussians are marked, and plain C projects them.
+ * Included after a header of lanes, in a file that names the function PROJECT. */
 #ifndef T3R_KERNELS_LANES_PROJECT_LANES_H
 #define T3R_KERNELS_LANES_PROJECT_LANES_H
 
@@ -14,33 +14,33 @@ static inline T3R_LANES_TARGET lanes held(lanes x, lanes bound)
     return OF_LANES(max_epi32)(OF_LANES(min_epi32)(x, bound), subtract(all(0), bound));
 }
 
-/* a signed, b unsigned */
+/* Multiplies a signed by an unsigned number. */
 static inline T3R_LANES_TARGET wide mixed_product(lanes a, lanes b)
 {
     const lanes beyond = both(a, OF_LANES(srai_epi32)(b, 31)); /* b read as signed lacks 2^32 there */
     return sum(product(a, b), lifted(beyond));
 }
 
-/* x / 2^shift, round-half-up, of 64 bits, twice of which 32 bits hold; shift 1..33. */
+/* Returns x / 2^shift, round-half-up, of 64 bits if twice the result fits 32 bits; shift 1..33. */
 static inline T3R_LANES_TARGET lanes round_shift(wide x, lanes shift)
 {
     return OF_LANES(srai_epi32)(add(low_of(right_by(x, widened(subtract(shift, all(1))))), all(1)), 1);
 }
 
-/* The same of numbers that are not negative; shift 1..63. */
+/* Returns the same for non-negative numbers; shift 1..63. */
 static inline T3R_LANES_TARGET lanes round_shift_positive(wide x, lanes shift)
 {
     return OF_LANES(srli_epi32)(add(low_of(right_by(x, widened(subtract(shift, all(1))))), all(1)), 1);
 }
 
-/* The same of signed ones, |x| < 2^62, from their upper halves; shift 33 and more. */
+/* Returns the same for signed numbers, |x| < 2^62, from their upper halves; shift 33 and more. */
 static inline T3R_LANES_TARGET lanes round_shift_far(wide x, lanes shift)
 {
     return OF_LANES(srai_epi32)(add(signed_right_each(high_of(x), subtract(shift, all(33))), all(1)), 1);
 }
 
-/* floor(2^62 / normal), normal in 2^31..2^32 - 1: a parabola to 1 %, Newton's step to 14 bits and twice the rest over
- * the divisor. The last is off by one at most, as trying all divisors shows. */
+/* Returns floor(2^62 / normal), normal in 2^31..2^32 - 1: a parabola to 1 %, Newton's step to 14 bits, then twice the
+ * remainder over the divisor. The last step is off by at most one, as a test of all divisors shows. */
 static inline T3R_LANES_TARGET lanes inverted(lanes normal)
 {
     const wide one = all_wide(INT64_C(1) << 62);
@@ -61,7 +61,8 @@ static inline T3R_LANES_TARGET lanes inverted(lanes normal)
     return subtract(add(quotient, OF_LANES(srai_epi32)(high, 31)), either(is_more, is_there));
 }
 
-/* t3r_log2_wide_q16(), x in 2^15..2^52 - 1: by sevens down to 24 bits and more, all that the table reads */
+/* Returns t3r_log2_wide_q16(), x in 2^15..2^52 - 1: shifts by sevens down to 24 bits or more, which are all that the
+ * table reads. */
 static inline T3R_LANES_TARGET lanes log_wide_q16(wide x)
 {
     const lanes above = low_of(right(x, 31));
@@ -70,7 +71,7 @@ static inline T3R_LANES_TARGET lanes log_wide_q16(wide x)
     return add(log_q16(low_of(right_by(x, widened(down))), 8), OF_LANES(slli_epi32)(down, 16));
 }
 
-/* t3r_exp2_q16(); a count beyond 31 gives 0, so that of the two shifts one does nothing, or both the same */
+/* Returns t3r_exp2_q16(). A count beyond 31 gives 0, so one of the two shifts does nothing, or both give the same. */
 static inline T3R_LANES_TARGET lanes exp_q16(lanes x_q16)
 {
     const lanes index = OF_LANES(srli_epi32)(both(x_q16, all(0xffff)), 9);
@@ -81,8 +82,8 @@ static inline T3R_LANES_TARGET lanes exp_q16(lanes x_q16)
     return either(left_each(mantissa_q20, up), right_each(add(mantissa_q20, half), down));
 }
 
-/* t3r_log_level_q16() of more than 128: 255 of it have 16 to 23 bits, and levels 5 to 12; eight times as much, or 2^18,
- * is normal by a few steps */
+/* Returns t3r_log_level_q16() of opacities above 128: 255 times that has 16 to 23 bits, and levels are 5 to 12; eight
+ * times the product, or 2^18, is normalised in a few steps. */
 static inline T3R_LANES_TARGET lanes log_level_q16(lanes opacity_q15)
 {
     const lanes log = subtract(log_q16(multiply(opacity_q15, all(255 << 8)), 4), all(23 << 16));
@@ -95,7 +96,7 @@ typedef struct gaussians_by_field {
     lanes position[3], factor[9], exponent, opacity_q15;
 } by_field;
 
-/* From the first ten words of each. */
+/* Converts the first ten words of each Gaussian to fields. */
 static inline T3R_LANES_TARGET by_field fields_of(const lanes word[10])
 {
     by_field g;
@@ -111,10 +112,10 @@ static inline T3R_LANES_TARGET by_field fields_of(const lanes word[10])
     return g;
 }
 
-/* Means before the camera, and whether they are seen; of those that are not, some that harms no step. */
+/* Means in camera coordinates, and whether they are visible; invisible ones have harmless values. */
 typedef struct means {
     lanes z_q20, rn, lz, u_q24, v_q24, are_seen;
-    lanes beyond; /* the highest bit: of a lane that needs more than 32 bits */
+    lanes beyond; /* the highest bit marks a lane that needs more than 32 bits */
 } means;
 
 static inline T3R_LANES_TARGET means see(const t3r_projection *p, const by_field *g)
@@ -151,7 +152,7 @@ static inline T3R_LANES_TARGET means see(const t3r_projection *p, const by_field
     return m;
 }
 
-/* footprint_row() */
+/* Computes footprint_row(). */
 static inline T3R_LANES_TARGET void row_of(const int32_t *w, const int32_t *w2, lanes tangent_q24, int32_t f_q16,
                                            means *m, const by_field *g, lanes row_q12[3])
 {
@@ -180,8 +181,8 @@ static inline T3R_LANES_TARGET wide dot(const lanes a[3], const lanes b[3])
     return sum(sum(product(a[0], b[0]), product(a[1], b[1])), product(a[2], b[2]));
 }
 
-/* The inclusive pixels within centre -+ half, clipped to 0..size - 1. A centre beyond 2^18 px is as far out as one
- * there: no box is as wide. */
+/* The inclusive pixels within centre -+ half, clipped to 0..size - 1. Centres beyond 2^18 px are clamped, since no box
+ * is as wide. */
 typedef struct ranges {
     lanes low, high;
 } ranges;
@@ -204,21 +205,21 @@ static inline T3R_LANES_TARGET lanes squares(const lanes a[3])
     return add(add(multiply(a[0], a[0]), multiply(a[1], a[1])), multiply(a[2], a[2]));
 }
 
-/* x y - z w, below 2^31 but for its sign: squared, nothing shows of it */
+/* Returns (x y - z w)^2. The difference is below 2^31 in size, and squaring removes the sign. */
 static inline T3R_LANES_TARGET wide squared_minor(lanes x, lanes y, lanes z, lanes w)
 {
     const lanes minor = subtract(multiply(x, y), multiply(z, w));
     return product(minor, minor);
 }
 
-/* The covariance less its dilation, Q(24 - 2n), and its determinant, dilated, as conic_of() has them. */
+/* The covariance without its dilation, Q(24 - 2n), and its determinant with dilation, as in conic_of(). */
 typedef struct covariances {
     lanes twice; /* 2 n */
     lanes aa, bb, ab;
-    lanes determinant, s; /* 32 bits of it, times 2^s */
+    lanes determinant, s; /* its 32 bits, times 2^s */
 } covariances;
 
-/* Marks what of them is beyond 32 bits. */
+/* Computes the covariances and marks lanes beyond 32 bits. */
 static inline T3R_LANES_TARGET covariances covariance_of(const lanes a_q12[3], const lanes b_q12[3], lanes *beyond)
 {
     lanes largest = all(0), a[3], b[3], by;
@@ -226,7 +227,7 @@ static inline T3R_LANES_TARGET covariances covariance_of(const lanes a_q12[3], c
         largest = OF_LANES(max_epi32)(largest, OF_LANES(abs_epi32)(a_q12[j]));
         largest = OF_LANES(max_epi32)(largest, OF_LANES(abs_epi32)(b_q12[j]));
     }
-    /* below 2^14 as 2^14: n is 0..10 */
+    /* sizes below 2^14 count as 2^14: n is 0..10 */
     (void)normal_of(OF_LANES(slli_epi32)(OF_LANES(max_epi32)(largest, all(1 << 14)), 6), 8, &by);
     const lanes n = subtract(all(10), by);
     const lanes half = OF_LANES(srli_epi32)(left_each(all(1), n), 1);
@@ -238,7 +239,7 @@ static inline T3R_LANES_TARGET covariances covariance_of(const lanes a_q12[3], c
     c.twice = add(n, n);
     c.aa = squares(a);
     c.bb = squares(b);
-    /* With both below 2^31 so is ab, and their sum below 2^32. */
+    /* with both below 2^31 so is ab, and their sum is below 2^32 */
     *beyond = either(*beyond, either(c.aa, c.bb));
     c.ab = add(add(multiply(a[0], b[0]), multiply(a[1], b[1])), multiply(a[2], b[2]));
     const wide dilations = all_wide((int64_t)T3R_DILATION_Q24 * T3R_DILATION_Q24);
@@ -257,7 +258,7 @@ static inline T3R_LANES_TARGET covariances covariance_of(const lanes a_q12[3], c
     return c;
 }
 
-/* conic_of(); rd = floor(2^62 / determinant). a, c <= 1 / 0.6, and |b| less: twice that is below 2^32. */
+/* Computes conic_of(); rd = floor(2^62 / determinant). a, c <= 1 / 0.6, and |b| is less: twice that is below 2^32. */
 static inline T3R_LANES_TARGET void conic_of(const covariances *c, lanes rd, lanes conic_q30[3])
 {
     const lanes half = OF_LANES(srli_epi32)(left_each(all(1), c->twice), 1);
@@ -265,20 +266,21 @@ static inline T3R_LANES_TARGET void conic_of(const covariances *c, lanes rd, lan
     const lanes shift = add(add(c->twice, c->s), all(9));
     conic_q30[0] = round_shift_positive(unsigned_product(add(c->bb, dilation), rd), shift);
     conic_q30[2] = round_shift_positive(unsigned_product(add(c->aa, dilation), rd), shift);
-    /* a half of -ab rounds up: of ab > 0 it is one less, and then its opposite */
+    /* halves of -ab round up: for ab > 0 subtract one before negating */
     const lanes less = OF_LANES(srli_epi32)(greater(c->ab, all(0)), 31);
     const wide size = difference(unsigned_product(OF_LANES(abs_epi32)(c->ab), rd), widened(less));
     const lanes b = round_shift_positive(size, shift), opposite = subtract(all(0), less);
     conic_q30[1] = add(different(b, opposite), less);
 }
 
-/* The centre in pixels, Q12, as 32 bits hold it. */
+/* Returns the centre in pixels, Q12, in 32 bits. */
 static inline T3R_LANES_TARGET lanes centre_of(lanes tangent_q24, int32_t f_q16, int32_t c_q16)
 {
     return low_of(right(sum(product(tangent_q24, all(f_q16)), all_wide((int64_t)c_q16 * (1 << 24) + (1 << 27))), 28));
 }
 
-/* Splats' ten words of Gaussians' ten; returns a bit each of those that plain C has to project. */
+/* Converts ten words of each Gaussian to ten words of its splat; returns a bit for each Gaussian that plain C has to
+ * project. */
 static inline T3R_LANES_TARGET uint32_t project_lanes(const t3r_projection *p, const lanes gaussians[10],
                                                       lanes splats[10])
 {
@@ -319,7 +321,7 @@ _Static_assert(offsetof(t3r_splat, a_q30) == 8 && offsetof(t3r_splat, z_q20) == 
                    offsetof(t3r_splat, x0) == 32 && offsetof(t3r_splat, y0) == 34 && offsetof(t3r_splat, x1) == 36,
                "a splat's ten words: centre, conic, depth, colours and opacity, box");
 
-/* LANES Gaussians; returns what project_lanes() does. */
+/* Projects LANES Gaussians; returns the bits of project_lanes(). */
 static __attribute__((noinline)) T3R_LANES_TARGET uint32_t project_batch(const t3r_projection *p,
                                                                          const t3r_gaussian *gaussians,
                                                                          t3r_splat *splats)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* ray_row in 32-bit lanes of any number. The file that includes this names the function, RAY_ROW, and defines TARGET,
- * LANES, how its instructions begin (OF) and join(). A quotient x / z is made of z's reciprocal and mended by its
+/* ray_row in any number of 32-bit lanes. The including file names the function RAY_ROW and defines TARGET, LANES, the
+ * prefix of its instructions (OF) and join(). A quotient x / z is computed from z's reciprocal and corrected by its
  * remainder. */
 #ifndef T3R_RAY_LANES_H
 #define T3R_RAY_LANES_H
@@ -12,7 +12,8 @@ typedef int32_t lanes __attribute__((vector_size(LANES * sizeof(int32_t))));
 typedef int32_t lanes_there __attribute__((vector_size(LANES * sizeof(int32_t)), aligned(4), may_alias));
 typedef uint32_t ulanes __attribute__((vector_size(LANES * sizeof(int32_t))));
 typedef uint64_t pairs __attribute__((vector_size(LANES * sizeof(int32_t))));
-typedef long long vector __attribute__((vector_size(LANES * sizeof(int32_t)), may_alias)); /* as instructions take it */
+typedef long long vector
+    __attribute__((vector_size(LANES * sizeof(int32_t)), may_alias)); /* type of the instructions' operands */
 
 /* Joins the even lanes of one and the odd ones of the other. */
 static inline TARGET lanes join(pairs even, pairs odd);
@@ -28,8 +29,8 @@ static inline TARGET pairs multiply_signed(lanes a, lanes b)
     return (pairs)OF(mul_epi32)((vector)a, (vector)b);
 }
 
-/* What is lost and gained below 2^32 by three steps of Newton's: the reciprocal is lowered by it, and so never above.
- */
+/* Largest error of three Newton steps, from rounding below 2^32: the reciprocal is lowered by it, so that it is never
+ * too large. */
 #define NEWTON_ERROR 3
 
 static inline TARGET pairs odd(lanes x)
@@ -42,7 +43,8 @@ static inline TARGET ulanes high(ulanes a, ulanes b)
     return (ulanes)join(multiply(a, b) >> 32, multiply((ulanes)odd((lanes)a), (ulanes)odd((lanes)b)));
 }
 
-/* Below 2^27 in size: of its 64 bits a logical shift leaves enough. sloped: b counts, too. */
+/* Returns a coordinate, below 2^27 in size, for which a logical shift of its 64 bits is enough. sloped: b counts, too.
+ */
 static inline TARGET lanes coordinate(const t3r_ray_map *map, int axis, lanes a, lanes b, bool sloped)
 {
     const uint64_t base = (uint64_t)map->base_q54[axis] + (UINT64_C(1) << 29);
@@ -55,8 +57,8 @@ static inline TARGET lanes coordinate(const t3r_ray_map *map, int axis, lanes a,
     return join(even >> 30, uneven << 2);
 }
 
-/* 2^58 / d within 2^-27 of itself and never above it, d from 2^26 on and below 2^27: three steps of Newton's, from a
- * line that is within 0.086. */
+/* Returns 2^58 / d within 2^-27 of itself and never above it, 2^26 <= d < 2^27: three Newton steps, from a line that
+ * is within 0.086. */
 static inline TARGET ulanes reciprocal(ulanes d)
 {
     const ulanes q32 = d << 5; /* 1/2..1; its reciprocal is in Q31 */
@@ -73,14 +75,14 @@ static inline TARGET lanes size_of(lanes x)
     return (x ^ sign) - sign;
 }
 
-/* x / z in Q24, round-half-up, |x| at most 16 z; inverse: of z 2^shift. */
+/* Returns x / z in Q24, round-half-up, |x| at most 16 z; inverse: of z 2^shift. */
 static inline TARGET lanes divide(lanes x, lanes z, ulanes shift, ulanes inverse)
 {
     const lanes sign = x >> 31, size = (x ^ sign) - sign;
-    /* 0 to 3 too small: less than 2^28 2^-27 by the reciprocal, less than 1 by rounding down, a half as it is rounded
-     */
+    /* 0 to 3 too small: less than 2^28 2^-27 by the reciprocal, less than 1 by rounding down, a half by the final
+     * rounding */
     lanes q = (lanes)(high((ulanes)size << shift, inverse) >> 2);
-    /* what is left of size 2^24 and half of z, or half of z - 1 where x is negative: 0 up to 4 z */
+    /* the remainder of size 2^24 plus half of z, or half of z - 1 where x is negative: 0 up to 4 z */
     lanes rest = (lanes)(((ulanes)size << 24) + (ulanes)((z + sign) >> 1) - (ulanes)q * (ulanes)z);
     const lanes two = rest >= 2 * z;
     q -= 2 * two;
@@ -89,7 +91,7 @@ static inline TARGET lanes divide(lanes x, lanes z, ulanes shift, ulanes inverse
     return (q ^ sign) - sign;
 }
 
-/* Q24 to a place, held to 32 bits: these are bits 24..55 where the upper nine are alike. */
+/* Converts Q24 to a place, clamped to 32 bits: bits 24..55 if the upper nine are equal. */
 static inline TARGET lanes place(lanes at, int32_t scale, int32_t offset)
 {
     const uint64_t base = (uint64_t)((int64_t)offset * (1 << 24) + (1 << 23));

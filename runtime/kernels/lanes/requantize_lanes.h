@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The scaling of a packed layer's sums, LANES outputs at a time (requantize.h). Comes behind a header of lanes. */
+/* The scaling of a packed layer's sums, LANES outputs at a time (requantize.h). Included after a header of lanes. */
 #ifndef T3R_KERNELS_LANES_REQUANTIZE_LANES_H
 #define T3R_KERNELS_LANES_REQUANTIZE_LANES_H
 
 #include "packed_scaling.h"
 
-/* SSE4.1 has no shifts of each lane by its own count: factors stand in the layer in their place. */
+/* SSE4.1 cannot shift each lane by its own count, so the layer stores factors instead. */
 enum { BY_FACTORS = T3R_LANES_BY_FACTORS };
 
 static inline T3R_LANES_TARGET lanes raised(lanes x, lanes left)
@@ -18,14 +18,14 @@ static inline T3R_LANES_TARGET lanes lowered(lanes x, lanes by)
     return BY_FACTORS ? low_of(right(product(x, by), 31)) : signed_right_each(x, by);
 }
 
-/* Of LANES outputs from the first on. */
+/* Loads one kind of scaling for LANES outputs from the first on. */
 static inline T3R_LANES_TARGET lanes t3r_packed_scaling_at(const void *scaling, t3r_packed_scaling which,
                                                            uint32_t whole, uint32_t first)
 {
     return load((const int32_t *)scaling + which * whole + first);
 }
 
-/* The activations of LANES outputs at a pixel, from sums that began with the bias, before they are held within their
+/* Returns the activations of LANES outputs at a pixel, from sums that began with the bias, before clamping to their
  * bits: below 2^31 in size. */
 T3R_LANES_INLINE T3R_LANES_TARGET lanes t3r_packed_scaled(lanes sum, const void *scaling, uint32_t whole,
                                                           uint32_t first, int16_t zero)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Plain C's loops over rows once more: the compiler vectorizes them as well as a hand would. A file that compiles for
- * an instruction set includes this and says what they are called there: ROW(name). */
+/* Plain C's loops over rows, compiled again: the compiler vectorizes them well. A file compiled for an instruction set
+ * includes this and names them: ROW(name). */
 #ifndef T3R_KERNELS_LANES_ROWS_H
 #define T3R_KERNELS_LANES_ROWS_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The sums of scatter.c from factors of pixels, of several pixels a factor. Comes after the type `factor` and after
- * what adds to a sum, modulo 2^32, the products of two factors' pixels (added) and the pixels of one (added_alone). */
+/* The sums of scatter.c from factors of several pixels each. Included after the type `factor` and after the functions
+ * that add to a sum, modulo 2^32: `added` the products of two factors' pixels, `added_alone` the pixels of one. */
 #ifndef T3R_KERNELS_LANES_SCATTER_MOMENTS_H
 #define T3R_KERNELS_LANES_SCATTER_MOMENTS_H
 

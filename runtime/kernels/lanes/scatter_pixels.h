@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Scattering, PIXELS at a time: two rows of eight columns or a row of the tile, or eight columns of a row. Sums are
- * modulo 2^32, so that lanes do not show. Comes behind a header of pixels, in a file that names the function (SCATTER),
- * its target (T3R_SCATTER) and how products of pairs are added (SCATTER_ADD). */
+ * modulo 2^32, so the order of lanes does not matter. Included after a header of pixels, in a file that names the
+ * function (SCATTER), its target (T3R_SCATTER) and the addition of products of pairs (SCATTER_ADD). */
 #ifndef T3R_KERNELS_LANES_SCATTER_PIXELS_H
 #define T3R_KERNELS_LANES_SCATTER_PIXELS_H
 
@@ -13,8 +13,8 @@
 
 #define STEPS_MOST (T3R_BLENDED_ROWS_MOST * T3R_LANES / PIXELS) /* of a splat */
 
-/* Squares and products of a vector's pixels: the first four columns of each part of 128 bits, then the last four, as
- * packing takes them. */
+/* Squares and products of a vector's pixels: the first four columns of each part of 128 bits, then the last four, in
+ * the order of packing. */
 typedef struct step_terms {
     lanes square[2], product[2];
 } step_terms;
@@ -29,13 +29,13 @@ static inline T3R_SCATTER lanes size_bits(lanes x)
     return different(x, OF_LANES(srai_epi32)(x, 31));
 }
 
-/* The sums of both halves' lanes. */
+/* Sums the lanes of both halves. */
 static inline T3R_SCATTER quad folded(lanes x)
 {
     return LANES == 4 ? part(x, 0) : OF_QUAD(add_epi32)(part(x, 0), part(x, 1));
 }
 
-/* The sums of the lanes of four vectors. */
+/* Sums the lanes of each of four vectors. */
 static inline T3R_SCATTER quad sums_of_four(lanes x0, lanes x1, lanes x2, lanes x3)
 {
     const lanes a = add(OF_LANES(unpacklo_epi32)(x0, x1), OF_LANES(unpackhi_epi32)(x0, x1));
@@ -43,21 +43,21 @@ static inline T3R_SCATTER quad sums_of_four(lanes x0, lanes x1, lanes x2, lanes 
     return folded(add(OF_LANES(unpacklo_epi64)(a, b), OF_LANES(unpackhi_epi64)(a, b)));
 }
 
-/* What taking a splat off needs at each step. */
+/* State of removing a splat. */
 typedef struct off_job {
     t3r_wanted *tile;
     lanes colour[3];
     quad scale, less;
-    lanes squares, products, squares_sum, products_sum; /* as terms_of() in scatter.c has them */
+    lanes squares, products, squares_sum, products_sum; /* as in terms_of() in scatter.c */
     lanes lacking[3], weight;
 } off_job;
 
-/* How pixels weigh, how far the splat moves their colours, and what these lack. */
+/* Pixels' weights, the splat's changes of their colours, and their residuals. */
 typedef struct taken_pixels {
     lanes w, moves[3], lacks[3];
 } taken_pixels;
 
-/* Takes a vector's pixels off, of which these are the rows of the low and the high half; fills `out` unless it is NULL.
+/* Removes the splat from a vector of pixels in these rows of the low and the high half; fills `out` unless it is NULL.
  */
 T3R_LANES_INLINE T3R_SCATTER void take_off(const off_job *job, const t3r_blended_row *low_row,
                                            const t3r_blended_row *high_row, uint32_t place, shape which,
@@ -81,7 +81,7 @@ T3R_LANES_INLINE T3R_SCATTER void take_off(const off_job *job, const t3r_blended
     }
 }
 
-/* Columns of three colours as sums of products take them: pairs of two colours, and the third beside 0. */
+/* Columns of three colours for sums of products: pairs of two colours, and the third beside 0. */
 typedef struct columns {
     lanes two, third;
 } columns;
@@ -101,7 +101,7 @@ T3R_LANES_INLINE T3R_SCATTER lanes sum_of_products(columns a, columns b)
     return SCATTER_ADD(OF_LANES(madd_epi16)(a.two, b.two), a.third, b.third);
 }
 
-/* Notes squares and products of four columns of each part: half of them. */
+/* Stores squares and products of four columns of each part: half of them. */
 T3R_LANES_INLINE T3R_SCATTER void note_half(off_job *job, columns moves, columns lacks, lanes *square, lanes *product)
 {
     *square = sum_of_products(moves, moves);
@@ -124,7 +124,7 @@ T3R_LANES_INLINE T3R_SCATTER void note_terms(off_job *job, const taken_pixels *x
     note_half(job, last_columns(x->moves), last_columns(x->lacks), &terms->square[1], &terms->product[1]);
 }
 
-/* Both; without `terms` it is taken off alone. */
+/* Removes the splat from a vector and stores its terms, unless `terms` is NULL. */
 T3R_LANES_INLINE T3R_SCATTER void step(off_job *job, const t3r_blended_row *low_row, const t3r_blended_row *high_row,
                                        uint32_t place, shape which, step_terms *terms)
 {
@@ -163,13 +163,13 @@ typedef struct places {
     lanes at[2], down[2];
 } places;
 
-/* Modulo 2^16. */
+/* Repeats x modulo 2^16. */
 static inline T3R_SCATTER quad all_16(int32_t x)
 {
     return OF_QUAD(set1_epi16)((int16_t)(uint16_t)x);
 }
 
-/* From the group on. */
+/* Returns the places from the group on. */
 static inline T3R_SCATTER places places_of(const t3r_scatter_splat *splat, uint32_t group)
 {
     const bool whole = PIXELS == T3R_TILE_SIDE && splat->span->groups == 2;
@@ -186,7 +186,7 @@ static inline T3R_SCATTER places places_of(const t3r_scatter_splat *splat, uint3
     return p;
 }
 
-/* Orders 0 to 2 */
+/* Adds orders 0 to 2. */
 static inline T3R_SCATTER void add_low(lanes x, lanes y, lanes terms, lanes *sums)
 {
     accumulate(&sums[T3R_M_1], terms, OF_LANES(set1_epi16)(1));
@@ -197,7 +197,7 @@ static inline T3R_SCATTER void add_low(lanes x, lanes y, lanes terms, lanes *sum
     accumulate(&sums[T3R_M_Y2], terms, OF_LANES(mulhrs_epi16)(y, y));
 }
 
-/* Orders 3 and 4 */
+/* Adds orders 3 and 4. */
 static inline T3R_SCATTER void add_high(lanes x, lanes y, lanes square, lanes *curvature)
 {
     const lanes xx = OF_LANES(mulhrs_epi16)(x, x), xy = OF_LANES(mulhrs_epi16)(x, y), yy = OF_LANES(mulhrs_epi16)(y, y);
@@ -218,7 +218,7 @@ typedef struct moments {
     lanes gradient[T3R_REFINE_MOMENTS_2], curvature[T3R_REFINE_MOMENTS_4];
 } moments;
 
-/* Adds the sums that are asked for, which is known where this is inlined. */
+/* Adds the requested sums, a choice that is constant once inlined. */
 T3R_LANES_INLINE T3R_SCATTER void sum_moments(places at, const step_terms *terms, uint32_t steps, rounding square_by,
                                               rounding product_by, bool low, bool high, moments *to)
 {
@@ -238,7 +238,7 @@ T3R_LANES_INLINE T3R_SCATTER void sum_moments(places at, const step_terms *terms
     *to = m;
 }
 
-/* Sums, each shifted right (or left, below 0) as t3r_scale32() does, held to +-most and added. */
+/* Adds sums, each shifted right (or left, below 0) like t3r_scale32() and clamped to +-most. */
 static inline T3R_SCATTER void add_scaled(lanes x, lanes right, lanes most, int32_t *to)
 {
     const lanes one = all(1);
@@ -249,8 +249,8 @@ static inline T3R_SCATTER void add_scaled(lanes x, lanes right, lanes most, int3
     store(to, add(load(to), sum));
 }
 
-/* Takes the splat off from the group on, and notes the terms of every step unless `terms` is NULL; returns how many
- * there are. */
+/* Removes the splat from the group on, and stores the terms of every step unless `terms` is NULL; returns their
+ * number. */
 T3R_LANES_INLINE T3R_SCATTER uint32_t collect_terms(off_job *job, const t3r_scatter_splat *splat, uint32_t group,
                                                     step_terms *terms)
 {
@@ -275,7 +275,7 @@ T3R_LANES_INLINE T3R_SCATTER uint32_t collect_terms(off_job *job, const t3r_scat
     return steps;
 }
 
-/* Groups that are taken one by one: both are a row of the tile where a vector holds one. */
+/* Returns the number of groups taken separately: a vector that holds a row of the tile takes both together. */
 static inline uint32_t passes_of(const t3r_scatter_splat *splat)
 {
     return PIXELS == T3R_TILE_SIDE ? 1 : splat->span->groups;
@@ -285,7 +285,7 @@ _Static_assert(offsetof(t3r_refine_sums, gradient) == 4 * sizeof(int32_t) &&
                    offsetof(t3r_refine_sums, curvature) == (4 + T3R_REFINE_MOMENTS_2) * sizeof(int32_t),
                "sums lie one behind the other");
 
-/* fine: what is lacking, and the weight. */
+/* fine: sums of residuals, and the weight. */
 static inline T3R_SCATTER void add_sums(quad fine, const moments *m, const t3r_sum_shifts *by, int32_t most,
                                         t3r_refine_sums *to)
 {
@@ -327,7 +327,7 @@ typedef struct term_shifts {
 
 static inline T3R_SCATTER term_shifts shifts_of(const off_job *job, uint32_t rows)
 {
-    /* of squares and products side by side, all lanes folded into two */
+    /* squares and products side by side, all lanes folded into two */
     lanes bits = either(OF_LANES(unpacklo_epi32)(job->squares, job->products),
                         OF_LANES(unpackhi_epi32)(job->squares, job->products));
     lanes sums = add(OF_LANES(unpacklo_epi32)(job->squares_sum, job->products_sum),
@@ -339,9 +339,9 @@ static inline T3R_SCATTER term_shifts shifts_of(const off_job *job, uint32_t row
                          t3r_term_shift((uint32_t)(all_bits >> 32), (uint32_t)(size >> 32), rows)};
 }
 
-/* What the steps leave beside their terms. */
+/* Sums of the steps, apart from their terms. */
 typedef struct taken {
-    quad fine; /* what is lacking, and the weight */
+    quad fine; /* residuals, and the weight */
     term_shifts shift;
     uint32_t steps;
 } taken;
@@ -379,7 +379,7 @@ T3R_LANES_INLINE T3R_SCATTER void add_terms(const t3r_scatter_splat *splat, cons
                  {none, none, none, none, none, none, none, none, none, none, none, none, none, none, none}};
     for (uint32_t group = 0; group < passes; group++, terms += steps) {
         const places at = places_of(splat, group);
-        /* twice, as no instruction set has registers for all sums at once */
+        /* twice, because no instruction set has registers for all sums together */
         sum_moments(at, terms, steps, square_by, product_by, true, false, &m);
         sum_moments(at, terms, steps, square_by, product_by, false, true, &m);
     }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Corrections, LANES Gaussians at a time: solve.c step by step, a Gaussian a lane of 32 bits. Comes behind a header of
- * lanes, in a file that names the function: SOLVE. */
+/* Corrections, LANES Gaussians at a time, with the steps of solve.c, one 32-bit lane per Gaussian. Included after a
+ * header of lanes, in a file that names the function SOLVE. */
 #ifndef T3R_KERNELS_LANES_SOLVE_LANES_H
 #define T3R_KERNELS_LANES_SOLVE_LANES_H
 
@@ -33,31 +33,31 @@ static inline T3R_LANES_TARGET ints held(ints x, ints bound)
     return most(least(x, bound), -bound);
 }
 
-/* b where the mask has ones, else a */
+/* Returns b where the mask has ones, else a. */
 static inline T3R_LANES_TARGET ints where(ints mask, ints b, ints a)
 {
     return (ints)chosen((lanes)mask, (lanes)b, (lanes)a);
 }
 
-/* Shifts by 32 and more, or by less than 0, give 0; those of signed numbers to the right the sign. */
+/* Shift; counts of 32 and more, or below 0, give 0, or the sign for right shifts of signed numbers. */
 static inline T3R_LANES_TARGET ints left(ints x, ints by)
 {
     return (ints)left_each((lanes)x, (lanes)by);
 }
 
-/* By 1 and more, round-half-up */
+/* Shifts right by 1 and more, round-half-up. */
 static inline T3R_LANES_TARGET ints rounded_right(ints x, ints by)
 {
     return ((ints)signed_right_each((lanes)x, (lanes)(by - 1)) + 1) >> 1;
 }
 
-/* t3r_scale32() */
+/* Returns t3r_scale32(). */
 static inline T3R_LANES_TARGET ints scaled(ints x, ints up)
 {
     return where(up < 0, rounded_right(x, -up), left(x, up));
 }
 
-/* t3r_msb32(), and 0 of 0 */
+/* Returns t3r_msb32(), and 0 for 0. */
 static inline T3R_LANES_TARGET ints highest_bit(ints x)
 {
     const quad of_nibble = OF_QUAD(setr_epi8)(0, 0, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3);
@@ -70,7 +70,7 @@ static inline T3R_LANES_TARGET ints highest_bit(ints x)
     return bit + (ints)OF_LANES(shuffle_epi8)(repeated(of_nibble), (lanes)x);
 }
 
-/* The sums of Gaussians by field: gradient, curvature, area, axes; behind the last Gaussian, it again. */
+/* The sums of Gaussians by field: gradient, curvature, area, axes; pads by repeating the last Gaussian. */
 #define FIRST_WORD (offsetof(t3r_refine_sums, gradient) / sizeof(int32_t))
 #define WORDS (sizeof(t3r_refine_sums) / sizeof(int32_t) - FIRST_WORD)
 enum { GRADIENT, CURVATURE = T3R_REFINE_MOMENTS_2, AREA = CURVATURE + T3R_REFINE_MOMENTS_4 };
@@ -95,7 +95,6 @@ typedef struct equations {
     ints a[PARAMETERS][PARAMETERS], b[PARAMETERS], damping, a_up, b_up;
 } equations;
 
-/* room_of() */
 static inline T3R_LANES_TARGET ints room_of(const ints *x, int count, int32_t bits)
 {
     ints all = {0};
@@ -155,7 +154,6 @@ typedef struct inverse_root {
     ints root, straight, up;
 } inverse_root;
 
-/* inverse_root_of() */
 static inline T3R_LANES_TARGET inverse_root inverse_root_of(ints d)
 {
     const ints up = (31 - highest_bit(d)) >> 1;
@@ -170,24 +168,23 @@ static inline T3R_LANES_TARGET inverse_root inverse_root_of(ints d)
     return (inverse_root){root, (ints)((f * (uints)root) >> 15), up};
 }
 
-/* correlation_of() */
 static inline T3R_LANES_TARGET ints correlation_of(ints a, const inverse_root *i, const inverse_root *j)
 {
     const ints whole = all_of(INT16_MAX), half = (held(scaled(a, i->up + j->up - 17), whole) * i->root) >> 16;
     return held((half * j->root) >> 14, whole);
 }
 
-/* Two numbers of 16 bits a lane, as a product of pairs takes them. */
+/* Packs two 16-bit numbers per lane, for products of pairs. */
 static inline T3R_LANES_TARGET lanes paired(ints even, ints odd)
 {
     return OF_LANES(blend_epi16)((lanes)even, (lanes)(odd << 16), 0xaa);
 }
 
-/* What the sweeps go over. */
+/* Inputs of the sweeps. */
 typedef struct unit_system {
-    lanes a_q15[PARAMETERS][PARAMETERS / 2]; /* pairs of a row */
-    ints b[PARAMETERS];                      /* the right sides, with the half that rounds */
-    ints most[PARAMETERS];                   /* of the unknowns */
+    lanes a_q15[PARAMETERS][PARAMETERS / 2]; /* pairs in a row */
+    ints b[PARAMETERS];                      /* right sides, plus half for rounding */
+    ints most[PARAMETERS];                   /* bounds of the unknowns */
 } unit_system;
 
 static T3R_LANES_TARGET void sweep(const unit_system *s, ints y[PARAMETERS])
@@ -215,7 +212,7 @@ static inline T3R_LANES_TARGET ints correlation(const equations *e, int i, int j
     return i == j ? all_of(0) : e->a[T3R_MAX(i, j)][T3R_MIN(i, j)];
 }
 
-/* solve(); beside the diagonal, the matrix becomes the correlations. */
+/* Computes solve(); off the diagonal, the matrix becomes the correlations. */
 static T3R_LANES_TARGET void solve(equations *e, ints x_q16[PARAMETERS])
 {
     inverse_root root[PARAMETERS];
@@ -245,7 +242,7 @@ static T3R_LANES_TARGET void solve(equations *e, ints x_q16[PARAMETERS])
     for (int i = 0; i < PARAMETERS; i++) {
         const ints up = least(top + root[i].up + e->a_up - e->b_up - 40, all_of(UP_MOST));
         const ints x = y[i] * root[i].root;
-        /* Held before it is raised, at what leaves the bound but still fits. */
+        /* clamped before the shift, to a number that exceeds the bound but still fits */
         const ints bound = (ints)right_each(all(SOLUTION_MOST_Q16), (lanes)up) + 1;
         x_q16[i] = held(where(up < 0, rounded_right(x, -up), left(held(x, bound), up)), all_of(SOLUTION_MOST_Q16));
     }

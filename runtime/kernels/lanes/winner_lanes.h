@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* winner_row in vectors of WORDS disparities. The right pixels that a left one has for candidates stand in a window
- * that moves by one lane a pixel; the lane that leaves it is done. */
+/* winner_row in vectors of WORDS disparities. The candidates of a left pixel among the right ones are kept in a window
+ * that moves by one lane per pixel; the lane that leaves it is complete. */
 #ifndef T3R_WINNER_LANES_H
 #define T3R_WINNER_LANES_H
 
@@ -10,10 +10,10 @@ typedef int16_t words __attribute__((vector_size(BYTES)));
 
 static inline TARGET words load_words(const int16_t *from, uint32_t count); /* INT16_MAX from `count` on */
 static inline TARGET void store_words(int16_t *to, words x, uint32_t count);
-/* Each lane's neighbour below; the lowest takes that of `next`. */
+/* Returns each lane's neighbour below; the lowest takes that of `next`. */
 static inline TARGET words word_below(words x, words next);
 static inline TARGET int16_t least_word(words x);
-/* The first lane that equals `value`; WORDS and more: none. */
+/* Returns the first lane that equals `value`; WORDS or more: none. */
 static inline TARGET uint32_t first_equal(words x, int16_t value);
 
 static inline TARGET words lesser(words a, words b)
@@ -21,7 +21,7 @@ static inline TARGET words lesser(words a, words b)
     return (words)OF(min_epi16)((vector)a, (vector)b);
 }
 
-/* a where x < y, else b */
+/* Returns a where x < y, else b. */
 static inline TARGET words where_less(words x, words y, words a, words b)
 {
     return (words)OF(blendv_epi8)((vector)b, (vector)a, OF(cmpgt_epi16)((vector)y, (vector)x));
@@ -32,7 +32,7 @@ static inline TARGET words all_words(int16_t x)
     return (words){0} + x;
 }
 
-/* The least k of the least sum, and the least of the sums but for those beside it. */
+/* Finds the least k with the least sum, and the least sum except beside it. */
 static inline __attribute__((always_inline)) TARGET void left(const int16_t *sums, uint32_t count, int16_t least,
                                                               uint16_t *first, uint16_t *second)
 {
@@ -53,11 +53,11 @@ static inline __attribute__((always_inline)) TARGET void left(const int16_t *sum
     *second = (uint16_t)least_word(other);
 }
 
-/* count: the disparities */
+/* count: the number of disparities, as a constant */
 static inline __attribute__((always_inline)) TARGET void winners(const t3r_winner_row *given, const uint32_t count)
 {
     enum { VECTORS = T3R_PATH_MOST / WORDS };
-    const t3r_winner_row all = *given, *row = &all; /* a copy: writing vectors changes none of what it holds */
+    const t3r_winner_row all = *given, *row = &all; /* a copy, which vector writes cannot change */
     const uint32_t width = row->width, vectors = (count + WORDS - 1) / WORDS;
     const uint32_t last = (vectors - 1) * WORDS;
     const words none = all_words(INT16_MAX), nowhere = all_words(0);
@@ -91,11 +91,11 @@ static inline __attribute__((always_inline)) TARGET void winners(const t3r_winne
         if (shown) {
             left(sums, count, least_word(least), &row->first[x], &row->second[x]);
         }
-        /* the uppermost lane is done; those below it are written again */
+        /* the uppermost lane is complete; the lanes below it are written again */
         store_words(best_to, next_best, count - last);
         store_words(at_to, next_at, count - last);
     }
-    /* what is left in the window, which has moved once more */
+    /* the rest of the window, which has moved once more */
     _Pragma("GCC unroll 1") for (uint32_t n = 0; n + 1 < count; n++)
     {
         row->best[n] = best[(n + 1) / WORDS][(n + 1) % WORDS];

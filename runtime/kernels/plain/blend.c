@@ -43,7 +43,7 @@ uint16_t t3r_alpha_q16(int32_t q_q17, uint16_t opacity_q16)
     return alphas_of(q, opacity_q16).x[0];
 }
 
-/* A row's lanes as blended. */
+/* A row's blended lanes. */
 typedef struct blended {
     t3r_lanes weight, alpha;
 } blended;

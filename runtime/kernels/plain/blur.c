@@ -31,7 +31,7 @@ void t3r_blur_column_c(const uint16_t *const rows[T3R_BLUR_TAPS], uint32_t width
     }
 }
 
-/* In the middle no sample is clamped: the nine rows are one row, each a sample further. */
+/* In the middle no sample is clamped: the nine rows are one row, each shifted by a sample. */
 void t3r_blur_row_c(const uint16_t *restrict row, uint32_t width, uint16_t *restrict out)
 {
     const int32_t last = (int32_t)width, from = T3R_MIN(T3R_BLUR_REACH, last),

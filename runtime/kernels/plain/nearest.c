@@ -71,7 +71,7 @@ static uint16_t nearest_of_all(const t3r_centres *centres, const int16_t *p)
 }
 
 /* Searches the neighbours of centre g as long as one of them can still be nearer. With d = |p - c_g|, a centre c with
- * c - c_g|^2 > 4 d^2 + 4 has |p - c|^2 > d^2 + 1, so its score, even rounded down, is not below g's. Returns false if
+ * |c - c_g|^2 > 4 d^2 + 4 has |p - c|^2 > d^2 + 1, so its score, even rounded down, is not below g's. Returns false if
  * the list ended before that. */
 static bool nearest_near(const t3r_centres *centres, const t3r_neighbours *neighbours, const int16_t *p, int32_t norm,
                          uint32_t g, uint16_t *nearest)

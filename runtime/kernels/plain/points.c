@@ -25,7 +25,7 @@ static int64_t place(int64_t x, int64_t z, int32_t focal_q16, int32_t centre_q16
     return t3r_round_shift64(t3r_round_shift64(ratio_q24 * focal_q16, 24) + centre_q16, 16); /* 2^28 x 2^30 */
 }
 
-/* As place(), by a reciprocal of z, z 2^shift = 2^62 / rn: x 2^shift is at most 2^36, 1/32 of it below 2^31. */
+/* Computes place() by a reciprocal of z, z 2^shift = 2^62 / rn: x 2^shift is at most 2^36, 1/32 of it below 2^31. */
 static int64_t place_by(int64_t x, int64_t z, uint32_t shift, int64_t rn, int32_t focal_q16, int32_t centre_q16)
 {
     const int64_t ratio_q25 = ((x * ((int64_t)1 << shift) >> 5) * rn) >> 32;

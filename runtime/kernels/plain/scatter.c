@@ -9,12 +9,11 @@ typedef struct pixel_terms {
     uint32_t square[T3R_BLENDED_ROWS_MOST][T3R_LANES]; /* |g|^2, levels^2 Q(14 + 2 scale), below 3 x 2^30 */
     int32_t product[T3R_BLENDED_ROWS_MOST][T3R_LANES]; /* g . r, levels^2 Q(11 + scale), below 3 x 2^27 */
     uint32_t squares, products;                        /* bitwise or of their sizes */
-    uint32_t squares_sum, products_sum;                /* sums of their sizes, each without its last 8 bits: below
-                                                        * 2^32 */
+    uint32_t squares_sum, products_sum; /* sums of their sizes, each without its last 8 bits: below 2^32 */
 } pixel_terms;
 
-/* Computes the terms, and replaces the colours behind the splat by those behind the previous one. Weights are scaled so
- * that the largest takes 15 bits. In sums of w r, w has as many bits less as counting the pixels takes: below 2^31. */
+/* Computes the terms, and replaces the colours behind the splat by those behind the previous one. Weights are scaled
+ * so that the largest takes 15 bits. In sums of w r, w has fewer bits by the bits of the pixel count: below 2^31. */
 static void terms_of(t3r_wanted *restrict tile, const t3r_scatter_splat *splat, uint32_t less,
                      pixel_terms *restrict terms, int32_t colour[3], int32_t *weight)
 {

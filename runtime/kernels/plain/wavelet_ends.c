@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The first and last rows of a db2 transform. They come once a plane, so variants are not worth it. */
+/* The first and last rows of a db2 transform. They occur once per plane, so variants would gain little. */
 #include "core/fixed.h"
 #include "kernels/wavelet_rows.h"
 

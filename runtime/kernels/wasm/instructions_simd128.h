@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* WebAssembly's vector instructions by the names that the code of kernels/lanes calls them: those of SSE4.1, which say
- * what each does. Macros, as names that are put together cannot be renamed: tools/amalgamate renames functions. */
+/* WebAssembly's vector instructions under the names that kernels/lanes uses: those of SSE4.1. Macros, because
+ * tools/amalgamate, which renames functions, cannot rename names that are pasted together. */
 #ifndef T3R_KERNELS_WASM_INSTRUCTIONS_SIMD128_H
 #define T3R_KERNELS_WASM_INSTRUCTIONS_SIMD128_H
 
@@ -40,8 +40,7 @@ typedef v128_t quad;
 #define simd_shuffle_epi8 wasm_i8x16_swizzle
 #define simd_abs_epi32 wasm_i32x4_abs
 
-/* By less than the bits of a lane, as WebAssembly counts modulo these: by a known count, or by that in the first lane.
- */
+/* Shift by less than the bits of a lane, as WebAssembly counts modulo these: by a constant, or by the first lane. */
 #define simd_srli_epi16 wasm_u16x8_shr
 #define simd_slli_epi32 wasm_i32x4_shl
 #define simd_srli_epi32 wasm_u32x4_shr
@@ -71,7 +70,7 @@ typedef v128_t quad;
 #define simd_unpacklo_epi64(a, b) wasm_i64x2_shuffle(a, b, 0, 2)
 #define simd_unpackhi_epi64(a, b) wasm_i64x2_shuffle(a, b, 1, 3)
 
-/* Words of b where the constant has a bit. */
+/* Selects words of b where the constant has a bit. */
 #define SIMD_WORD(bits, i) ((int16_t) - ((bits) >> (i)&1))
 #define simd_blend_epi16(a, b, bits)                                                                                   \
     wasm_v128_bitselect(b, a,                                                                                          \
@@ -79,7 +78,7 @@ typedef v128_t quad;
                                          SIMD_WORD(bits, 3), SIMD_WORD(bits, 4), SIMD_WORD(bits, 5),                   \
                                          SIMD_WORD(bits, 6), SIMD_WORD(bits, 7)))
 
-/* Right by a constant number of bytes. */
+/* Shifts right by a constant number of bytes. */
 #define simd_srli_si128(x, by)                                                                                         \
     wasm_i8x16_shuffle(x, wasm_i32x4_const_splat(0), (by), (by) + 1, (by) + 2, (by) + 3, (by) + 4, (by) + 5, (by) + 6, \
                        (by) + 7, (by) + 8, (by) + 9, (by) + 10, (by) + 11, (by) + 12, (by) + 13, (by) + 14, (by) + 15)
@@ -91,7 +90,7 @@ typedef v128_t quad;
 #define simd_mul_epi32(a, b) wasm_i64x2_extmul_low_i32x4(even_first(a), even_first(b))
 #define simd_mul_epu32(a, b) wasm_u64x2_extmul_low_u32x4(even_first(a), even_first(b))
 
-/* -1 times -1 is -1, as modulo 2^16: the instruction holds it to the largest number. */
+/* -1 times -1 wraps to -1; the instruction saturates instead. */
 T3R_LANES_INLINE quad rounded_products(quad a, quad b)
 {
     const quad least = wasm_i16x8_const_splat(INT16_MIN);

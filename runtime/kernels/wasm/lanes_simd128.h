@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Four numbers of 32 bits, and of 64 where a product has them: in vectors of WebAssembly. */
+/* Four lanes of 32 bits, or 64 for products, in vectors of WebAssembly. */
 #ifndef T3R_KERNELS_WASM_LANES_SIMD128_H
 #define T3R_KERNELS_WASM_LANES_SIMD128_H
 
@@ -27,7 +27,7 @@ T3R_LANES_INLINE void store_quad(void *to, quad x)
     wasm_v128_store(to, x);
 }
 
-/* The first 64 bits, or 32; the others are 0. */
+/* Load the first 64 bits, or 32; the others are 0. */
 T3R_LANES_INLINE quad load_half_quad(const void *from)
 {
     return wasm_v128_load64_zero(from);
@@ -48,7 +48,7 @@ T3R_LANES_INLINE void store_quarter_quad(void *to, quad x)
     wasm_v128_store32_lane(to, x, 0);
 }
 
-/* The least of four numbers of 32 bits. */
+/* Returns the least of four numbers of 32 bits. */
 T3R_LANES_INLINE int32_t least_of_quad(quad x)
 {
     x = wasm_i32x4_min(x, wasm_i32x4_shuffle(x, x, 2, 3, 0, 1));
@@ -78,25 +78,25 @@ T3R_LANES_INLINE quad part(lanes x, int i)
     return x;
 }
 
-/* The same 128 bits throughout. */
+/* Repeats 128 bits. */
 T3R_LANES_INLINE lanes repeated(quad x)
 {
     return x;
 }
 
-/* a bit of each lane's sign */
+/* Returns one bit per lane, its sign. */
 T3R_LANES_INLINE uint32_t signs_of(lanes x)
 {
     return (uint32_t)wasm_i32x4_bitmask(x);
 }
 
-/* 2^exponent, of exponents 0..31: as a number in floating point and then whole. */
+/* Returns 2^exponent for exponents 0..31, by conversion from floating point. */
 T3R_LANES_INLINE lanes power_of_two(lanes exponent)
 {
     return wasm_u32x4_trunc_sat_f32x4(wasm_i32x4_shl(add(exponent, all(127)), 23));
 }
 
-/* Shifts of each lane by its own count, as products: there is no instruction for them. Counts beyond the bits give 0,
+/* Shift each lane by its own count, by multiplication, because there is no instruction. Counts beyond the bits give 0,
  * or the sign. */
 T3R_LANES_INLINE lanes left_each(lanes x, lanes by)
 {
@@ -117,7 +117,7 @@ T3R_LANES_INLINE lanes signed_right_each(lanes x, lanes by)
     return different(right_each(different(x, sign), by), sign);
 }
 
-/* Likewise two of 64 bits. */
+/* Shift two 64-bit numbers in the same way. */
 T3R_LANES_INLINE uint64_t right_64(uint64_t x, uint64_t by)
 {
     return by < 64 ? x >> by : 0;
@@ -142,8 +142,8 @@ T3R_LANES_INLINE wide left_by(wide x, wide by)
     return (wide){SHIFTED_64(left_64, x.even, by.even), SHIFTED_64(left_64, x.odd, by.odd)};
 }
 
-/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: how far. The exponent of the number in floating point
- * says it: without the bits below a 1 that follow it, rounding cannot carry. */
+/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: the shift. The exponent of the number converted to
+ * floating point gives the shift; bits below a 1 are cleared first, so that rounding cannot carry. */
 T3R_LANES_INLINE lanes normal_of(lanes x, int first_step, lanes *by)
 {
     (void)first_step;
@@ -152,19 +152,19 @@ T3R_LANES_INLINE lanes normal_of(lanes x, int first_step, lanes *by)
     return multiply(x, power_of_two(*by));
 }
 
-/* The first 32 bits in all lanes. */
+/* Repeats the first 32 bits in all lanes. */
 T3R_LANES_INLINE lanes first_of(quad x)
 {
     return wasm_i32x4_shuffle(x, x, 0, 0, 0, 0);
 }
 
-/* Pairs of signed numbers of 8 bits: widened to 16. */
+/* Loads pairs of signed 8-bit numbers, widened to 16. */
 T3R_LANES_INLINE lanes load_8(const uint8_t *from)
 {
     return wasm_i16x8_load8x8(from);
 }
 
-/* Numbers of 16 bits, and back: these are below 2^16. */
+/* Load and store 16-bit numbers; stored ones are below 2^16. */
 T3R_LANES_INLINE lanes load_16(const uint16_t *from)
 {
     return wasm_u32x4_load16x4(from);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The variants for WebAssembly: there where the whole module may have vectors, as a module with them does not load
- * elsewhere. */
+/* The variants for WebAssembly, if the whole module may have vectors: engines without them cannot load it. */
 #ifndef T3R_WASM_VARIANTS_H
 #define T3R_WASM_VARIANTS_H
 
@@ -23,7 +22,7 @@
 #else
 #define T3R_SIMD128_REFINEMENT_VARIANTS_(X)
 #endif
-/* X(entry, features, function), as x86/variants.h has it. */
+/* X(entry, features, function), like x86/variants.h. */
 #define T3R_WASM_VARIANTS(X)                                                                                           \
     X(nearest_begin, T3R_CPU_SIMD128, t3r_nearest_begin_simd128)                                                       \
     X(nearest, T3R_CPU_SIMD128, t3r_nearest_simd128)                                                                   \

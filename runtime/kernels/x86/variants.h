@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The variants for x86-64. Each function is compiled for its own instruction set by an attribute, so that the library
- * as a whole runs on every x86-64. A build for general registers alone has none. */
+ * runs on every x86-64. A build for general registers only has none. */
 #ifndef T3R_X86_VARIANTS_H
 #define T3R_X86_VARIANTS_H
 
@@ -14,7 +14,7 @@
 #define T3R_AVX512 __attribute__((target("avx2,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")))
 #define T3R_VNNI __attribute__((target("avx2,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vnni")))
 #define T3R_CPU_X86_VNNI_ (T3R_CPU_AVX2 | T3R_CPU_AVX512 | T3R_CPU_VNNI)
-/* Without optimization each step of these has a frame of vectors of 64 bytes: 20 KiB of stack for projection, 6 for the
+/* Without optimization each step of these has a frame with 64-byte vectors: 20 KiB of stack for projection, 6 for the
  * hash. */
 #ifdef __OPTIMIZE__
 #define T3R_X86_OPTIMIZED 1
@@ -24,7 +24,7 @@
 #else
 #define T3R_X86_OPTIMIZED_(X)
 #endif
-/* What belongs to a feature that a library may be built without. */
+/* Variants of features that a library may be built without. */
 #if T3R_FEATURE_STEREO
 #define T3R_X86_STEREO_VARIANTS_(X)                                                                                    \
     X(census_row, T3R_CPU_AVX2, t3r_census_row_avx2)                                                                   \
@@ -64,7 +64,7 @@
 #else
 #define T3R_X86_REFINEMENT_VARIANTS_(X)
 #endif
-/* X(entry, features, function): its type is the entry's. */
+/* X(entry, features, function); the function has the entry's type. */
 #define T3R_X86_VARIANTS(X)                                                                                            \
     X(packed_row, T3R_CPU_SSE41, t3r_packed_row_sse41)                                                                 \
     X(packed_row, T3R_CPU_AVX2, t3r_packed_row_avx2)                                                                   \
@@ -129,7 +129,7 @@
     T3R_X86_STEREO_VARIANTS_(X)                                                                                        \
     T3R_X86_LEARNED_VARIANTS_(X)                                                                                       \
     T3R_X86_REFINEMENT_VARIANTS_(X)
-/* Of an activation that convolve_packed of these features reads. */
+/* Bytes of an activation that convolve_packed of these features reads. */
 #define T3R_X86_STRIP_BYTES(cpu) (((cpu)&T3R_CPU_X86_VNNI_) == T3R_CPU_X86_VNNI_ ? 1u : 2u)
 #else
 #define T3R_X86_VARIANTS(X)

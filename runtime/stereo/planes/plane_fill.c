@@ -7,14 +7,15 @@
 
 /* Sweeps over the picture: down, up, down, up. */
 #define SWEEPS 4
-/* The length of a step to a neighbour, straight and diagonal, and of a level of luma on it. */
+/* Cost of a step to a neighbour, straight and diagonal, and of a level of luma on it. */
 #define STRAIGHT 5
 #define DIAGONAL 7
 #define LEVEL 5
-/* Pixels on no plane are that far from themselves: mostly they were matched wrongly. */
+/* Initial cost of pixels on no plane, because most are wrong matches. */
 #define STRAY 200
 #define NO_PLANE T3R_PLANES_MOST
-/* A plane that bounds the room has this share of the matched pixels, and for so many on it at most one behind it. */
+/* A plane bounds the room if it has 1/BOUND_SHARE of the matched pixels, and at most one pixel behind it for BOUND_ON
+ * on it. */
 #define BOUND_SHARE 10
 #define BOUND_ON 8
 
@@ -23,14 +24,14 @@ typedef struct filling {
     const t3r_view *view;
     int32_t middle_x, middle_y;
     t3r_planes planes;
-    uint32_t weight_q2[T3R_PLANES_MOST + 1]; /* of the path from pixels on a plane */
+    uint32_t weight_q2[T3R_PLANES_MOST + 1]; /* of steps from pixels on each plane, and on none */
     bool bounds[T3R_PLANES_MOST];
-    int64_t least_q8, most_q8; /* of one over depth on planes */
-    uint16_t *cost;            /* the length of the way; UINT16_MAX = none yet, or longer */
+    int64_t least_q8, most_q8; /* range of one over depth on planes */
+    uint16_t *cost;            /* of the path; UINT16_MAX = none yet, or longer */
     uint8_t *plane, *luma;
 } filling;
 
-/* What matched pixels say of the planes. */
+/* Counts of matched pixels: all, on each plane, and behind it. */
 typedef struct tally {
     uint32_t matched, on[T3R_PLANES_MOST], behind[T3R_PLANES_MOST];
 } tally;
@@ -40,7 +41,7 @@ static int64_t at_q8(const filling *f, uint32_t plane, uint32_t u, uint32_t v)
     return t3r_plane_at_q8(&f->planes.plane[plane], (int32_t)u - f->middle_x, (int32_t)v - f->middle_y);
 }
 
-/* Half as far again as what the search wants: the planes were fitted since. */
+/* Returns 1.5 times the search's tolerance, because its planes were fitted to few pixels. */
 static int64_t within_q8(const filling *f)
 {
     return f->planes.within_q8 + f->planes.within_q8 / 2;
@@ -51,7 +52,7 @@ static bool is_matched(const t3r_view *view, size_t i)
     return view->depth[i] != 0 && view->match_confidence[i] >= T3R_STEREO_LEAST;
 }
 
-/* The plane that a matched pixel is nearest to, if it lies on one. */
+/* Returns the nearest plane to a matched pixel if it lies on one; counts the planes in front of it. */
 static uint8_t plane_of(const filling *f, uint32_t u, uint32_t v, int64_t inverse_q8, tally *c)
 {
     int64_t least = within_q8(f) + 1;
@@ -104,7 +105,7 @@ static void judge(filling *f, const tally *c)
     }
 }
 
-/* The nearest that the bounding planes allow, 0 without any */
+/* Returns the largest one over depth of the bounding planes, 0 without any. */
 static int64_t bound_q8(const filling *f, uint32_t u, uint32_t v)
 {
     int64_t bound = 0;
@@ -122,10 +123,10 @@ static void begin(const filling *f)
             const size_t i = (size_t)v * view->width + u;
             if (f->plane[i] != NO_PLANE &&
                 t3r_inverse_depth_q30(view->depth[i]) * 256 < bound_q8(f, u, v) - within_q8(f)) {
-                f->plane[i] = NO_PLANE; /* behind what bounds the room */
+                f->plane[i] = NO_PLANE; /* behind a plane that bounds the room */
             }
             if (f->plane[i] == NO_PLANE && view->match_confidence[i] < T3R_STEREO_SURE) {
-                view->depth[i] = 0; /* hardly matched, on no plane: better filled */
+                view->depth[i] = 0; /* an uncertain match on no plane: filled instead */
                 view->match_confidence[i] = T3R_STEREO_NONE;
             }
             f->cost[i] = !is_matched(view, i) ? UINT16_MAX : f->plane[i] == NO_PLANE ? STRAY : 0;
@@ -134,7 +135,7 @@ static void begin(const filling *f)
     t3r_stereo_luma(view, f->luma);
 }
 
-/* Pixel `to` takes the plane that pixel `from` has, if the way by it is shorter. */
+/* Gives pixel `to` the plane of pixel `from`, if the path through it is shorter. */
 static inline void offer(const filling *f, size_t to, size_t from, uint32_t step)
 {
     const uint32_t level = (uint32_t)t3r_abs32((int32_t)f->luma[to] - f->luma[from]);
@@ -148,7 +149,7 @@ static inline void offer(const filling *f, size_t to, size_t from, uint32_t step
     }
 }
 
-/* One row, from the one before it on the sweep and along itself both ways. */
+/* Sweeps one row: from the sweep's last row, then along the row both ways. */
 static void sweep_row(const filling *f, size_t row, size_t before, bool first)
 {
     const uint32_t width = f->view->width;

@@ -3,13 +3,13 @@
 
 #include "core/fixed.h"
 
-/* The reach of an outline: what the paths carry from it */
+/* Distance up to which paths carry an outline's influence */
 #define REACH 16
-/* Distances that differ by no more are equal. */
+/* Distances that differ by at most this are equal. */
 #define EQUAL 3
 
-/* How many pixels something is shown from column x on in a direction, up to REACH. At the plane's own end something
- * goes on, as the census has it. */
+/* Returns the number of pixels with content from column x on in a direction, up to REACH. Beyond the plane's own end
+ * counts as content, as in the census. */
 static int32_t shown(const uint8_t *luma, int32_t width, int32_t x, int32_t direction)
 {
     for (int32_t n = 1; n < REACH; n++) {
@@ -24,7 +24,7 @@ static int32_t shown(const uint8_t *luma, int32_t width, int32_t x, int32_t dire
     return REACH;
 }
 
-/* Whether both of a pair of columns end alike on one side. */
+/* Whether two columns are equally far from the end of content on one side. */
 static bool ends_alike(const uint8_t *const luma[2], const int32_t width[2], const int32_t x[2], int32_t direction)
 {
     const int32_t own = shown(luma[0], width[0], x[0], direction);
@@ -52,7 +52,9 @@ void t3r_plane_outline(const t3r_match *match)
                 }
                 const int32_t shift =
                     (int32_t)match->disparities - 1 - t3r_round_shift32(disparity[x], T3R_DISPARITY_BITS);
-                const int32_t columns[2] = {x, side == 0 ? x + shift : x - shift}; /* agreement: it is in the plane */
+                const int32_t columns[2] = {
+                    x, side == 0 ? x + shift
+                                 : x - shift}; /* the partner is in the plane, because both disparities agree */
                 if (ends_alike(luma, width, columns, -1) || ends_alike(luma, width, columns, 1)) {
                     confidence[x] = 0;
                 }

@@ -5,19 +5,19 @@
 #include "core/memory.h"
 #include "stereo/stereo.h"
 
-/* A hypothesis takes as many matched pixels as a quarter of its window has. */
+/* A hypothesis needs matches at 1/LEAST_FILLED of its window's pixels. */
 #define LEAST_FILLED 4
-/* A plane takes as many samples as a hundredth of all there are. */
+/* A plane needs 1/LEAST_SHARE of all samples. */
 #define LEAST_SHARE 100
-/* What lies on a plane is within six times the mean deviation of the median cell from its own plane. */
+/* Pixels lie on a plane within DEVIATIONS times the median cell's mean deviation from its own plane, */
 #define DEVIATIONS 6
-/* But at least within a 128th of the mean: steps of depth are coarse near by. */
+/* and at least within 1/LEAST_WITHIN of the mean: steps of depth are coarse at short range. */
 #define LEAST_WITHIN 128
-/* Least squares over what lies on a plane, so many times: the first sums are those of a few cells. */
+/* Rounds of least squares over the pixels on a plane, because the first fit uses only a few cells. */
 #define FITS 3
-/* What is added to the spread of places is one in so many of a cell's square pixels. */
+/* 1/SPREAD of a cell's square pixels is added to the spread of places. */
 #define SPREAD 128
-/* Samples that a fit takes */
+/* Samples that a fit needs */
 #define LEAST_SAMPLES 8
 
 typedef struct search {
@@ -31,7 +31,7 @@ typedef struct search {
     t3r_plane_sample *sample;
 } search;
 
-/* One over the depth of a matched pixel, 0 of others */
+/* Returns one over the depth of a matched pixel, 0 for others. */
 static int32_t matched_inverse(const t3r_view *view, size_t i)
 {
     const bool matched = view->depth[i] != 0 && view->match_confidence[i] >= T3R_STEREO_LEAST;
@@ -65,7 +65,7 @@ static void merge(t3r_surface_sums *to, const t3r_surface_sums *s)
     to->yi += s->yi;
 }
 
-/* The plane through the sums' mean with their slopes; n > 0. */
+/* Returns the plane through the sums' mean with their slopes; n > 0. */
 static t3r_plane plane_through(const t3r_surface_sums *s, int32_t spread_q4)
 {
     const t3r_surface_slope slope = t3r_surface_slope_of(s, spread_q4);
@@ -90,7 +90,7 @@ static void sum_cells(const search *s)
     }
 }
 
-/* The middle of every square of the sampling grid */
+/* Samples the middle of every square of the sampling grid. */
 static void take_samples(search *s)
 {
     const t3r_view *view = s->view;
@@ -105,7 +105,7 @@ static void take_samples(search *s)
     }
 }
 
-/* How far a cell's pixels, `count` of which are matched, are from its plane, their mean, Q30 + 8 */
+/* Returns the mean distance of a cell's `count` matched pixels from its plane, Q30 + 8. */
 static uint32_t deviation_q8(const search *s, uint32_t column, uint32_t row, int64_t count, const t3r_plane *plane)
 {
     const t3r_view *view = s->view;
@@ -132,7 +132,7 @@ static void insert(uint32_t *rising, uint32_t count, uint32_t value)
     rising[place] = value;
 }
 
-/* Hypotheses of all windows that are matched well enough; returns the median cell's deviation. */
+/* Makes hypotheses of all windows with enough matches; returns the median cell's deviation. */
 static int64_t suppose(search *s, uint32_t *deviations)
 {
     uint32_t cells = 0;
@@ -158,7 +158,7 @@ static int64_t suppose(search *s, uint32_t *deviations)
     return cells > 0 ? deviations[cells / 2] : 0;
 }
 
-/* How far what lies on a plane may be from it, Q30 + 8. */
+/* Returns the distance up to which pixels lie on a plane, Q30 + 8. */
 static int64_t width_of(const search *s, int64_t deviation)
 {
     int64_t n = 0, sum = 0;
@@ -169,7 +169,7 @@ static int64_t width_of(const search *s, int64_t deviation)
     return T3R_MAX(DEVIATIONS * deviation, n > 0 ? t3r_round_div64(sum, n) * 256 / LEAST_WITHIN : 0);
 }
 
-/* Counts samples on a hypothesis. */
+/* Counts the samples on a hypothesis. */
 static uint32_t count_on(const search *s, const t3r_plane *plane, int64_t within_q8)
 {
     uint32_t count = 0;
@@ -204,7 +204,7 @@ static t3r_plane refined(const search *s, t3r_plane plane, int64_t within_q8)
     return plane;
 }
 
-/* Takes the samples on a plane from all hypotheses: each sample is taken once. */
+/* Removes the samples on a plane from the counts of all hypotheses, so that each sample is used once. */
 static void take_away(const search *s, const t3r_plane *plane, int64_t within_q8)
 {
     for (uint32_t k = 0; k < s->samples; k++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The planes that a view's matched pixels lie on (SPEC.md, "Stereo: planes"). */
+/* Finds the planes of a view's matched pixels (SPEC.md, "Stereo: planes"). */
 #ifndef T3R_PLANE_SEARCH_H
 #define T3R_PLANE_SEARCH_H
 
@@ -12,17 +12,17 @@
 
 #define T3R_PLANES_MOST 8u
 
-/* Cells and samples that a view's longer side is cut into: hypotheses come from cells and are counted on samples. */
+/* Cells and samples along a view's longer side: hypotheses come from cells and are counted on samples. */
 #define T3R_PLANE_CELLS 16u
 #define T3R_PLANE_SAMPLES 64u
 
-/* One over depth, Q30 + 8, at the picture's middle and how it grows a pixel to the right and down */
+/* One over depth, Q30 + 8, at the picture's middle, and its change per pixel to the right and down. */
 typedef struct t3r_plane {
     int64_t middle_q8;
     int32_t x_q8, y_q8;
 } t3r_plane;
 
-/* At a place counted from the picture's middle, Q30 + 8 */
+/* Returns one over depth at a place relative to the picture's middle, Q30 + 8. */
 static inline int64_t t3r_plane_at_q8(const t3r_plane *plane, int32_t x, int32_t y)
 {
     return plane->middle_q8 + (int64_t)plane->x_q8 * x + (int64_t)plane->y_q8 * y;
@@ -35,15 +35,15 @@ static inline bool t3r_plane_holds(const t3r_plane *plane, int32_t x, int32_t y,
 
 typedef struct t3r_plane_sample {
     int16_t x, y;
-    int32_t inverse; /* 0: not matched, or on a plane that was found */
+    int32_t inverse; /* 0: not matched, or on a plane already found */
 } t3r_plane_sample;
 
 typedef struct t3r_plane_hypothesis {
     t3r_plane plane;
-    uint32_t samples; /* that lie on it */
+    uint32_t samples; /* samples on it */
 } t3r_plane_hypothesis;
 
-/* Windows of one, four and nine cells */
+/* Number of windows of one, four and nine cells */
 #define T3R_PLANE_HYPOTHESES                                                                                           \
     (T3R_PLANE_CELLS * T3R_PLANE_CELLS + (T3R_PLANE_CELLS - 1) * (T3R_PLANE_CELLS - 1) +                               \
      (T3R_PLANE_CELLS - 2) * (T3R_PLANE_CELLS - 2))
@@ -57,12 +57,12 @@ typedef struct t3r_plane_hypothesis {
 
 typedef struct t3r_planes {
     uint32_t count;
-    t3r_plane plane[T3R_PLANES_MOST]; /* those of more samples first */
-    int64_t within_q8;                /* how far one over depth may be from its plane */
+    t3r_plane plane[T3R_PLANES_MOST]; /* by falling number of samples */
+    int64_t within_q8;                /* largest distance of one over depth from its plane */
 } t3r_planes;
 
-/* The planes with the most matched pixels, each without those of the ones before it. At most
- * 2 T3R_PLANE_HYPOTHESES T3R_PLANE_SAMPLES^2 comparisons. */
+/* Finds the planes with the most matched pixels, each without pixels on earlier ones. At most 2 T3R_PLANE_HYPOTHESES
+ * T3R_PLANE_SAMPLES^2 comparisons. */
 void t3r_search_planes(const t3r_view *view, void *work, t3r_planes *found);
 
 #endif

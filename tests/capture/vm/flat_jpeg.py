@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JPEGs whose decoded samples are known exactly: every block has one colour. Baseline, 4:2:2 (ITU-T T.81)."""
+"""JPEGs whose decoded samples are known exactly, because every block has one colour. Baseline, 4:2:2 (ITU-T T.81)."""
 import struct
 
-STEP = 8  # of quantization: with it a block's coefficient is its sample less 128 (T.81, A.3.3: DC = 8 x the mean)
+STEP = 8  # quantization step with which a block's coefficient is its sample minus 128 (T.81, A.3.3: DC = 8 x the mean)
 DC_LENGTHS = (0, 1, 5, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0)  # T.81, table K.3
 DC_CODES = {0: "00", 1: "010", 2: "011", 3: "100", 4: "101", 5: "110", 6: "1110", 7: "11110", 8: "111110"}
-END_OF_BLOCK = "0"  # the only code of the table for AC
+END_OF_BLOCK = "0"  # the only code of the AC table
 
 
 def segment(marker, content):
@@ -20,15 +20,16 @@ def headers(width, height):
 
 
 def coded(difference):
-    """T.81, F.1.2.1: the number of bits, then the bits, of a negative difference those of itself less one."""
+    """Encodes a difference (T.81, F.1.2.1): the number of bits, then the bits; for a negative difference, the bits
+    of the difference minus one."""
     size = abs(difference).bit_length()
     bits = difference if difference >= 0 else difference + (1 << size) - 1
     return DC_CODES[size] + (f"{bits:0{size}b}" if size else "") + END_OF_BLOCK
 
 
 def jpeg(width, height, blocks):
-    """`blocks`: rows of 16x8 pixels, of (luma left, luma right, Cb, Cr) each; neighbours in coding order differ by
-    less than 256 by themselves."""
+    """Makes a JPEG of `blocks`: rows of 16x8 pixels, each (luma left, luma right, Cb, Cr); neighbours in coding
+    order differ by less than 256."""
     last, bits = [128, 128, 128], []
     for left, right, cb, cr in (block for row in blocks for block in row):
         for component, sample in ((0, left), (0, right), (1, cb), (2, cr)):
@@ -41,7 +42,7 @@ def jpeg(width, height, blocks):
 
 
 def rgb(luma, cb, cr):
-    """A pixel as libjpeg decodes it: JFIF's matrix in 16 bits of fraction (jdcolor.c)."""
+    """Decodes a pixel like libjpeg: JFIF's matrix with 16 fraction bits (jdcolor.c)."""
     def fix(x):
         return int(x * 65536 + 0.5)
     cb, cr, half = cb - 128, cr - 128, 1 << 15
@@ -52,7 +53,7 @@ def rgb(luma, cb, cr):
 
 
 def decoded(blocks):
-    """The samples of jpeg(), rows of R, G, B; chroma repeated, not interpolated."""
+    """Returns the samples of jpeg(), rows of R, G, B; chroma is repeated, not interpolated."""
     out = []
     for row in blocks:
         line = b"".join(rgb(left, cb, cr) * 8 + rgb(right, cb, cr) * 8 for left, right, cb, cr in row)

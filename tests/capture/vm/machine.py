@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A virtual machine with Debian's kernel, drivers of it, and one program to be run in it. No root is needed; with KVM
-where that works, without where not."""
+"""A virtual machine with Debian's kernel, some of its drivers, and one program to run. Needs no root; uses KVM if it
+works."""
 import glob
 import gzip
 import lzma
@@ -12,7 +12,7 @@ import tarfile
 
 from checks import skip
 
-# what insmod is given, in the order of their needs
+# drivers for insmod, in the order of their dependencies
 CAPTURE = [f"media/{name}" for name in (
     "mc/mc v4l2-core/videodev common/videobuf2/videobuf2-common common/videobuf2/videobuf2-memops "
     "common/videobuf2/videobuf2-v4l2 common/videobuf2/videobuf2-vmalloc").split()]
@@ -64,7 +64,7 @@ def kernel_version():
 
 
 def package(folder, name):
-    """The path of a package, downloaded once; it is not installed."""
+    """Returns the path of a package, downloaded once and not installed."""
     need("dpkg-deb", "apt-get")
     os.makedirs(folder, exist_ok=True)
     if not glob.glob(f"{folder}/{name}_*.deb"):
@@ -74,7 +74,7 @@ def package(folder, name):
 
 
 def unpack_kernel(folder):
-    """(vmlinux, folder of drivers)"""
+    """Returns (vmlinux, folder of drivers)."""
     version = kernel_version()
     image = package(folder, f"linux-image-{version}")
     vmlinux, drivers = f"{folder}/vmlinux-{version}", f"{folder}/lib/modules/{version}/kernel/drivers"
@@ -86,7 +86,7 @@ def unpack_kernel(folder):
             subprocess.run(["tar", "-x", "-C", folder, *wanted], stdin=files.stdout, check=True)
         with open(f"{folder}/boot/vmlinuz-{version}", "rb") as file:
             packed = file.read()
-        # an ELF, to be booted by PVH: a decompressor in an emulated processor would take its time
+        # an ELF booted by PVH, because decompressing in an emulated processor would be slow
         with open(vmlinux + ".part", "wb") as file:
             file.write(lzma.LZMADecompressor().decompress(packed[packed.find(b"\xfd7zXZ\0"):]))
         os.rename(vmlinux + ".part", vmlinux)
@@ -94,7 +94,7 @@ def unpack_kernel(folder):
 
 
 def unpack_udev(folder):
-    """The program of udevd, which libcamera hears of cameras from."""
+    """Returns the program of udevd, from which libcamera learns of cameras."""
     program = f"{folder}/udev/bin/udevadm"
     if not os.path.exists(program):
         subprocess.run(["dpkg-deb", "-x", package(folder, "udev"), f"{folder}/udev"], check=True)
@@ -112,7 +112,7 @@ def libraries(program):
 
 
 def build_vimc(folder):
-    """The driver vimc, which Debian's kernel comes without: built from its source against its headers."""
+    """Builds the driver vimc, which Debian's kernel lacks, from its source against Debian's headers."""
     need("make", "cc", "xz")
     module = f"{folder}/vimc/vimc.ko"
     if os.path.exists(module):
@@ -140,7 +140,8 @@ def build_vimc(folder):
 
 
 def initramfs(folder, modules, programs, job, files=(), data=None):
-    """`programs` go to /bin with the libraries that they need; `files` go where they are; `data` is {path: bytes}."""
+    """Packs the root file system: `programs` with their libraries in /bin, `files` at their own paths, `data` as
+    {path: bytes}."""
     root = f"{folder}/root"
     shutil.rmtree(root, ignore_errors=True)
     for name in ("bin", "mod", "proc", "sys", "dev", "tmp", "lib", "lib64"):
@@ -174,7 +175,7 @@ def initramfs(folder, modules, programs, job, files=(), data=None):
 
 
 def boot(folder, vmlinux, image, accelerator, seconds, megabytes=768):
-    """Whether the machine came to its end; what it said, where its second serial port went."""
+    """Boots the machine; returns the console's text and the path of the second serial port's output."""
     out = f"{folder}/out.tar"
     machine = ["-accel", "kvm", "-cpu", "host"] if accelerator == "kvm" else ["-accel", "tcg", "-cpu", "max"]
     command = ["qemu-system-x86_64", "-M", "q35", *machine, "-smp", "1", "-m", str(megabytes), "-nodefaults",
@@ -191,19 +192,19 @@ def boot(folder, vmlinux, image, accelerator, seconds, megabytes=768):
         try:
             process.wait(5)
         except subprocess.TimeoutExpired:
-            late += ", and the machine cannot be ended"  # a KVM that does not work may hold it
+            late += ", and the machine cannot be ended"  # a faulty KVM may block it
     with open(f"{folder}/console", "rb") as console:
         return console.read().decode(errors="replace") + late, out
 
 
 def kvm_works(folder, vmlinux, modules):
-    """Tried once, the answer kept: where KVM is there but does not work a machine hangs before its first word."""
+    """Whether KVM works, tried once and stored: a machine with a faulty KVM hangs before its first output."""
     if not os.access("/dev/kvm", os.R_OK | os.W_OK):
         return False
     answer = f"{folder}/kvm-works"
     if not os.path.exists(answer):
         with open(answer, "w", encoding="ascii") as file:
-            file.write("no")  # should this very test hang
+            file.write("no")  # in case this trial hangs
         said, _ = boot(folder, vmlinux, initramfs(folder, modules, [], "true\n"), "kvm", 20)
         with open(answer, "w", encoding="ascii") as file:
             file.write("yes" if "BOOTED" in said else "no")
@@ -212,8 +213,8 @@ def kvm_works(folder, vmlinux, modules):
 
 
 def run(folder, programs, job, seconds, driver, files=(), data=None, megabytes=768):
-    """Runs the shell script `job` with that driver; {file name: bytes} of what it left in its folder out, how it ran, what
-    the console said. `programs`, `files` and `data` are those of initramfs()."""
+    """Runs the shell script `job` with that driver. Returns {file name: bytes} of its folder out, the accelerator,
+    and the console's text. `programs`, `files` and `data` are those of initramfs()."""
     need("qemu-system-x86_64", "busybox", "cpio")
     vmlinux, drivers = unpack_kernel(folder)
     modules = [f"{drivers}/{m}.ko" for m in MODULES[driver]]

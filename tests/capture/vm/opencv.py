@@ -9,7 +9,7 @@ import mcap_read
 
 TRIM3R, MODULE, INJECT, FOLDER = sys.argv[1:5]
 
-# the driver's bars without its clock: every image is the same
+# the driver's bars without its clock: all images are equal
 JOB = """
 vivid_inject /dev/video0 0x00f0f001 2
 trim3r capture --source v4l2:/dev/video0 --size 320x180 --format BGR3 --frames 2 --json -o out/ours.mcap > out/ours

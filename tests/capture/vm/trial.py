@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the scripts of this folder share: one job in a virtual machine, and a look at what it left."""
+"""Shared by the scripts of this folder: one job in a virtual machine, and checks of its output."""
 import json
 import os
 import time
@@ -11,7 +11,7 @@ OUT_OF_TIME = 600  # seconds: a machine without KVM on a busy processor
 
 
 class Trial:
-    """The files that `job` left in the machine's folder out; `told` are those that a failure shows besides its log."""
+    """The files in the machine's folder out after `job`; a failure shows the log and the files `told`."""
 
     def __init__(self, folder, programs, job, driver, told=(), **options):
         self.start, self.told = time.monotonic(), told
@@ -33,7 +33,8 @@ class Trial:
         return json.loads(self.files[name])
 
     def recorded(self, name, frames):
-        """NAME.live, .replay, .info: a capture, the replay of its recording, what `info` says of it. The first."""
+        """Checks NAME.live, .replay and .info, the results of a capture, its recording's replay and `info`. Returns
+        the first."""
         live, replay, info = (self.json(f"{name}.{part}") for part in ("live", "replay", "info"))
         self.check(live["frames"] == frames, f"{name}: {live}")
         self.check(replay["frames_hash"] == live["frames_hash"], f"{name}: the replay's hash is the live one")
@@ -45,8 +46,8 @@ class Trial:
         print(f"{self.accelerator}, {time.monotonic() - self.start:.0f} s")
 
 
-# in a job: capture, replay and look; what is left is .live, .replay and .info of the name that comes first. $through
-# may have a command that runs another
+# For jobs: captures, replays and inspects; the first argument names the results .live, .replay and .info. $through may
+# hold a command that runs the capture.
 RECORD = """
 record() {
     name=$1

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""usb.py TRIM3R USB_CAMERA FOLDER MJPG [MODULE]: capture from a USB camera by the driver uvcvideo, in a virtual
-machine whose USB bus is virtual as well (vhci_hcd). USB_CAMERA is the camera; every image that it sends is known, so
-every image that is recorded is looked at, and every one that is missing must have been told. MJPG is 1 where that is
-read; MODULE is libcamera's adapter, which is then tried too."""
+"""usb.py TRIM3R USB_CAMERA FOLDER MJPG [MODULE]: capture from a USB camera with the driver uvcvideo, in a virtual
+machine with a virtual USB bus (vhci_hcd). USB_CAMERA is the camera; every image that it sends is known, so every
+recorded image is checked, and every missing one must have been reported. MJPG is 1 if Motion JPEG can be read;
+MODULE is libcamera's adapter, which is then tested too."""
 import random
 import re
 import struct
@@ -20,7 +20,7 @@ WIDTH, HEIGHT = 160, 120  # camera.h
 PICTURES, STEP = 64, 16   # frame F of stream S shows picture STEP x S + F: stream.h
 
 numbers = random.Random(1)
-# rows are windows of one row: no two images alike, and small when they are packed
+# rows are windows of one row: all images differ, and are small when compressed
 row = numbers.randbytes(4 * WIDTH)
 starts = [numbers.sample(range(2 * WIDTH), HEIGHT) for _ in range(PICTURES)]
 yuyv = [b"".join(row[start:start + 2 * WIDTH] for start in picture) for picture in starts]
@@ -28,7 +28,7 @@ blocks = [[[tuple(numbers.randrange(256) for _ in range(4)) for _ in range(WIDTH
           for _ in range(PICTURES)]
 jpegs = [flat_jpeg.jpeg(WIDTH, HEIGHT, picture) for picture in blocks]
 
-# What befalls a camera stands behind its `plug`, as STREAM.FRAME; its streams count from there.
+# The camera's faults follow `plug`, as STREAM.FRAME; its streams count from there.
 JOB = f"""{RECORD}
 plug() {{
     usb_camera /data/yuyv /data/jpegs "$@" 2>> out/camera &
@@ -94,9 +94,9 @@ keep unseen $camera --frames 10 --stall 1500
 
 
 def account(name, pictures, stream=0, starts_late=False):
-    """Every image of a recording is the one that the camera sent at its place, and where one is missing an event says
-    so. {(stream, frame): why} of those; the events that are of no frame. A source that starts late counts from the
-    first image that it gets."""
+    """Checks that every recorded image is the one that the camera sent at its place, and that an event reports each
+    missing one. Returns {(stream, frame): reason} of the missing images, and the events of no frame. A source
+    that starts late counts from the first image that it gets."""
     frame, late, empty, missing, others = 0, 0, True, {}, []
     for topic, _, message in mcap_read.messages(trial.files[f"{name}.mcap"]):
         if topic == "/camera/events":

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""vimc.py TRIM3R MODULE FOLDER [FRAMES]: capture by libcamera from the kernel's virtual camera vimc, in a virtual
-machine: frames of its formats recorded and replayed with the same hash. MODULE is the adapter's."""
+"""vimc.py TRIM3R MODULE FOLDER [FRAMES]: capture with libcamera from the kernel's virtual camera vimc, in a virtual
+machine: frames of its formats recorded and replayed with the same hash. MODULE is libcamera's adapter."""
 import glob
 import sys
 

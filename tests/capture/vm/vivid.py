@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""vivid.py TRIM3R INJECT FOLDER [FRAMES]: capture by V4L2 from the kernel's own virtual camera, in a virtual machine:
-frames of every pixel format recorded and replayed with the same hash, then every fault that the driver can be asked
-for."""
+"""vivid.py TRIM3R INJECT FOLDER [FRAMES]: capture with V4L2 from the kernel's own virtual camera, in a virtual
+machine: frames of every pixel format recorded and replayed with the same hash, then every fault that the driver
+can inject."""
 import sys
 
 from trial import RECORD, Trial
@@ -11,7 +11,7 @@ TRIM3R, INJECT, FOLDER = sys.argv[1:4]
 FRAMES = int(sys.argv[4]) if len(sys.argv) > 4 else 1000
 FORMATS = ("YUYV", "UYVY", "NV12", "RGB3", "BGR3", "GREY")
 
-# vivid's controls: the colour bars need no time to be drawn; faults are asked for one by one
+# vivid's controls: the colour bars are quick to draw; faults are injected one by one
 JOB = f"""{RECORD}
 camera="--source v4l2:/dev/video0 --size 320x180"
 capture() {{ trim3r capture $camera --json --quiet "$@"; }}
@@ -58,7 +58,7 @@ print("|---|---|---|---|---|---|")
 for name in FORMATS:
     live = trial.recorded(name, FRAMES)
     check(live["corrupted"] == 0 and live["clock"] == "monotonic", f"{name}: {live}")
-    # vivid's stamps are of an ideal clock, which may run ahead
+    # vivid's stamps come from an ideal clock, which may be ahead
     latency = "{mean:.1f} / {worst:.1f}".format(**live["latency_ms"]) if "latency_ms" in live else "-"
     print(f"| {name} | {live['frames']} | {live['dropped_driver']} + {live['dropped_slow']} | {live['rate']:.1f} | "
           f"{latency} | "

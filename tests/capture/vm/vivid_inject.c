@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* vivid_inject DEVICE CONTROL VALUE: one V4L2 control, numbers as in C. */
+/* vivid_inject DEVICE CONTROL VALUE: sets one V4L2 control; numbers as in C. */
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>

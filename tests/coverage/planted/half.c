@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One way out of a condition is never taken, and a condition never asked: what the counting must find. */
+/* One way out of a condition is never taken, and a condition never evaluated: the counting must find both. */
 static int half(int number)
 {
     if (number < 0) {

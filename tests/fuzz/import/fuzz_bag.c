@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* libFuzzer: bags from memory as import reads them: pictures decoded, transforms composed, depth registered. Seeds:
+/* libFuzzer: bags in memory, read like import does: pictures decoded, transforms composed, depth registered. Seeds:
  * `recording_tool seeds FOLDER` (tests/recordings). */
 #include <stdlib.h>
 
@@ -8,7 +8,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* Written, so that the reads are not optimised away. */
+/* written, so that the reads are not optimised away */
 extern volatile uint32_t fuzz_bag_sum;
 volatile uint32_t fuzz_bag_sum;
 

@@ -14,7 +14,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 static const char *const names[] = {"rgb.txt", "groundtruth.txt", "depth.txt"};
 enum { LISTS = sizeof names / sizeof names[0] };
 
-/* Lists as links in a folder of this process's own. */
+/* Makes lists as links in a folder of this process. */
 static void make_folder(char folder[64], const uint8_t *data, size_t size, int descriptors[LISTS])
 {
     snprintf(folder, 64, "%s/fuzz_tum.XXXXXX", P_tmpdir);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A recording with one compressed chunk: a byte names the codec, four bytes give the unpacked size, the rest is
- * packed. Gives an error, or frames that can be read. */
+ * compressed data. Gives an error, or frames that can be read. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* libFuzzer: recordings from memory by the reader for firmware, every byte of a frame read, by strips of rows. */
+/* libFuzzer: recordings in memory, read by the reader for firmware, every byte of a frame, in strips of rows. */
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 enum { ROOM = 4096, STRIP_ROWS = 8 };
 
-/* Written, so that the reads are not optimised away. */
+/* written, so that the reads are not optimised away */
 extern volatile uint32_t fuzz_frame_reader_sum;
 volatile uint32_t fuzz_frame_reader_sum;
 
@@ -65,7 +65,7 @@ static void touch_frame(t3r_frame_reader *reader, t3r_frame *f)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    /* On the heap, so that the sanitizer sees accesses beyond. */
+    /* on the heap, so that the sanitizer sees accesses beyond */
     uint8_t *colour = malloc(ROOM), *depth = malloc(ROOM);
     t3r_frame_reader reader;
     input from = {data, size};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* libFuzzer: recordings from memory, every frame read. Seeds: `recording_tool seeds FOLDER` (tests/recordings). */
+/* libFuzzer: recordings in memory, every frame read. Seeds: `recording_tool seeds FOLDER` (tests/recordings). */
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -8,11 +8,11 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* Written, so that the reads are not optimised away. */
+/* written, so that the reads are not optimised away */
 extern volatile uint32_t fuzz_recording_sum;
 volatile uint32_t fuzz_recording_sum;
 
-/* Reads every byte of a frame, so that a sanitizer sees an invalid one. */
+/* Reads every byte of a frame, so that a sanitizer notices an invalid one. */
 static uint32_t touch(const uint8_t *rows, uint32_t stride, uint32_t row_bytes, uint32_t count)
 {
     uint32_t sum = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A float head, made up or damaged in a few places: refused with a reason, or quantized to a file that its reader
+/* A float head, random or damaged in a few places: refused with a reason, or quantized to a file that its reader
  * accepts, or refused by the quantizer with a reason. */
 #include <stdlib.h>
 #include <string.h>
@@ -32,7 +32,7 @@ static void quantize(const float_head *head, uint32_t bits)
     quantized_head_free(&quantized);
 }
 
-/* Every element of every tensor can be read. */
+/* Reads every element of every tensor. */
 static void read_all(const uint8_t *file, size_t count)
 {
     safetensors tensors;
@@ -52,7 +52,8 @@ static void read_all(const uint8_t *file, size_t count)
     safetensors_free(&tensors);
 }
 
-/* data: bits, then damages: two bytes where (even: in the header), one what. Behind 255 the file is data itself. */
+/* data: bits, then damages: two bytes with the place (even: in the header), one with the value. Above 255 the rest is
+ * the file. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static uint8_t *sample;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A weight file, made up or damaged in a few places, with a valid checksum. The firmware's and the host's rules for
+/* A weight file, random or damaged in a few places, with a valid checksum. The firmware's and the host's rules for
  * layers accept the same files, and a refusal has a reason. */
 #include <stdlib.h>
 #include <string.h>
@@ -23,8 +23,8 @@ static uint8_t *sample_file(uint32_t bits, size_t *count)
     return file;
 }
 
-/* data: bits, then damages: two bytes where (even: in header and table), one what. Behind 255 the file is data itself.
- */
+/* data: bits, then damages: two bytes with the place (even: in header and table), one with the value. Above 255 the
+ * rest is the file. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static uint8_t *samples[4];

@@ -137,7 +137,7 @@ static uint8_t *take_plane(input *in, size_t bytes)
     return p;
 }
 
-/* Planes are allocated to the byte, so that a read beyond what width, height and stride promise is caught. */
+/* Planes are allocated to the byte, so that a read beyond width, height and stride is caught. */
 held_frame take_frame(input *in)
 {
     held_frame held = {0};

@@ -30,17 +30,17 @@ uint8_t take8(input *in);
 uint32_t take32(input *in);
 /* Draws a number below the bound from one or two bytes of input; 0 = any number, from four. */
 uint32_t below(input *in, uint32_t bound);
-/* Returns a size near the small ones, or one that must be refused. */
+/* Draws a size near the smallest ones, or one that must be refused. */
 uint32_t take_side(input *in);
 
-/* The settings from the `first` on, each in its range, at most that of `most`; nothing is drawn of one with no choice.
- */
+/* Draws the settings from `first` on, each in its range and at most the one of `most`; a setting with no choice takes
+ * no input. */
 void take_settings(input *in, size_t first, const t3r_config *most, t3r_config *config);
 #define SETTING_AT(name) (offsetof(t3r_config, name) / sizeof(uint32_t))
-/* The most that each may be. */
+/* Returns the largest value of each setting. */
 t3r_config most_settings(void);
 
-/* Zeros; ends the program when there is no memory. */
+/* Returns zeroed memory; ends the program without memory. */
 void *allocate(size_t bytes);
 uint8_t *allocate_arena(size_t bytes);
 
@@ -48,7 +48,7 @@ void require_status(t3r_status status);
 
 t3r_camera take_camera(input *in);
 
-/* Planes are allocated to the byte, so that a read beyond what width, height and stride say is caught. */
+/* Planes are allocated to the byte, so that a read beyond width, height and stride is caught. */
 typedef struct held_frame {
     t3r_frame frame;
     uint8_t *planes[3];
@@ -61,7 +61,7 @@ void free_frame(held_frame *held);
 
 t3r_gaussian take_gaussian(input *in);
 
-/* A target with all its planes, with `padding` elements between rows. */
+/* A target with all its planes and `padding` elements between rows. */
 typedef struct picture {
     t3r_target target;
     size_t bytes[3];

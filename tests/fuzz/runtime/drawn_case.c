@@ -9,16 +9,14 @@
 
 enum { LEAST_SIDE = 16, FREQUENT_SIDES = 13, MOST_CHANNELS_DRAWN = 5, MOST_BRIDGE = 64, MOST_GAUSSIANS = 400u };
 
-/* ---- settings ------------------------------------------------------------------------------------ */
-
-/* Mostly a small one: a build takes the time of its pixels. */
+/* Draws mostly small sides, because a build's time grows with its pixels. */
 static uint32_t take_working_side(input *in, uint32_t least)
 {
     const uint32_t extra = below(in, 16) == 15 ? 64 - LEAST_SIDE - FREQUENT_SIDES : 0;
     return least + extra + below(in, FREQUENT_SIDES);
 }
 
-/* From a few of the points to more than a small picture has; the time of blending grows with the number. */
+/* Draws from a few of the points to more than a small picture has; the time of blending grows with the number. */
 static uint32_t take_gaussians(input *in, uint32_t points)
 {
     const uint32_t shift = below(in, 8), share_q7 = 1 + take8(in), drawn = 1 + (points >> shift) * share_q7 / 128;
@@ -30,7 +28,7 @@ static t3r_allocation allocation_for(t3r_allocation drawn, bool streams)
     return streams && drawn == T3R_ALLOCATE_GIVEN ? T3R_ALLOCATE_DENSITY : drawn;
 }
 
-/* What the head needs at least, or more, or by a default: `drawn` has a kind above eight bits of more. */
+/* Returns the head's need, or more, or the default; bits of `drawn` above the lowest eight choose the kind. */
 static uint32_t head_column_bytes_for(const drawn_case *c, const t3r_config *k, uint32_t drawn)
 {
     const uint32_t kind = drawn >> 8, more = drawn & 255;
@@ -38,7 +36,7 @@ static uint32_t head_column_bytes_for(const drawn_case *c, const t3r_config *k, 
     return kind == 0 ? T3R_MAX(needed, T3R_HEAD_COLUMN_BYTES) : needed + (kind == 1 ? more : 0);
 }
 
-/* What keeps a case small. */
+/* Returns the largest settings that keep a case small. */
 static t3r_config most_drawn(void)
 {
     t3r_config most = most_settings();
@@ -80,7 +78,7 @@ static t3r_config take_case(input *in, const drawn_case *c, bool stereo)
     return k;
 }
 
-/* Every kind of layer, two sources, phases; few channels, some of them odd. */
+/* Draws layers of every kind, two sources, phases; few channels, sometimes an odd number. */
 static void take_weights(input *in, drawn_case *c)
 {
     const uint16_t a = (uint16_t)(3 + below(in, MOST_CHANNELS_DRAWN)),
@@ -101,9 +99,7 @@ static void take_weights(input *in, drawn_case *c)
     REQUIRE(t3r_weights_error(c->weights, c->weights_bytes) == NULL);
 }
 
-/* ---- requests ------------------------------------------------------------------------------------ */
-
-/* Blobs with ties, one plane for all views. */
+/* Draws blobs with ties, one plane for all views. */
 static void take_importance(input *in, drawn_case *c)
 {
     const uint32_t cell = 1 + below(in, 9), seed = take8(in), width = c->config.width, height = c->config.height;
@@ -142,8 +138,6 @@ static t3r_request take_request(input *in, const drawn_case *c)
     return request;
 }
 
-/* ---- frames and cameras -------------------------------------------------------------------------- */
-
 static scenery take_scenery(input *in)
 {
     scenery s = {.cell = 1 + below(in, 8), .contrast = take8(in), .distance = 400 + 8u * take8(in)};
@@ -160,7 +154,7 @@ static scenery take_scenery(input *in)
     return s;
 }
 
-/* Some as large as the working size, some not. NV12 and 4:2:2 have even sides. */
+/* Draws a format; some frames have the working size. NV12 and 4:2:2 have even sides. */
 static t3r_frame take_format(input *in, const t3r_config *config)
 {
     t3r_frame f = {.format = below(in, T3R_PIXEL_FORMAT_COUNT)};
@@ -174,7 +168,7 @@ static t3r_frame take_format(input *in, const t3r_config *config)
     return f;
 }
 
-/* Looks at the wall from near the origin, turned a little. Units of the world are 2^-4 to 2^4 m. */
+/* Draws a camera near the origin that looks at the wall, slightly rotated. World units are 2^-4 to 2^4 m. */
 static t3r_camera take_pose(input *in, const t3r_frame *frame, uint32_t world_shift)
 {
     const uint32_t focal = frame->width * (2 + below(in, 5)) / 4;
@@ -200,8 +194,7 @@ static void take_lens(input *in, t3r_camera *camera)
     }
 }
 
-/* Levels of the picture that the camera of that frame takes: a spot of paint stands where the wall is, whatever the
- * camera's place. */
+/* Returns the level of a pixel of that frame: spots of paint are fixed on the wall for all cameras. */
 static uint8_t level_at(const drawn_case *c, uint32_t index, uint32_t x, uint32_t y, uint32_t channel, uint32_t depth)
 {
     const scenery *s = &c->shows;
@@ -217,7 +210,7 @@ static uint8_t level_at(const drawn_case *c, uint32_t index, uint32_t x, uint32_
     return (uint8_t)T3R_MIN(level, 255u);
 }
 
-/* The wall's depth at a pixel of a picture so wide. */
+/* Returns the wall's depth at a pixel of a picture of this width. */
 static uint32_t depth_at(const scenery *s, uint32_t x, uint32_t y, uint32_t width)
 {
     return s->distance + (x > width / 2 ? s->relief : 0) + y;
@@ -235,7 +228,7 @@ static uint32_t measured_at(const drawn_case *c, uint32_t index, uint32_t x, uin
     return depth_at(s, x, y, width) + (s->noise == 0 ? 0 : (random >> 8) % s->noise);
 }
 
-/* Bytes of a pixel of the first plane; with NV12 the second has as many bytes a row. */
+/* Returns the bytes of a pixel in the first plane; with NV12 the second plane has equal rows. */
 static uint32_t bytes_of_pixel(t3r_pixel_format format)
 {
     return format == T3R_PIXEL_RGB24 || format == T3R_PIXEL_BGR24 ? 3
@@ -275,8 +268,6 @@ held_frame frame_of(const drawn_case *c, uint32_t index, uint32_t padding)
     }
     return held;
 }
-
-/* ---- the case ------------------------------------------------------------------------------------ */
 
 void draw_case(input *in, drawn_case *c)
 {

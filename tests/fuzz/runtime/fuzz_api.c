@@ -42,7 +42,7 @@ static t3r_config take_config(input *in)
     return c;
 }
 
-/* Any field to any value: planned and refused, never run (the bound on time is the settings' own). */
+/* Sets any field to any value: planned and refused, never run, because only the settings' own bounds limit the time. */
 static void wild_config(input *in, t3r_config c)
 {
     uint32_t field = below(in, sizeof c / sizeof(uint32_t)), value = take32(in);
@@ -139,7 +139,7 @@ static void call_add_view(session *s, input *in)
     free_frame(&held);
 }
 
-/* Adds a frame in strips, some out of order; planes begin where the strip does. */
+/* Adds a frame in strips, some out of order; planes begin at the strip. */
 static void call_add_rows(session *s, input *in)
 {
     t3r_camera camera = take_camera(in);
@@ -217,8 +217,8 @@ static void call_move(session *s)
     REQUIRE(t3r_attach(&rt, s->arena, s->arena_bytes / 2) != T3R_OK && rt == NULL);
 }
 
-/* Planes of exactly the bytes that may be read, for the views that there may be; some missing, some strides wrong.
- * False when they are to be refused whatever views there are. */
+/* Makes planes of exactly the bytes that may be read, for at most all views; some are missing, some strides wrong.
+ * Returns false if they must be refused for any number of views. */
 static bool take_importance(const session *s, input *in, uint16_t *planes[T3R_MAX_VIEWS], t3r_request *request)
 {
     const uint32_t width = s->config.width, height = s->config.height, kind = below(in, 16);
@@ -238,7 +238,7 @@ static bool take_importance(const session *s, input *in, uint16_t *planes[T3R_MA
 
 enum { BUDGET = 1, LOSS = 2, ALLOCATION = 4, HEAD = 8, IMPORTANCE = 16 }; /* parts of a request */
 
-/* First or again, by a request of any parts. */
+/* Builds or rebuilds with a request of any parts. */
 static void call_build(session *s, input *in, uint32_t parts)
 {
     uint16_t *planes[T3R_MAX_VIEWS] = {NULL};
@@ -256,7 +256,7 @@ static void call_build(session *s, input *in, uint32_t parts)
     }
 }
 
-/* The whole way at once, so that short inputs come deep. */
+/* Runs a whole session, so that short inputs reach far. */
 static void call_all(session *s, input *in)
 {
     for (uint32_t v = 1 + below(in, s->config.views + 1); v > 0; v--) {
@@ -267,7 +267,7 @@ static void call_all(session *s, input *in)
     call_render(s, in);
 }
 
-/* Binds a head, a truncated one, or none. */
+/* Binds a head, a truncated head, or none. */
 static void call_bind(session *s, input *in)
 {
     static uint8_t *weights;

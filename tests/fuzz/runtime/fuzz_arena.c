@@ -26,7 +26,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 enum { WIDTH = 40, HEIGHT = 32, BUDGET = 100, FEW = 5, MANY = 300, MOST_DAMAGES = 12, MOST_CALLS = 4, FAR_MM = 1500 };
 
-/* ---- sound arenas -------------------------------------------------------------------------------- */
+/* ---- valid arenas -------------------------------------------------------------------------------- */
 
 /* ANALYSED_MANY has labels of nine bits. */
 typedef enum base { ANALYSED, BY_STEREO, STREAM, SCENE_ONLY, VIEWS_ONLY, BUILT, ANALYSED_MANY, BASES } base;
@@ -126,11 +126,11 @@ static bool has_labels(const t3r_runtime *rt)
     return rt->config.views > 0 && !rt->config.stream && rt->config.clusters > 0;
 }
 
-/* Bytes of the state, or of any place. */
 static void damage_bytes(t3r_runtime *rt, input *in, bool of_the_state)
 {
     const size_t range = of_the_state ? sizeof *rt : (size_t)rt->arena_bytes, at = take32(in) % range;
-    const size_t drawn = (size_t)1 << below(in, of_the_state ? 4 : 12); /* once: the macro takes its arguments twice */
+    const size_t drawn =
+        (size_t)1 << below(in, of_the_state ? 4 : 12); /* drawn once: the macro evaluates its arguments twice */
     const size_t bytes = T3R_MIN(drawn, range - at);
     const uint32_t pattern = take8(in), seed = take32(in);
     for (size_t i = 0; i < bytes; i++) {
@@ -229,7 +229,7 @@ static void damage_depth(t3r_runtime *rt, input *in)
     }
 }
 
-/* Returns all views as one: their planes are stored one after the other. */
+/* Returns all views as one, because their planes are stored one after the other. */
 static t3r_view all_views(const t3r_runtime *rt)
 {
     return (t3r_view){.validity = t3r_buffer_at(rt, T3R_BUFFER_VALIDITY),
@@ -377,7 +377,7 @@ static void damage(t3r_runtime *rt, input *in)
     mend(rt, take8(in) % 3 == 0 ? take8(in) : 15);
 }
 
-/* ---- whatever may be called ---------------------------------------------------------------------- */
+/* ---- calls --------------------------------------------------------------------------------------- */
 
 static uint32_t calls_until_cancelled;
 
@@ -455,7 +455,7 @@ static void call_export(const t3r_runtime *rt)
         size_t bytes = 0;
         FILE *file = open_memstream(&text, &bytes);
         REQUIRE(file != NULL);
-        /* only read */
+        /* only read, never written */
         const scene_file made = {
             .frame = scene.frame, .gaussians = (t3r_gaussian *)(uintptr_t)scene.gaussians, .count = scene.count};
         const scene_rows rows = scene_rows_of(&made);

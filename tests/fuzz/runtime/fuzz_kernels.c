@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Turns bytes into a variant of a kernel and its arguments, anything within the ranges of the kernel's header. The
  * result equals plain C, bit for bit, and no byte outside the buffers, which the sanitizer guards, is touched. The
- * checks of tests/kernels make the arguments and take the bytes as random numbers. */
+ * checks of tests/kernels make the arguments from the bytes instead of random numbers. */
 #include "arguments.h"
 #include "host/cpu.h"
 #include "kernels/checks.h"
@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 static input drawn;
 
-/* Returns four bytes in both halves while there are any, then noise. */
+/* Returns four bytes of input in both halves while there are any, then noise. */
 uint64_t unit_random(uint64_t *state)
 {
     if (drawn.left > 0) {
@@ -33,7 +33,7 @@ void guarded_begin(uint64_t seed)
     }
 }
 
-/* Returns memory that ends at the allocation's end, aligned to no more than requested if that is at most 32. */
+/* Returns memory that ends at the allocation's end, with no more than the requested alignment if that is at most 32. */
 void *guarded_take(size_t bytes, size_t align)
 {
     REQUIRE(taken_count < sizeof taken / sizeof taken[0]);

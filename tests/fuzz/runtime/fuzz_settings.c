@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Turns bytes into a case (drawn_case.h) and a way of running it that varies everything without influence on
- * results: the arena's size, place, previous contents and use, the room that settings leave, the number of workers
- * and the order of their tasks, the processor's variants, strips instead of whole frames, bytes between rows, and a
- * call that was cancelled and repeated. The plain way is a firmware's: plain C, one worker, all in order. Both give
- * the same statuses, hashes of stages, scenes and pictures; a difference is printed and ends the program. */
+/* Turns bytes into a case (drawn_case.h) and a way of running it that varies everything without influence on results:
+ * the arena's size, place, previous contents and use, settings that reserve more memory, the number of workers and the
+ * order of their tasks, the processor's variants, strips instead of whole frames, bytes between rows, and a call that
+ * was cancelled and repeated. The plain way is a firmware's: plain C, one worker, all in order. Both give the same
+ * statuses, hashes of stages, scenes and pictures; a difference is printed and ends the program. */
 #include <stddef.h>
 #include <string.h>
 
@@ -17,10 +17,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 enum { MOST_CALLS = 32, MOST_WORKERS_DRAWN = 8, FULL_Q8 = 255 };
 
-/* In the plain way all are 0 except `workers` and `arena_q8`. A part drawn as 0 is plain as well. */
+/* In the plain way all are 0 except `workers` and `arena_q8`. A part drawn as 0 is also plain. */
 typedef struct way {
-    uint8_t arena_q8;   /* 0 = the least; FULL_Q8 = for full speed */
-    uint8_t beyond;     /* bytes beyond that */
+    uint8_t arena_q8;   /* 0 = the minimum; FULL_Q8 = for full speed */
+    uint8_t beyond;     /* bytes above that */
     uint8_t fill;       /* previous contents of the memory */
     uint8_t moves;      /* one bit per call, modulo 8: the arena moves before it */
     uint8_t workers;    /* 1..MOST_WORKERS_DRAWN */
@@ -28,12 +28,12 @@ typedef struct way {
     uint8_t cpu;        /* chooses among the processor's features, another choice for each call */
     uint8_t strips;     /* one bit per view: added in strips */
     uint8_t heights[2]; /* heights of strips, less 1, of colour and depth */
-    uint8_t abandons;   /* one bit per view: a strip of it comes before the whole */
+    uint8_t abandons;   /* one bit per view: a strip of it is added and abandoned first */
     uint8_t padding;    /* bytes, or elements, between rows */
     uint8_t room;       /* bits of ROOM_ */
     uint8_t cancels;    /* number of the call, from 1 on; 0 = none */
     uint8_t cancels_q8; /* share of the call that runs before it is cancelled */
-    uint8_t before;     /* calls of the same case that a reset ends, before it begins */
+    uint8_t before;     /* calls of the same case before it that a reset ends */
 } way;
 
 static const way plain = {.arena_q8 = FULL_Q8, .workers = 1};
@@ -68,7 +68,7 @@ static way take_way(input *in)
     return w;
 }
 
-/* X(bytes of a way, what they change), to find which of them a difference needs. */
+/* X(bytes of a way, their effect), to find the ones that cause a difference. */
 #define PARTS(X)                                                                                                       \
     X(arena_q8, "the arena's size")                                                                                    \
     X(beyond, "bytes beyond the arena for full speed")                                                                 \
@@ -95,7 +95,7 @@ static uint8_t part_of(const way *w, size_t part)
     return ((const uint8_t *)w)[parts[part].at];
 }
 
-/* ---- what is seen of a run ----------------------------------------------------------------------- */
+/* ---- results of a run ---------------------------------------------------------------------------- */
 
 typedef struct note {
     const char *call, *what; /* "t3r_render", "the colours" */
@@ -247,7 +247,7 @@ static uint32_t common_divisor(uint32_t a, uint32_t b)
     return b == 0 ? a : common_divisor(b, a % b);
 }
 
-/* Each task once, in order, backwards or in leaps, by any worker. */
+/* Runs each task once, in order, backwards or in leaps, with any worker. */
 static void run_tasks(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
                       void *context)
 {
@@ -277,7 +277,8 @@ static uint32_t features_of(const way *goes, uint32_t call)
     return has & masks[choice];
 }
 
-/* A part is 0 where it does not differ: only differences that the library's own documents allow are drawn. */
+/* Draws a configuration that may differ only as the library's documentation allows; a part is 0 where it does not
+ * differ. */
 static t3r_config config_of(const drawn_case *c, const way *goes)
 {
     t3r_config k = c->config;
@@ -294,7 +295,7 @@ static t3r_config config_of(const drawn_case *c, const way *goes)
     return k;
 }
 
-/* Binds again what a move or a cancelled call loses. */
+/* Restores the bindings that a move or a cancelled call loses. */
 static void bind(run *r)
 {
     const t3r_hooks hooks = {.user = r,
@@ -322,7 +323,7 @@ static void move(run *r)
 
 typedef t3r_status action(run *r);
 
-/* Performs a call, whose status is a note. If it may be cancelled, the next call does the whole work. */
+/* Performs a call and notes its status. If it may be cancelled, the next call does the whole work. */
 static t3r_status perform(run *r, const char *name, action *act, bool may_be_cancelled)
 {
     r->name = name;
@@ -356,7 +357,7 @@ static uint32_t rows_of_strip(const run *r, const t3r_frame *frame)
     return (1 + r->goes.heights[0] % 40u) * (frame->format == T3R_PIXEL_NV12 ? 2 : 1);
 }
 
-/* Colour and depth each by strips of their own height. */
+/* Adds colour and depth each in strips of their own height. */
 static t3r_status add_strips(run *r, const t3r_frame *f)
 {
     const uint32_t rows = rows_of_strip(r, f), depth_rows = 1 + r->goes.heights[1] % 40u;
@@ -380,14 +381,14 @@ static t3r_status add_strips(run *r, const t3r_frame *f)
     return status;
 }
 
-/* Never adds all of it, so that no view is added. */
+/* Adds only a part, so that no view is added. */
 static void abandon_strip(run *r, const t3r_frame *f)
 {
     const uint32_t rows = T3R_MIN(rows_of_strip(r, f), f->height - 2);
     (void)t3r_add_rows(r->rt, f, &r->drawn->camera[r->index], 0, rows, 0, 0);
 }
 
-/* With `warm` a view in strips may not replace another one. */
+/* Adds a view; with `warm` a view in strips may not replace another one. */
 static t3r_status add_view(run *r)
 {
     held_frame held = frame_of(r->drawn, r->index, r->goes.padding);
@@ -451,7 +452,7 @@ static t3r_status rebuild(run *r)
     return build_with(r, t3r_rebuild);
 }
 
-/* Notes the rows alone, and checks that the bytes between them do not change. */
+/* Notes only the rows, and checks that the bytes between them do not change. */
 static void see_plane(run *r, const char *what, const void *plane, size_t row, size_t stride)
 {
     for (uint32_t y = 0; y < r->drawn->eye_height; y++) {
@@ -505,7 +506,7 @@ static t3r_status get_scene(run *r)
 
 /* ---- the way through a case ---------------------------------------------------------------------- */
 
-/* Builds and looks. A build may be cancelled where the next one begins anew in any case. */
+/* Builds and draws. A build may be cancelled if the next one starts from scratch in any case. */
 static void build_and_look(run *r, bool follows)
 {
     r->request = &r->drawn->first;
@@ -518,7 +519,7 @@ static void build_and_look(run *r, bool follows)
     }
 }
 
-/* Makes at most so many calls for frames. */
+/* Makes at most `most` calls for frames. */
 static void go_through(run *r, uint32_t most)
 {
     const drawn_case *c = r->drawn;
@@ -563,7 +564,7 @@ static void go(const drawn_case *c, way goes, const trace *expected, trace *seen
 
 /* ---- findings ------------------------------------------------------------------------------------ */
 
-/* Makes plain what need not differ, part by part, and names the rest. */
+/* Makes every unnecessary difference plain, part by part, and names the rest. */
 static void blame(const drawn_case *c, way goes, const trace *expected, trace *seen)
 {
     for (size_t i = 0; i < PARTS_COUNT; i++) {

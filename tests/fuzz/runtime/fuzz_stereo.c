@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Turns bytes into two cameras, settings and pictures: those that pass the check of cameras get an answer, within
- * the memory that the macros promise, and depths within their range. Plain C and the processor's variants agree. */
+/* Turns bytes into two cameras, settings and pictures: cameras that pass the check get a result, within the memory
+ * that the macros state, and depths within their range. Plain C and the processor's variants agree. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,10 +13,10 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
-/* The first bytes; the rest is repeated for pictures. */
+/* The first bytes; the remaining ones are repeated for pictures. */
 typedef struct header {
     uint8_t width, height, disparities, paths;
-    uint8_t plain; /* bits: which cameras have plausible intrinsics, whether they stand near each other */
+    uint8_t plain; /* bits: cameras with plausible intrinsics, and whether they are near each other */
     t3r_camera cameras[2];
 } header;
 

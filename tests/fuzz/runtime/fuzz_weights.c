@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A weight file, made up or damaged in a few places, with a valid checksum: refused with a reason, or it runs over a
+/* A weight file, random or damaged in a few places, with a valid checksum: refused with a reason, or it runs over a
  * small image in exactly the memory that it requests. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* Small ones, so that much of a damaged file is table. */
+/* Small layers, so that much of a damaged file is table. */
 static const made_layer shape[] = {
     {T3R_LAYER_CONV, 1, {0, T3R_SOURCE_NONE}, 6, 2, 1, 4},
     {T3R_LAYER_CONV, 2, {1, T3R_SOURCE_NONE}, 3, 2, 1, 5},
@@ -45,7 +45,8 @@ static void run(const uint8_t *file, uint32_t width, uint32_t height)
     free(work);
 }
 
-/* data: bits and size of the image, then damages: two bytes where, one what. Behind 255 the file is data itself. */
+/* data: bits and size of the image, then damages: two bytes with the place, one with the value. Above 255 the rest is
+ * the file. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     if (size < 3) {

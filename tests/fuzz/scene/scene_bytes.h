@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Any bytes as a scene file: an error, or a scene that the runtime takes whole and draws. */
+/* Any bytes as a scene file: an error, or a scene that the runtime accepts as a whole and draws. */
 #ifndef T3R_TESTS_FUZZ_SCENE_BYTES_H
 #define T3R_TESTS_FUZZ_SCENE_BYTES_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Any bytes as a table of eval: an error with its line, or a chart and a report that hold together. */
+/* Any bytes as a table of eval: an error with its line, or a consistent chart and report. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,7 +43,7 @@ static void draw(const chart_points *points, const chart_view *view)
     }
     fclose(out);
     check_data(text);
-    if (strstr(text, "<fuzz") != NULL) { /* a table's text that is markup */
+    if (strstr(text, "<fuzz") != NULL) { /* a table's text that is valid markup */
         abort();
     }
     free(text);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Any text as what --expect and --pose take: an error, or hashes, and cameras that the runtime takes. */
+/* Any text for --expect and --pose: an error, or hashes, and cameras that the runtime accepts. */
 #define _GNU_SOURCE /* memfd_create() */
 #include <string.h>
 

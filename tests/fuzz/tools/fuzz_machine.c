@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Any text as a machine of plans: a reason, or prices of a known machine. */
+/* Any text as a machine of plans: a reason, or prices of a named machine. */
 #include <stdlib.h>
 
 #include "planning/machine.h"

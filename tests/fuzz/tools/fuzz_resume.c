@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Any text as the table that eval --resume goes on with: an error, or rows. */
+/* Any text as the table that eval --resume continues: an error, or rows. */
 #define _GNU_SOURCE /* memfd_create() */
 #include <math.h>
 #include <string.h>

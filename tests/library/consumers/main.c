@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* consumer: prints the hash of the scene, in plain C and with what the processor has, and the library's version. */
+/* consumer: prints the hash of the scene, in plain C and with the processor's features, and the library's version. */
 #include <inttypes.h>
 #include <stdio.h>
 

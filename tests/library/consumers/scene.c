@@ -16,7 +16,7 @@ static void fold(void *user, t3r_stage stage, uint64_t hash)
     *folded = (*folded ^ hash ^ (uint64_t)stage) * UINT64_C(1099511628211);
 }
 
-/* A chequered and specked wall that leans back, seen from `shift` pixels further to the right. */
+/* Draws a leaning wall with squares and spots, seen from `shift` pixels further to the right. */
 static void draw_wall(int shift)
 {
     for (int y = 0; y < SIDE; y++) {
@@ -32,7 +32,7 @@ static void draw_wall(int shift)
     }
 }
 
-/* Context views, or keyframes of a stream. */
+/* Adds context views, or keyframes of a stream. */
 static t3r_status add_views(t3r_runtime *rt, const t3r_config *config, t3r_camera *camera)
 {
     const t3r_frame frame = {.format = T3R_PIXEL_RGB24,

@@ -40,8 +40,6 @@ t3r_config render_config(uint32_t max_gaussians, uint32_t width, uint32_t height
     return config;
 }
 
-/* ---- guarded planes ------------------------------------------------------------------------------ */
-
 static void *guarded(size_t bytes)
 {
     uint8_t *p = malloc(bytes + 2 * GUARD_BYTES);
@@ -123,8 +121,6 @@ int drawing_equal(const drawing *a, const drawing *b)
     return a->width == b->width && a->height == b->height && memcmp(a->rgb, b->rgb, pixels * 3) == 0 &&
            memcmp(a->depth_q20, b->depth_q20, pixels * 4) == 0 && memcmp(a->alpha_q15, b->alpha_q15, pixels * 2) == 0;
 }
-
-/* ---- made-up scenes ------------------------------------------------------------------------------ */
 
 static uint64_t dice_next(dice *d)
 {

@@ -8,7 +8,7 @@
 
 #include "trim3r.h"
 
-/* A picture rendered by the runtime; every plane is between guard bytes that draw() checks. */
+/* A picture rendered by the runtime; draw() checks guard bytes around every plane. */
 typedef struct drawing {
     uint32_t width, height;
     uint8_t *rgb;
@@ -17,7 +17,7 @@ typedef struct drawing {
     uint32_t passes;
 } drawing;
 
-/* Extra bytes beyond the arena's minimum, up to this multiple of the full size. */
+/* Arena sizes: the minimum, or this multiple of the full size. */
 enum { ARENA_AT_MINIMUM = 0, ARENA_AT_FULL = 1, ARENA_AT_TEN_TIMES = 10 };
 
 typedef struct arena {

@@ -16,8 +16,6 @@ static void *allocate(size_t count, size_t bytes)
     return p;
 }
 
-/* ---- what comes in ------------------------------------------------------------------------------- */
-
 static void rotation_from_quaternion(const double q[4], double r[9])
 {
     double norm = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
@@ -133,8 +131,6 @@ oracle_gaussian *oracle_read_ply(const char *path, const t3r_scene_frame *frame,
     return gaussians;
 }
 
-/* ---- projection ---------------------------------------------------------------------------------- */
-
 typedef struct splat {
     double x, y, z;      /* pixels, pixels, camera z */
     double gx[3], gy[3]; /* the projected factor: covariance = gx.gx + 0.3, gx.gy, gy.gy + 0.3 */
@@ -208,8 +204,6 @@ static int project(const oracle_gaussian *g, const oracle_camera *c, splat *s)
     memcpy(s->colour, g->colour, sizeof s->colour);
     return 1;
 }
-
-/* ---- blending ------------------------------------------------------------------------------------ */
 
 static void note_depth(double *depth, double z, double before, double after, double threshold)
 {

@@ -11,10 +11,10 @@
 
 /* Nothing is drawn below this camera z, in scene units. */
 #define ORACLE_NEAR (1.0 / 32.0)
-/* Each entry of the projected factor is held within this many pixels: what a splat wider than any target looks like
- * (SPEC.md, "Raster"). */
+/* Bound of each entry of the projected factor, in pixels; larger splats look alike on any target (SPEC.md, "Raster").
+ */
 #define ORACLE_MOST_PIXELS 4096.0
-/* The allowed error of a renderer's transmittance where it decides on the median depth. */
+/* The allowed error of a renderer's transmittance when it decides on the median depth. */
 #define ORACLE_DEPTH_MARGIN 0.003
 
 /* Covariance = factor factor^T: stays positive semi-definite and exact for needles. */
@@ -38,18 +38,20 @@ typedef struct oracle_image {
     double *rgb;           /* 0..1 */
     double *transmittance; /* 0..1 */
     double *depth;         /* camera z at which transmittance falls below 1/2; 0 = none */
-    double *depth_least;   /* ... below 1/2 + ORACLE_DEPTH_MARGIN, and below 1/2 - ORACLE_DEPTH_MARGIN: between */
-    double *depth_most; /* the two depths between which a renderer's median depth may be; HUGE_VAL for the second = no
-                        depth is correct, too */
+    double
+        *depth_least; /* depth at which transmittance falls below 1/2 + ORACLE_DEPTH_MARGIN: least valid median depth */
+    double *depth_most; /* depth at which it falls below 1/2 - ORACLE_DEPTH_MARGIN: greatest valid one; HUGE_VAL: no
+                           depth is valid, too */
     uint32_t drawn;     /* number of Gaussians that are not culled */
 } oracle_image;
 
 void oracle_from_t3r(const t3r_gaussian *from, oracle_gaussian *to);
-/* The view of a t3r_camera on a scene in the given frame, for a target of width x height. */
+/* Returns the view of a t3r_camera of a scene in the given frame, for a target of width x height. */
 oracle_camera oracle_camera_from_t3r(const t3r_camera *from, const t3r_scene_frame *frame, uint32_t width,
                                      uint32_t height);
 
-/* Order: camera z rounded to Q20, then index. Ends the program when out of memory, as all of the oracle does. */
+/* Renders in order of camera z rounded to Q20, then index. Ends the program when out of memory, like the whole oracle.
+ */
 void oracle_render(const oracle_gaussian *gaussians, size_t count, const oracle_camera *camera, oracle_image *image);
 void oracle_image_free(oracle_image *image);
 
@@ -57,7 +59,7 @@ void oracle_image_free(oracle_image *image);
  * colours are clamped to 0..1, the range of a display. Free with free(). */
 oracle_gaussian *oracle_read_ply(const char *path, const t3r_scene_frame *frame, size_t *count);
 
-/* Peak signal to noise in dB of 8-bit RGB against the oracle rounded to 8 bits, all pixels; 99 when equal. */
+/* Returns the PSNR in dB of 8-bit RGB against the oracle rounded to 8 bits, over all pixels; 99 when equal. */
 double oracle_psnr(const oracle_image *image, const uint8_t *rgb, size_t stride_bytes);
 
 #endif

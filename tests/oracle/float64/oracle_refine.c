@@ -113,7 +113,7 @@ static void add(sums *s, const footprint *f, const oracle_gaussian *g, double dx
     }
 }
 
-/* Every pixel of one view, by a walk over all splats: slow and plain. */
+/* Measures every pixel of one view by visiting all splats: slow and plain. */
 static void measure(const oracle_gaussian *scene, size_t count, const oracle_context *view, sums *all)
 {
     footprint *seen = take(count, sizeof *seen);

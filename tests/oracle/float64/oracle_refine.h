@@ -16,11 +16,11 @@ typedef struct oracle_context {
 typedef struct oracle_change {
     double colour[3]; /* levels */
     double step[6];   /* log opacity; shift along two axes; log scale, shear, log scale */
-    double share;     /* share of the Gauss-Newton step; 0: no pass before */
+    double share;     /* share of the Gauss-Newton step; 0: no previous pass */
 } oracle_change;
 
 /* Runs a pass, which corrects the scene in place. changes[count]: the changes of the previous pass, 0 before the
- * first; on return those of this pass. */
+ * first; on return the changes of this pass. */
 void oracle_refine(oracle_gaussian *scene, size_t count, const oracle_context *views, size_t view_count,
                    oracle_change *changes);
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* t3r_attach() of small arenas whose configuration is sound, and whose every other byte is any. */
+/* t3r_attach() of small arenas with a valid configuration and arbitrary other bytes. */
 #include "layout/arena.h"
 #include "state/state.h"
 
 #include "core/camera.h"
 #include "core/scene_frame.h"
 
-/* pose.c proves it, for these arguments. */
+/* pose.c proves this contract for these arguments. */
 /*@ requires x: -T3R_MAX_POSITION_Q32 < camera->position_q32[0] < T3R_MAX_POSITION_Q32;
     requires y: -T3R_MAX_POSITION_Q32 < camera->position_q32[1] < T3R_MAX_POSITION_Q32;
     requires z: -T3R_MAX_POSITION_Q32 < camera->position_q32[2] < T3R_MAX_POSITION_Q32;
@@ -22,7 +22,7 @@ enum { ROOM = 1 << 18, SIDE = 8, VIEWS = 2, BUDGET = 16, CLUSTERS = 3 };
 
 static uint8_t arena[ROOM];
 
-/* It ends where the array does: a step past its end is one out of bounds. */
+/* The memory ends with the array: a step past its end is out of bounds. */
 static void attach(const t3r_config *config)
 {
     t3r_layout layout;

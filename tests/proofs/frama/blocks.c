@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* t3r_weights_check() of files with a network of a known shape: the offsets of its blocks, and every byte outside the
- * header and the shapes, are any. */
+/* t3r_weights_check() of files with a network of a known shape; block offsets and all bytes outside the header and the
+ * shapes are arbitrary. */
 #include "head/weights.h"
 
 enum { ROOM = 1600, LAYERS = 3, SHAPE_BYTES = 12, NETWORKS = 2 };
 
 static uint8_t file[ROOM];
 
-/* kind, level, two sources, inputs, outputs, kernel, stride, phases, as the file has them */
+/* kind, level, two sources, inputs, outputs, kernel, stride, phases, in the file's order */
 static const uint8_t shapes[NETWORKS][LAYERS][SHAPE_BYTES] = {
     {{T3R_LAYER_CONV, 1, T3R_SOURCE_FEATURES, T3R_SOURCE_NONE, T3R_FEATURES, 0, 2, 0, 3, 2, 1, 0},
      {T3R_LAYER_DEPTHWISE, 1, 1, T3R_SOURCE_NONE, 2, 0, 2, 0, 3, 1, 1, 0},

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What functions of fixed.h promise of their results, for all arguments that T3R_BOUND allows. These declarations stand
- * before those of fixed.h, so that the runtime's own text has none of it. That nothing overflows on the way is Eva's
- * part (fixed.c). */
+/* Contracts of functions of fixed.h: bounds of their results for all arguments that T3R_BOUND allows. These
+ * declarations precede fixed.h, so that the runtime's own text needs none. Eva shows that intermediate results do not
+ * overflow (fixed.c). */
 #ifndef T3R_CONTRACTS_H
 #define T3R_CONTRACTS_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* platform/messages/fixed_double.c: all doubles and floats, an exponent after another where a shift follows from it, to
- * the fractions that readers ask for. */
+/* platform/messages/fixed_double.c: all doubles and floats, to the fractions that readers use; one exponent at a time
+ * where it decides a shift. */
 #include "messages/fixed_double.h"
 
 static void doubles(uint64_t low, uint64_t high, uint32_t fraction_bits)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* runtime/core/fixed.h and fixed.c, each function over its domain, a power of two after another where a shift follows
- * from the size of a number. Where a bound joins two arguments, the boxes below lie within it; docs/study/proofs.md
+/* runtime/core/fixed.h and fixed.c, each function over its domain; one power of two at a time where the size of a
+ * number decides a shift. Where a bound involves two arguments, the boxes below lie within it; docs/study/proofs.md
  * says what they leave out. */
 #include "core/fixed.h"
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the drivers of Eva share. It stands before every source, by -include. */
+/* Shared by the drivers of Eva; included before every source by -include. */
 #ifndef T3R_FRAMA_H
 #define T3R_FRAMA_H
 
 #include <stdint.h>
 
-#define _Alignas(bytes) /* Frama-C has none; no subject counts on an alignment */
+#define _Alignas(bytes) /* Frama-C lacks it; no subject depends on an alignment */
 
-/* Any number of the range: no code stands behind them, and Eva takes the contract instead. */
+/* Any number in the range: without a body, Eva uses the contract. */
 extern int Frama_C_entropy_source;
 /*@ assigns \result \from low, high, Frama_C_entropy_source;
     assigns Frama_C_entropy_source \from Frama_C_entropy_source;
@@ -24,13 +24,13 @@ unsigned long long t3r_any_unsigned(unsigned long long low, unsigned long long h
     ensures filled: \initialized(bytes + (0 .. count - 1)); */
 void t3r_any_bytes(unsigned char *bytes, unsigned long count);
 
-/* A bound of T3R_BOUND is proven wherever it stands: Eva has to show that this is never called. */
+/* T3R_BOUND calls this where its bound fails: Eva has to show that it is never called. */
 /*@ requires bound: \false;
     assigns \nothing; */
 void t3r_bound_broken(void);
 #define T3R_BOUND(condition) ((condition) ? (void)0 : t3r_bound_broken())
 
-/* The builtin, which Eva knows by its result's range alone. */
+/* Replaces the builtin, of which Eva knows only the result's range. */
 static inline int t3r_leading_zeros(unsigned x)
 {
     int zeros = 0;

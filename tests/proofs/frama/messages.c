@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The ROS messages of a recording, and what becomes of their numbers: any bytes. Which byte stands where follows from
- * the lengths of the texts, so each of a few lengths is tried, one after the other, and each length of the message. The
- * message ends where its array does: a step past its end is one out of bounds. */
+/* The ROS messages of a recording, and the conversion of their numbers: arbitrary bytes. The lengths of texts decide
+ * the offsets, so a few lengths are tried one after the other, with every length of the message. The message ends
+ * where its array does, so a step past its end is out of bounds. */
 #include "messages/fixed_double.h"
 #include "messages/message_frame.h"
 
-/* double.c proves it, for the fractions of a camera. */
+/* double.c proves this contract for a camera's fractions. */
 /*@ requires fraction: fraction_bits == 16 || fraction_bits == 24 || fraction_bits == 30 || fraction_bits == 32;
     assigns *fixed, \result \from bits, fraction_bits;
     ensures \result == 0 || \result == -1;
@@ -34,7 +34,7 @@ static message any_message(uint32_t count, bool big_endian)
     return m;
 }
 
-/* The next number of 32 bits, where the message holds it. */
+/* Appends a 32-bit number if it fits. */
 static void put(message *m, uint32_t x)
 {
     if (m->at + 4 <= m->count) {
@@ -46,7 +46,7 @@ static void put(message *m, uint32_t x)
     m->at += 4;
 }
 
-/* The length of a text, whose bytes follow. */
+/* Appends the length of a text, and skips its bytes. */
 static void put_text(message *m, uint32_t length)
 {
     put(m, length);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* runtime/layout/arena.c with every configuration that t3r_config_check() lets through: each field that a size depends
- * on is any number of its range in runtime/core/config.c. Overflow of unsigned numbers is an alarm here, too. */
+/* runtime/layout/arena.c with every configuration that t3r_config_check() accepts: each field that decides a size has
+ * the full range of runtime/core/config.c. Unsigned overflow counts as an alarm, too. */
 #include "core/config.h"
 #include "layout/arena.h"
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* t3r_pose_in_scene() for all that t3r_attach() lets through, an exponent after another: a shift follows from it. */
+/* t3r_pose_in_scene() for all arguments that t3r_attach() accepts, one exponent at a time, because it decides a shift.
+ */
 #include "core/camera.h"
 #include "core/scene_frame.h"
 
-/* The rotation's sums hold by its norm, which Eva does not follow. */
+/* The quaternion's norm bounds the rotation's sums, which Eva does not track. */
 /*@ assigns rotation_q30[0 .. 8] \from quaternion_q30[0 .. 3];
     ensures \initialized(rotation_q30 + (0 .. 8)); */
 void t3r_camera_rotation(const int32_t quaternion_q30[4], int32_t rotation_q30[9]);

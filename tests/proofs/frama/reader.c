@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The reader of recordings for firmware: records at any place, and rows of any image that it finds. The source gives
- * any bytes; that these are some that it has is not asked here. */
+/* The reader of recordings for firmware: records at any place, and rows of any image in them. The source returns
+ * arbitrary bytes for any range, also beyond its end. */
 #include "recording/frame_reader.c"
 
 #include "messages/fixed_double.h"
 
-/* double.c proves it, for this fraction. */
+/* double.c proves this contract for this fraction. */
 /*@ requires fraction: fraction_bits == 40;
     assigns *fixed, \result \from bits, fraction_bits;
     ensures \result == 0 || \result == -1;
     ensures \initialized(fixed); */
 int t3r_fixed_from_float(uint32_t bits, uint32_t fraction_bits, int64_t *fixed);
 
-/* Eva knows no result of the library's. */
+/* Eva does not know the library function's result. */
 int memcmp(const void *a, const void *b, size_t count)
 {
     const uint8_t *left = a, *right = b;
@@ -57,7 +57,7 @@ static void records(void)
     }
 }
 
-/* How many bytes are asked for follows from the rows and the step. */
+/* The number of bytes requested follows from the rows and the step. */
 static void colour_rows(uint32_t count, uint32_t step, t3r_pixel_format format)
 {
     t3r_frame_reader reader = open_reader();
@@ -68,7 +68,7 @@ static void colour_rows(uint32_t count, uint32_t step, t3r_pixel_format format)
     t3r_frame_reader_rows(&reader, &frame, (uint32_t)t3r_any(0, UINT32_MAX), count, 0, 0);
 }
 
-/* A step is at least a row's bytes: t3r_message_depth() asks. */
+/* t3r_message_depth() checks that a step is at least a row's bytes. */
 static void depth_rows(uint32_t count, uint32_t width, uint32_t padding, const char *encoding)
 {
     t3r_frame_reader reader = open_reader();

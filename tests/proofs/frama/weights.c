@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* runtime/head/weights.c on any bytes of any length up to 95: what is checked before the table of layers. */
+/* runtime/head/weights.c on any bytes of any length up to 95: the checks before the table of layers. */
 #include "head/weights.h"
 
 #define ROOM 95

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A firmware without a C library, with one head: what a linker keeps of the runtime and of the shipped heads. */
+/* A firmware with one head and without a C library; shows what a linker keeps of the runtime and of the shipped heads.
+ */
 #include <stddef.h>
 #include <stdint.h>
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The four functions that the runtime calls, for a program without a C library. One of its files includes this. */
+/* The four functions that the runtime calls, for a program without a C library; one of its files includes them. */
 #ifndef T3R_TESTS_FREESTANDING_MEMORY_H
 #define T3R_TESTS_FREESTANDING_MEMORY_H
 
@@ -11,7 +11,7 @@ void *memmove(void *to, const void *from, size_t count);
 void *memset(void *to, int byte, size_t count);
 int memcmp(const void *a, const void *b, size_t count);
 
-/* volatile: or the compiler would make the loops calls of these very functions */
+/* volatile: otherwise the compiler would turn the loops into calls of these functions */
 void *memcpy(void *restrict to, const void *restrict from, size_t count)
 {
     for (size_t i = 0; i < count; i++) {

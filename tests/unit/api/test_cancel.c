@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A build that is cancelled at any of its steps says so, leaves no scene, and the next one makes what it would have
- * made before. */
+/* A build that is cancelled at any of its steps reports it, leaves no scene, and the next build makes the scene that
+ * it would have made before. */
 #include "unit/unit.h"
 
 #include "rgbd_frame.h"

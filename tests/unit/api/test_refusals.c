@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Calls that are refused at the door, and copies of an arena that say what cannot be: each limit from both sides. */
+/* Calls that are refused immediately, and copies of an arena with impossible contents: each limit from both sides. */
 #include "unit/unit.h"
 
 #include "core/scene_frame.h"
@@ -59,7 +59,7 @@ static void add(t3r_runtime *rt)
     assert_int_equal(t3r_add_view(rt, &frame, &camera), T3R_OK);
 }
 
-/* What a program compiled with another header says of itself. */
+/* The interface description of a program compiled with another header. */
 TEST(another_interface)
 {
     const uint64_t other = t3r_header_interface() + 1;
@@ -113,7 +113,7 @@ TEST(missing_pointers)
     add(rt);
     assert_int_equal(t3r_develop(rt, &frame, &camera, rgb, NULL, &undistorted), T3R_ERR_STATE);
     const t3r_scene_frame plain = {{0}, 0};
-    assert_int_equal(t3r_scene_begin(rt, &plain), T3R_OK); /* views are gone, a scene is there */
+    assert_int_equal(t3r_scene_begin(rt, &plain), T3R_OK); /* no views, but a scene */
     assert_int_equal(t3r_develop(rt, &frame, &camera, rgb, NULL, &undistorted), T3R_ERR_STATE);
     assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, 1, 0, 1), T3R_ERR_STATE);
     config.views = 0;
@@ -159,11 +159,11 @@ TEST(memory_that_is_no_arena)
     DAMAGED(damaged->arena_bytes++);
     DAMAGED(damaged->layout_hash++);
     DAMAGED(damaged->config.width = 0);
-    DAMAGED(damaged->config.max_gaussians *= 100); /* sound, but larger than the arena */
+    DAMAGED(damaged->config.max_gaussians *= 100); /* valid, but larger than the arena */
     assert_int_equal(t3r_attach(&rt, arena, arena_bytes), T3R_OK);
 }
 
-/* Numbers of the state, one at a time, in an arena that holds an analysis and a scene. */
+/* Damages numbers of the state, one at a time, in an arena that holds an analysis and a scene. */
 TEST(states_that_cannot_be)
 {
     t3r_config config = some_config();
@@ -212,7 +212,7 @@ TEST(warm_states_that_cannot_be)
     DAMAGED(damaged->next_slot = 1); /* the second slot is still empty */
     add(rt);
     assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
-    add(rt); /* in the first one's place */
+    add(rt); /* replaces the first one */
     assert_int_equal(rt->next_slot, 1);
     memcpy(copy, arena, arena_bytes);
     assert_int_equal(t3r_attach(&found, copy, arena_bytes), T3R_OK);
@@ -247,7 +247,7 @@ TEST(streams_that_cannot_be)
     DAMAGED(damaged->keyframes = 0);
     DAMAGED(damaged->reuse.views = 1);
     assert_int_equal(t3r_stream_keyframe(rt, &frame, &camera, NULL), T3R_OK);
-    DAMAGED(damaged->next_slot = 2); /* all are there */
+    DAMAGED(damaged->next_slot = 2); /* all are present */
     assert_int_equal(t3r_stream_keyframe(rt, &frame, &camera, NULL), T3R_OK);
     memcpy(copy, arena, arena_bytes);
     assert_int_equal(t3r_attach(&found, copy, arena_bytes), T3R_OK);
@@ -275,7 +275,7 @@ TEST(scenes_out_of_range)
     }
 }
 
-/* A camera too far from the scene's origin for Q20, by each of the three limits that come one after the other. */
+/* A camera too far from the scene's origin for Q20, at each of the three consecutive limits. */
 TEST(cameras_too_far_away)
 {
     const struct {
@@ -286,7 +286,7 @@ TEST(cameras_too_far_away)
         {INT64_C(1023) << 32, 0, 0, T3R_OK},
         {INT64_C(1025) << 32, 0, 0, T3R_ERR_CAMERA},
         {INT64_C(1) << 61, -(INT64_C(1) << 61), T3R_EXPONENT_MOST, T3R_ERR_CAMERA},
-        {(INT64_C(1) << 30) + 1, 0, T3R_EXPONENT_LEAST, T3R_ERR_CAMERA}, /* more than is shifted to the left */
+        {(INT64_C(1) << 30) + 1, 0, T3R_EXPONENT_LEAST, T3R_ERR_CAMERA}, /* more than the shift to the left allows */
         {1 << 12, 0, T3R_EXPONENT_LEAST, T3R_OK},
         {1 << 29, 0, T3R_EXPONENT_LEAST, T3R_ERR_CAMERA},
     };
@@ -299,7 +299,7 @@ TEST(cameras_too_far_away)
     }
 }
 
-/* Strips without depth, pairs of rows, and colour that comes after all of the depth. */
+/* Strips without depth, pairs of rows, and colour after all of the depth. */
 TEST(strips)
 {
     t3r_config config = some_config();
@@ -323,24 +323,24 @@ TEST(strips)
     assert_int_equal(rt->views, 1);
     assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, 8, 0, 0), T3R_OK);
     assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, 0, 0, 8),
-                     T3R_ERR_STATE); /* begins nothing, goes on nowhere */
-    t3r_frame lower = frame;         /* as wide as the plane, and resized all the same */
+                     T3R_ERR_STATE); /* starts no frame, continues none */
+    t3r_frame lower = frame;         /* of the plane's width, but still resized */
     lower.height = SIDE / 2;
     assert_int_equal(t3r_add_view(rt, &lower, &camera), T3R_OK);
     config.warm = 1;
     rt = opened(&config);
     add(rt);
     add(rt);
-    assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, 8, 0, 8), T3R_ERR_STATE); /* none is replaced by strips */
+    assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, 8, 0, 8), T3R_ERR_STATE); /* strips replace no view */
     config = some_config();
     config.depth = T3R_DEPTH_STEREO;
     rt = opened(&config);
     frame.depth = NULL;
-    assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, SIDE / 2, 7, 7), T3R_OK); /* depth rows say nothing */
+    assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, SIDE / 2, 7, 7), T3R_OK); /* rows of depth are ignored */
     colour = frame;
     colour.planes[0] = rgb + (size_t)3 * SIDE * (SIDE / 2);
     assert_int_equal(t3r_add_rows(rt, &colour, &camera, SIDE / 2, SIDE / 2, 0, 0), T3R_OK);
     assert_int_equal(rt->views, 1);
     t3r_scene scene;
-    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_ERR_STATE); /* stereo takes two */
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_ERR_STATE); /* stereo needs two */
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a build may be asked for: every part of a request alone and with the others gives the scene that a configuration
- * of these values gives, holds for its call alone, and leaves everything as it was when it is refused. */
+/* Requests of builds: every part of a request, alone and with the others, gives the scene of a configuration with
+ * these values, applies only to its call, and changes nothing when it is refused. */
 #include "rgbd_frame.h"
 #include "trim3r_heads.h"
 #include "unit/unit.h"
@@ -75,7 +75,7 @@ static void expect_same(const kept_scene *expected, const t3r_scene *scene)
     assert_memory_equal(scene->gaussians, expected->gaussians, scene->count * sizeof *scene->gaussians);
 }
 
-/* The scene that a configuration with the request's values gives, with what only a request can say. */
+/* Makes the scene of a configuration with the request's values, and the parts that only a request has. */
 static void expected_of(const t3r_request *request, kept_scene *expected)
 {
     t3r_config config = good_config();
@@ -105,21 +105,21 @@ TEST(every_combination)
             .allocate = parts & 4 ? T3R_ALLOCATE_UNIFORM : T3R_ALLOCATE_CONFIGURED,
             .head = parts & 8 ? T3R_HEAD_LEARNED : T3R_HEAD_CONFIGURED,
             .importance = parts & 16 ? planes : NULL,
-            .importance_stride_bytes = parts & 32 || parts & 16 ? SIDE * 2 : 0, /* says nothing without planes */
+            .importance_stride_bytes = parts & 32 || parts & 16 ? SIDE * 2 : 0, /* has no meaning without planes */
         };
         t3r_scene scene;
         t3r_runtime *rt;
         if (request.importance != NULL && request.allocate != 0) {
             rt = with_view(&config);
             assert_int_equal(t3r_reconstruct(rt, &request, &scene), T3R_ERR_ARGUMENT);
-            request.allocate = T3R_ALLOCATE_GIVEN; /* says it once more */
+            request.allocate = T3R_ALLOCATE_GIVEN; /* redundant */
         }
         expected_of(&request, &expected);
         assert_true(expected.count <= (request.gaussians != 0 ? request.gaussians : BUDGET));
         rt = with_view(&config);
         assert_int_equal(t3r_reconstruct(rt, &request, &scene), T3R_OK);
         expect_same(&expected, &scene);
-        assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK); /* nothing of the request stays */
+        assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK); /* no trace of the request is left */
         expect_same(&plain, &scene);
         assert_memory_equal(&rt->config, &config, sizeof config);
         assert_int_equal(t3r_rebuild(rt, &request, &scene), T3R_OK);
@@ -129,7 +129,7 @@ TEST(every_combination)
     }
 }
 
-/* Each allocation and head differs from the configured one: none is taken for another. */
+/* Each allocation and head differs from the configured one, so that none is confused with another. */
 TEST(every_allocation_and_head)
 {
     static kept_scene expected;
@@ -198,7 +198,7 @@ TEST(a_bounded_loss_needs_its_settings)
     }
 }
 
-/* Switched on, each changes the scene; it outlives a reset; switched off, nothing of it is left. */
+/* Switched on, each changes the scene; it stays after a reset; switched off, it leaves no trace. */
 TEST(ablations)
 {
     static kept_scene plain;

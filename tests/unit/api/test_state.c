@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The state after errors and cancels: refused calls leave what they promise to leave, and a damaged copy is refused. */
+/* The state after errors and cancels: refused calls preserve the documented state, and a damaged copy is refused. */
 #include <string.h>
 
 #include "budget/budget.h"
@@ -17,7 +17,7 @@ static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[1 << 20], copy[1 << 20];
 static uint8_t colour[SIDE * SIDE * 3], depth[SIDE * SIDE * 2];
 static size_t arena_bytes;
 static int cancel_at = -1;
-static uint32_t calls_left = UINT32_MAX; /* of refinement, before it is cancelled */
+static uint32_t calls_left = UINT32_MAX; /* of refinement, until it is cancelled */
 
 static int cancel(void *user, t3r_stage stage, uint32_t done, uint32_t total)
 {
@@ -93,7 +93,7 @@ TEST(cancelled_rebuild_keeps_the_analysis)
     assert_true(hash_of(&again) == before);
 }
 
-/* In an arena that keeps little of a tile's splats, refinement asks more often than once for each tile and view. */
+/* In an arena that keeps few of a tile's splats, refinement asks more than once per tile and view. */
 TEST(every_call_of_refinement_may_cancel)
 {
     enum { TILES = (SIDE / T3R_TILE_SIDE) * (SIDE / T3R_TILE_SIDE), MANY_CALLS = 10000 };
@@ -128,7 +128,7 @@ TEST(refused_view_gives_no_stale_scene)
     folded.distortion = T3R_DISTORTION_RADTAN;
     folded.distortion_q24[0] = -(100 << 24);
     assert_int_equal(t3r_add_view(rt, &frame, &folded), T3R_ERR_CAMERA);
-    assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_STATE); /* its planes were written over */
+    assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_STATE); /* its planes were overwritten */
     assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
     assert_true(hash_of(&scene) == before);
 }
@@ -167,7 +167,7 @@ static void wild_label(t3r_runtime *rt)
 {
     *(uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_LABELS) = FEW;
 }
-/* The ninth bit of one: 256 more than there are, or a count that disagrees. */
+/* Flips the ninth bit of a label: 256 more than there are, or a count that disagrees. */
 static void other_half(t3r_runtime *rt)
 {
     *(uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_VALIDITY) ^= T3R_LABEL_HIGH;
@@ -176,7 +176,7 @@ static void wild_cluster(t3r_runtime *rt)
 {
     ((t3r_cluster *)t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS))->points = UINT32_MAX;
 }
-/* Each SuperCluster claims all points: quotas by these would be many times the budget. */
+/* Makes each SuperCluster claim all points: quotas from these would be many times the budget. */
 static void greedy_clusters(t3r_runtime *rt)
 {
     t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
@@ -184,13 +184,13 @@ static void greedy_clusters(t3r_runtime *rt)
         clusters[k].points = SIDE * SIDE;
     }
 }
-/* All labels and counts agree, but the order names one SuperCluster twice. */
+/* Makes the order name one SuperCluster twice, while all labels and counts agree. */
 static void order_without_an_end(t3r_runtime *rt)
 {
     t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
     clusters[1].order = clusters[0].order;
 }
-/* A label where there is no depth, and the count along with it. */
+/* Leaves a label, and its count, where there is no depth. */
 static void label_without_depth(t3r_runtime *rt)
 {
     ((uint8_t *)t3r_buffer_at(rt, T3R_BUFFER_VALIDITY))[0] = T3R_NO_DEPTH;
@@ -266,8 +266,8 @@ static uint32_t far_labels(const t3r_runtime *rt)
     return count;
 }
 
-/* With labels of nine bits a copy goes on as well, a damaged one is refused, and an analysis of the same planes, which
- * hold the labels of the one before, finds the same. */
+/* With labels of nine bits a copy continues, a damaged copy is refused, and a repeated analysis of the same planes,
+ * which hold the previous labels, gives the same. */
 TEST(many_clusters_are_checked)
 {
     t3r_scene scene;
@@ -292,7 +292,7 @@ TEST(many_clusters_are_checked)
     assert_int_equal(t3r_attach(&rt, copy, arena_bytes), T3R_ERR_EPOCH);
 }
 
-/* A configuration that leaves a choice to t3r_init(): it has the same layout, but stages count on what was chosen. */
+/* A configuration that leaves a choice to t3r_init(): it has the same layout, but stages rely on the choice. */
 TEST(choices_that_are_still_open_are_refused)
 {
     t3r_scene scene;

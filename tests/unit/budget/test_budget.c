@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The budget stage alone: exact quotas in every mode, nested sets, and counts as large as configurations allow. */
+/* The budget stage alone: exact quotas in every mode, nested sets, and the largest counts of any configuration. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -97,7 +97,7 @@ TEST(sets_are_nested)
     }
 }
 
-/* `paper`: the lowest textures give first, a cluster is cut only so far that Z is exact. */
+/* `paper`: the lowest textures are cut first, the last cluster only until Z is exact. */
 TEST(paper_takes_the_lowest_textures_first)
 {
     t3r_cluster clusters[CLUSTERS + 1];
@@ -111,7 +111,7 @@ TEST(paper_takes_the_lowest_textures_first)
     }
     t3r_budget_settings settings = settings_of(T3R_ALLOCATE_PAPER, valid * 6 / 10);
     t3r_allocate(&view, 1, &settings, clusters, &alone);
-    int stage = 0; /* 0: at N %, 1: the cut one, 2: whole */
+    int stage = 0; /* 0: cut to N %, 1: cut partly, 2: whole */
     for (uint32_t k = 0; k < CLUSTERS; k++) {
         const t3r_cluster *c = &clusters[clusters[k].order];
         uint32_t least = (c->points * 10 + 50) / 100;
@@ -128,7 +128,7 @@ TEST(paper_takes_the_lowest_textures_first)
     assert_int_equal(stage, 2);
 }
 
-/* Points as given, no planes of that size needed: products must hold 2^28 points. */
+/* Points without planes of that size: products must hold 2^28 points. */
 TEST(largest_counts_do_not_overflow)
 {
     t3r_cluster scratch[CLUSTERS + 1];
@@ -149,7 +149,7 @@ TEST(largest_counts_do_not_overflow)
     }
 }
 
-/* Covered and doubtful points: none until all others are retained, the doubtful last of all; Z stays exact. */
+/* Covered and doubtful points: none until all others are retained, the doubtful ones last; Z stays exact. */
 TEST(deferred_comes_last)
 {
     t3r_cluster clusters[CLUSTERS + 1];
@@ -206,7 +206,7 @@ TEST(deferred_comes_last)
     assert_false(t3r_is_sparse(&view, 1, 2 * plain / 3 + 1));
 }
 
-/* Beside the busiest a flat SuperCluster counts a thousandth and no less, however steep the power. */
+/* Next to the busiest a flat SuperCluster counts exactly a thousandth, for any exponent. */
 TEST(flat_ones_get_a_thousandth)
 {
     t3r_cluster clusters[CLUSTERS + 1];
@@ -230,7 +230,7 @@ static int by_texture(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The same textures in other places, by the seed; empty clusters stay out of it, ranks and quotas follow. */
+/* The textures are permuted by the seed; empty clusters keep out, ranks and quotas follow. */
 TEST(textures_are_shuffled)
 {
     t3r_cluster before[CLUSTERS + 1], clusters[CLUSTERS + 1];
@@ -272,7 +272,7 @@ TEST(textures_are_shuffled)
     assert_int_equal(one.texture_q4, 5);
 }
 
-/* Whatever the clusters count, no more than Z points are retained: the scene has room for no more. */
+/* For any counts of the clusters, at most Z points are retained, because the scene has room for no more. */
 TEST(wild_counts_stay_within_the_budget)
 {
     static const uint32_t claims[] = {PIXELS, 1u << 28, UINT32_MAX};

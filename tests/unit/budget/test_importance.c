@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The allocation `given`: the points of highest importance and no others, the density that heads are told, and that
- * nothing of it stays behind for the other allocations. The references are made here, by sorting and by counting. */
+/* The allocation `given`: exactly the points of highest importance, the density that heads are given, and no trace for
+ * the other allocations. The references sort and count. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 #include "test.h"
 
 enum {
-    W = 61, /* rows begin within words of the mask */
+    W = 61, /* rows begin inside words of the mask */
     H = 45,
     PIXELS = W * H,
     VIEWS = 2,
@@ -84,7 +84,7 @@ static t3r_budget_settings settings_of(uint32_t gaussians)
                                  .pass_over_covered = false};
 }
 
-/* ---- which points ------------------------------------------------------------------------------------------------ */
+/* ---- chosen points ----------------------------------------------------------------------------------------------- */
 
 typedef struct point {
     uint32_t importance, order; /* order: view after view, row after row */
@@ -140,7 +140,7 @@ TEST(the_highest_are_retained)
     }
 }
 
-/* ---- how dense --------------------------------------------------------------------------------------------------- */
+/* ---- density ----------------------------------------------------------------------------------------------------- */
 
 static double log_share(uint32_t retained, uint32_t valid)
 {
@@ -148,7 +148,7 @@ static double log_share(uint32_t retained, uint32_t valid)
     return log_q10 < T3R_LEAST_DENSITY_Q10 ? T3R_LEAST_DENSITY_Q10 : log_q10;
 }
 
-/* Of the 9 x 9 pixels about one, as far as they are in the picture. */
+/* Returns the share of the 9 x 9 pixels around one that are within the picture. */
 static double window_share(const t3r_view *view, int x, int y)
 {
     uint32_t retained = 0, valid = 0;
@@ -191,11 +191,12 @@ TEST(density_is_counted)
                 assert_int_equal(told, 0);
                 continue;
             }
-            /* up to half an octave more than the SuperCluster the window, from an octave on the SuperCluster */
+            /* the window's share up to half an octave above the SuperCluster's; from an octave on, the SuperCluster's
+             */
             const double window = window_share(view, (int)(i % W), (int)(i / W));
             const double more = window - log_share(retained[k], points[k]);
             const double expected = more <= 512 ? window : more >= 1024 ? window - more : window - 2 * (more - 512);
-            if (fabs(told - expected) > 2) { /* three times at most what two logarithms and a rounding are off */
+            if (fabs(told - expected) > 2) { /* three times the error of two logarithms and a rounding */
                 fail_msg("budget %u, pixel %u: told %d, counted %.2f", budget, n, told, expected);
             }
             by_window += more <= 512;
@@ -307,7 +308,7 @@ TEST(nothing_stays_behind)
         assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK);
         assert_true(hash_of(&scene) == before);
 
-        /* cancelled: what comes next is as before */
+        /* after a cancel, the following builds are as before */
         for (cancel_at = T3R_STAGE_BUDGET; cancel_at <= T3R_STAGE_REFINE; cancel_at++) {
             assert_int_equal(t3r_rebuild(rt, &given, &scene), T3R_ERR_CANCELLED);
             assert_int_equal(t3r_get_scene(rt, &scene), T3R_ERR_STATE);
@@ -316,7 +317,7 @@ TEST(nothing_stays_behind)
         assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_OK);
         assert_true(hash_of(&scene) == before);
 
-        /* at once, without an analysis kept, in an arena that was told of the allocation or not, moved in between */
+        /* without a kept analysis, in an arena planned for the allocation or not, and moved in between */
         for (int told = 0; told < 2; told++) {
             config.gaussians = config.max_gaussians = 400;
             config.keep_analysis = 0;
@@ -341,7 +342,7 @@ TEST(nothing_stays_behind)
     }
 }
 
-/* A copy of a kept analysis goes on with new importances, whatever its masks held. */
+/* A copy of a kept analysis continues with new importances, for any contents of its masks. */
 TEST(a_copy_goes_on)
 {
     t3r_view made_up[VIEWS];
@@ -360,7 +361,7 @@ TEST(a_copy_goes_on)
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
     memset(views[0].mask, 0xa5, WORDS * sizeof(uint32_t));
-    assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_STATE); /* `given` goes by what comes with the request */
+    assert_int_equal(t3r_rebuild(rt, NULL, &scene), T3R_ERR_STATE); /* `given` applies only with the request */
     assert_int_equal(t3r_rebuild(rt, &given, &scene), T3R_OK);
     assert_true(hash_of(&scene) == before);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* For tests linked with the asserting runtime that misuse nothing: an assertion that fails ends the test. */
+/* For tests linked with the asserting runtime that never misuse it: a failed assertion ends the test. */
 #include <stdio.h>
 #include <stdlib.h>
 

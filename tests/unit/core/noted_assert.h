@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a firmware's debug build might define: here an assertion that fails is counted. */
+/* An example of a firmware's debug build: failed assertions are counted. */
 #ifndef T3R_NOTED_ASSERT_H
 #define T3R_NOTED_ASSERT_H
 

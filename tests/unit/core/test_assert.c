@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Misuse reaches the caller's T3R_ASSERT and is still refused; what a file could bring does not. */
+/* Misuse reaches the caller's T3R_ASSERT and is still refused; errors in a file do not reach it. */
 #include <string.h>
 
 #include "noted_assert.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Numbers as bytes: little-endian on every machine, and the hash over them. */
+/* Numbers as bytes: little-endian on every machine, and their hash. */
 #include "unit/unit.h"
 
 #include "core/hash.h"

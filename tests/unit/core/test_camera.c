@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Cameras: what is refused, rotation matrices and changes of size against double. */
+/* Cameras: refusals, rotation matrices and changes of size against double. */
 #include "unit/unit.h"
 
 #include "core/camera.h"

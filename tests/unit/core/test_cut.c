@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Memory cut into parts ends exactly where the plan's formulas say, whatever the sizes. */
+/* Divided memory ends exactly where the plan's formulas say, for all sizes. */
 #include "unit/unit.h"
 
 #include "core/cut.h"
@@ -18,7 +18,7 @@ TEST(parts)
     assert_int_equal(t3r_cut_left(&cut), T3R_ARENA_ALIGN);
 }
 
-/* Parts are disjoint, each as long as the table says, and the last ends at the end. */
+/* Checks that parts are disjoint, each of the length in the table, and the last ends at the end. */
 TEST(matching)
 {
     static const uint32_t sizes[][2] = {{8, 8}, {9, 11}, {97, 31}, {130, 129}, {320, 513}};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Functions by table or polynomial over their whole domain: how far they are off, and a checksum that every compiler
- * and processor gives. A domain of 2^32 and more is taken densely where its shape changes, and at all its edges. */
+/* Functions by table or polynomial over their whole domain: their errors, and a checksum that is equal for every
+ * compiler and processor. A domain of 2^32 and more is sampled densely where its shape changes, and at all its edges.
+ */
 #include "unit/unit.h"
 
 #include "core/alpha.h"
@@ -21,7 +22,7 @@
 #define QUOTIENT_HASH UINT64_C(0x5fa4a3c85b29bd1e)
 #define PRODUCTS_HASH UINT64_C(0xd7300b7710acd701)
 
-/* Every mantissa, and every exponent of some: the table sees 23 bits of the mantissa, the exponent is added. */
+/* Every mantissa, and for some every exponent: the table uses 23 bits of the mantissa, and the exponent is added. */
 TEST(logarithm)
 {
     double worst = 0;
@@ -87,7 +88,8 @@ static void holds_about(uint64_t root)
     assert_int_equal(t3r_isqrt64(root * root + 2 * root), root); /* the last before (root + 1)^2 */
 }
 
-/* Every square, and its neighbours, of roots of one step of Newton's (below 2^21); of the others, some. */
+/* Every square of a root below 2^21, which one step of Newton's method finds, and its neighbours; and some of the
+ * others. */
 TEST(square_root)
 {
     for (uint64_t root = 0; root < UINT64_C(1) << 21; root++) {
@@ -104,7 +106,7 @@ TEST(square_root)
     }
 }
 
-/* 2^62 over every leading 16 bits of a number and about each, at every place. */
+/* 2^62 divided by every leading 16 bits of a number and its neighbours, at every place. */
 TEST(reciprocal)
 {
     uint64_t hash = T3R_HASH_START;
@@ -123,7 +125,7 @@ TEST(reciprocal)
     assert_int_equal(hash, RECIPROCAL_HASH);
 }
 
-/* Every alpha: q from below 0 to beyond the last visible one, at the largest opacity and at others. */
+/* Every alpha: q from below 0 to after the last visible one, at the largest opacity and at others. */
 TEST(alpha)
 {
     double worst = 0;
@@ -145,7 +147,7 @@ TEST(alpha)
     assert_int_equal(hash, ALPHA_HASH);
 }
 
-/* x / d in Q24 for every small d, those around powers of two, and the largest. */
+/* x / d in Q24 for every small d, for those near powers of two, and for the largest. */
 TEST(quotient)
 {
     uint64_t hash = T3R_HASH_START;
@@ -164,7 +166,7 @@ TEST(quotient)
     assert_int_equal(hash, QUOTIENT_HASH);
 }
 
-/* Every a by 1,000 b: the first, the last, and those around powers of two. */
+/* Every a times 1,000 b: the first, the last, and those near powers of two. */
 TEST(products)
 {
     uint64_t hash = T3R_HASH_START;

@@ -160,7 +160,7 @@ TEST(sizes_and_clamps)
     assert_int_equal(t3r_clamp64(INT64_MAX, INT32_MIN, INT32_MAX), INT32_MAX);
 }
 
-/* Against another implementation of the mixing. */
+/* Compares with another implementation of the mixing. */
 TEST(mixing)
 {
     static const uint32_t mixed[][2] = {{0, 0},
@@ -176,7 +176,7 @@ TEST(mixing)
     }
 }
 
-/* The 16-bit form of the product is the one rounding, bit for bit, for each constant and every sample. */
+/* The 16-bit form of the product equals the rounded product, bit for bit, for each constant and every sample. */
 TEST(small_product)
 {
     const int16_t constants[] = {0, 1, T3R_DB2_PREDICT_Q15, T3R_DB2_UPDATE_Q15, T3R_DB2_UPDATE_NEXT_Q15, 16383};
@@ -187,7 +187,7 @@ TEST(small_product)
     }
 }
 
-/* Against division, for every sign and size, around all boundaries. */
+/* Compares with division, for every sign and size, around all boundaries. */
 TEST(divisor)
 {
     uint64_t seed = 5;
@@ -196,7 +196,7 @@ TEST(divisor)
         const uint32_t d = turn % 4 == 0 ? most : (uint32_t)unit_between(&seed, 1, most);
         const uint32_t limit = turn % 2 == 0 ? 4 : 16;
         const t3r_divisor by = t3r_divisor_of(d);
-        assert_true(by.reciprocal >> 31 == 1); /* as accurate as possible */
+        assert_true(by.reciprocal >> 31 == 1); /* the most accurate one */
         const int64_t largest = T3R_MIN((int64_t)limit * d + 2, UINT32_MAX);
         const int64_t k = unit_between(&seed, 0, (int64_t)limit << 25); /* half steps */
         const int64_t x = turn % 3 == 0 ? unit_between(&seed, -largest, largest)

@@ -30,7 +30,7 @@ static int32_t placed(int64_t position_q32, int64_t origin_q32, int32_t exponent
     return got[0];
 }
 
-/* Offsets that a double holds exactly, times a power of two. */
+/* Offsets that a double holds exactly, times powers of two. */
 TEST(positions)
 {
     uint64_t seed = 3;
@@ -59,7 +59,7 @@ TEST(bounds_of_positions)
         assert_int_equal(placed(sign * (far - 1), 0, 24), sign * (1 << 25));
         assert_int_equal(placed(sign * far, 0, 24), REFUSED);
         assert_int_equal(placed(sign * (T3R_MAX_POSITION_Q32 - 1), -sign * (T3R_MAX_POSITION_Q32 - 1), 24), REFUSED);
-        /* so far that scaling would exceed 64 bits */
+        /* so far that the scaled value would exceed 64 bits */
         assert_int_equal(placed(sign * (INT64_C(1) << 52), 0, -24), REFUSED);
         assert_int_equal(placed(sign * (far - 1), 0, -24), REFUSED);
     }

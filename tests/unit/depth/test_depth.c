@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Depth: validity, and holes that are filled or left. */
+/* Depth: validity, and holes that are filled or kept. */
 #include "unit/unit.h"
 
 #include "depth/depth.h"
@@ -52,7 +52,7 @@ TEST(confidence)
 TEST(interpolated)
 {
     canvas *c = canvas_new(0);
-    /* a ramp along x with a gap of three, in a row alone */
+    /* a ramp along x with a gap of three, in a single row */
     for (int x = 0; x < W; x++) {
         c->depth[5 * W + x] = (uint16_t)(1000 + 10 * x);
     }
@@ -67,7 +67,7 @@ TEST(interpolated)
     free(c);
 }
 
-/* Only pixels with measured ones within the radius on both sides are filled, however the hole looks. */
+/* Only pixels with measured ones within the radius on both sides are filled, for any shape of the hole. */
 TEST(reach)
 {
     for (uint32_t radius = 0; radius <= 8; radius++) {
@@ -92,7 +92,7 @@ TEST(reach)
     }
 }
 
-/* Holes at the border are bracketed along it only; a hole in the corner not at all. */
+/* Holes at the border are bracketed only along it; a hole in the corner not at all. */
 TEST(border)
 {
     canvas *c = canvas_new(500);
@@ -123,7 +123,7 @@ TEST(edge)
     }
     free(c);
 
-    /* the same colour on both sides: the nearer side, the first of two as near */
+    /* the same colour on both sides: the nearer side; of two at equal distance the first */
     c = canvas_new(0);
     for (int x = 0; x < W; x++) {
         c->depth[5 * W + x] = x < 10 ? 1000 : 2000;
@@ -137,7 +137,7 @@ TEST(edge)
     free(c);
 }
 
-/* Relative difference: 1/16 of the lesser one is still one surface. */
+/* Relative difference: up to 1/16 of the lesser depth is still one surface. */
 TEST(agreement)
 {
     const uint16_t others[] = {1700, 1701};
@@ -153,7 +153,7 @@ TEST(agreement)
     }
 }
 
-/* Of two brackets the narrower; across when they are as wide. */
+/* Of two brackets the narrower; of equal ones the horizontal. */
 TEST(nearer_pair)
 {
     canvas *c = canvas_new(0);
@@ -168,7 +168,7 @@ TEST(nearer_pair)
     free(c);
 }
 
-/* Filled pixels seed nothing: every one lies between two measured ones, whose range holds it. */
+/* Filled pixels are no seeds: every one lies between two measured ones, whose range holds it. */
 TEST(never_seeds)
 {
     uint64_t seed = 31;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Widths that follow how often a surface is covered: as the formula in doubles, by the views that count alone, and in
- * whole builds only where they were asked for. */
+/* Widths that follow the number of views of a surface: equal to the formula in doubles, from counting views only, and
+ * in whole builds only on request. */
 #include "rgbd_frame.h"
 #include "unit/rig.h"
 
@@ -13,15 +13,14 @@
 enum { MIDDLE_X = W / 2, MIDDLE_Y = H / 2, CLUSTERS = 2, ONE_Q12 = 4 << 12 };
 static const double GAIN = 1.15, POWER = 0.6;
 
-/* --- a splat ------------------------------------------------------------------------------------------------------ */
-
 static uint16_t texture[PIXELS];
 static uint8_t label[VIEWS][PIXELS];
 static t3r_cluster clusters[CLUSTERS + 1];
 static t3r_budget_settings budget;
 static int32_t mean_density_q10;
 
-/* All views on one plane, in the places of a pair and one between; both groups retain a quarter of their points. */
+/* Makes all views of one plane, at the places of a pair and one between; both groups retain a quarter of their points.
+ */
 static rig *views_new(void)
 {
     rig *s = pair_new();
@@ -74,7 +73,7 @@ TEST(of_unlike_densities)
         clusters[1].density_q10 = log_q10;
         assert_gain(gain(s, 2), 1 + exp2(log_q10 / 1024.0 + 2));
     }
-    /* a pixel of a view at half the distance covers a quarter, so that its points are four times as dense */
+    /* at half the distance a pixel covers a quarter of the area, so points are four times as dense */
     clusters[1].density_q10 = clusters[0].density_q10;
     place_view(s, 1, 0, 1, 2);
     s->view[1].texture = texture;
@@ -138,16 +137,14 @@ TEST(only_of_the_same_surface)
         s->depth[1][there] = cases[i].depth;
         assert_gain(gain(s, 2), cases[i].counts ? 2 : 1);
     }
-    budget.pass_over_covered = false; /* then covered points are retained like others */
+    budget.pass_over_covered = false; /* covered points are then retained like others */
     s->validity[1][there] = T3R_MEASURED | T3R_MARK_COVERED;
     s->depth[1][there] = 2 * UNIT;
     assert_gain(gain(s, 2), 2);
-    s->view[1].pose.position_q20[0] = 4 << 20; /* looks past the point */
+    s->view[1].pose.position_q20[0] = 4 << 20; /* the view looks past the point */
     assert_gain(gain(s, 2), 1);
     free(s);
 }
-
-/* --- builds ------------------------------------------------------------------------------------------------------- */
 
 enum { SIDE = 64, BUDGET = SIDE * SIDE / 2 };
 

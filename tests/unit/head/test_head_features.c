@@ -116,7 +116,7 @@ TEST(features_are_as_defined)
     assert_true(least[6] < -90 && most[6] > 90 && most[5] - least[5] > 30);
 }
 
-/* A copied arena's planes may mark a depth of 0 as measured: it has no slope. */
+/* A copied arena's planes may mark a depth of 0 as measured; it has no slope. */
 TEST(no_depth_has_no_slope)
 {
     const t3r_head_input input = {

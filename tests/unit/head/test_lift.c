@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Footprints to Gaussians: where a pixel is narrower than all that is kept, and where it has no width at all. */
+/* Footprints to Gaussians: narrower than the least width, and without width. */
 #include "unit/rig.h"
 
 #include "head/head.h"
 
-/* A plane across at `steps` of 2^-20 scene units, a footprint of so many square pixels (Q12) in its middle. */
+/* Lifts a footprint of that many square pixels (Q12) in the middle of a parallel plane at `steps` of 2^-20 scene
+ * units. */
 static t3r_gaussian lifted_as(uint16_t steps, int32_t square_q12, uint32_t narrowest_q12)
 {
     rig *s = unit_array(1, sizeof *s);
@@ -26,7 +27,7 @@ static t3r_gaussian lifted(uint16_t steps)
     return lifted_as(steps, 17613, T3R_NARROWEST_Q12);
 }
 
-/* Two pixels of a standard deviation, an eighth of it thick: as far as steps of 2^-24 scene units tell. */
+/* A standard deviation of two pixels, an eighth of it thick: exact to steps of 2^-24 scene units. */
 TEST(as_wide_as_its_pixels)
 {
     static const uint16_t depths[] = {64, 1000, 20000, 65535};
@@ -40,7 +41,7 @@ TEST(as_wide_as_its_pixels)
     }
 }
 
-/* What the rasterizer's 0.3 square pixels leave of a footprint is held above the narrowest. */
+/* The footprint minus the rasterizer's 0.3 square pixels is at least the narrowest. */
 TEST(no_narrower_than_allowed)
 {
     static const struct {
@@ -59,7 +60,7 @@ TEST(no_narrower_than_allowed)
     }
 }
 
-/* A step before the camera a pixel is less than half such a step wide: a Gaussian of no extent. */
+/* One step from the camera a pixel is narrower than half a step: the Gaussian has no extent. */
 TEST(of_no_extent)
 {
     const t3r_gaussian g = lifted(1);

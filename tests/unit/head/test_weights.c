@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The weight file's checker: what is sound passes, every field beyond its range is refused with its reason, whatever
- * the CRC says. */
+/* The weight file's checker: valid files pass, and every field beyond its range is refused with its reason, for any
+ * CRC. */
 #include "unit/unit.h"
 
 #include <stdbool.h>
@@ -42,11 +42,11 @@ TEST(sound_ones_pass)
     }
 }
 
-/* Up to 15 letters, digits and underlines. */
+/* Up to 15 letters, digits and underscores. */
 TEST(names)
 {
     static const struct {
-        const char *name; /* 16 characters have no end */
+        const char *name; /* 16 characters leave no room for the end */
         t3r_status status;
     } cases[] = {{"a", T3R_OK},
                  {"z_9", T3R_OK},
@@ -193,7 +193,7 @@ TEST(blocks_lie_in_the_file)
     free(good);
 }
 
-/* A multiplier, a shift, a bias or a weight one beyond the range of the sums. */
+/* A multiplier, a shift, a bias or a weight one beyond the bound on the sums. */
 TEST(numbers_are_bounded)
 {
     size_t bytes;
@@ -240,7 +240,7 @@ TEST(numbers_are_bounded)
     free(good);
 }
 
-/* Any flipped bit and any length is detected, by the length or the CRC. */
+/* Any flipped bit and any other length is detected, by the length or the CRC. */
 TEST(damage_is_noticed)
 {
     size_t bytes;
@@ -266,7 +266,7 @@ TEST(damage_is_noticed)
     free(file);
 }
 
-/* Errors that only the whole graph shows. */
+/* Errors that only the whole graph reveals. */
 TEST(graphs_are_checked)
 {
     const made_layer unread[] = {
@@ -311,7 +311,7 @@ TEST(graphs_are_checked)
     }
 }
 
-/* A file is limited in length, even if all else is sound. */
+/* A file's length is limited, even if all else is valid. */
 TEST(length_is_bounded)
 {
     size_t bytes;

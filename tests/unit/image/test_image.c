@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Frames to planes: what is refused, formats against the real BT.601, the area average against exact sums. */
+/* Frames to planes: refusals, formats against the real BT.601, the area average against exact sums. */
 #include "unit/unit.h"
 
 #include "image/image.h"
@@ -84,7 +84,7 @@ static double clamped(double x)
     return x < 0 ? 0 : x > 255 ? 255 : x;
 }
 
-/* Limited-range BT.601 from its definition: Kr = 0.299, Kb = 0.114. */
+/* Computes limited-range BT.601 from its definition: Kr = 0.299, Kb = 0.114. */
 static void real_rgb(double y, double u, double v, double rgb[3])
 {
     const double kr = 0.299, kb = 0.114, kg = 1 - kr - kb;
@@ -99,7 +99,7 @@ typedef struct layout {
     uint32_t y0, u, y1, v;
 } layout;
 
-/* Each Y with every third U and V, in rows of 256 pixels. */
+/* Makes each Y with every third U and V, in rows of 256 pixels. */
 TEST(packed_formats)
 {
     const layout layouts[] = {{T3R_PIXEL_YUYV, 0, 1, 2, 3}, {T3R_PIXEL_UYVY, 1, 0, 3, 2}};
@@ -197,7 +197,7 @@ static uint64_t overlap(uint64_t i, uint64_t i_units, uint64_t j, uint64_t j_uni
     return end > start ? end - start : 0;
 }
 
-/* The box average of one sample by its definition. */
+/* Computes the box average of one sample by its definition. */
 static uint8_t box_average(const uint8_t *grey, uint32_t from_w, uint32_t from_h, uint32_t w, uint32_t h, uint32_t x,
                            uint32_t y)
 {
@@ -286,7 +286,7 @@ TEST(average_wide)
     free(rgb);
 }
 
-/* The largest sums there are: 4096 x 4096 white pixels. */
+/* The largest possible sums: 4096 x 4096 white pixels. */
 TEST(average_largest)
 {
     const uint32_t side = T3R_MAX_SIDE;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The undistortion grid against double, and the sampling through it. */
+/* The undistortion grid against double, and sampling with it. */
 #include "unit/unit.h"
 
 #include "core/camera.h"
@@ -39,7 +39,7 @@ static t3r_camera camera_of(const lens_case *c)
     return camera;
 }
 
-/* OpenCV's published models. */
+/* Computes the source by OpenCV's published models. */
 static void real_source(const lens_case *c, double u, double v, double out[2])
 {
     double x = (u - c->cx) / c->fx, y = (v - c->cy) / c->fy;
@@ -163,7 +163,7 @@ TEST(sampling)
                                (uint32_t)floor(fmin(fmax(p[0], 0), width - 1) + 0.5);
             near_misses += out.depth[at] != in.depth[nearest];
         }
-        /* a position within 0.1 of the middle between two pixels may go either way */
+        /* a position within 0.1 of the middle between two pixels may be rounded either way */
         assert_true(!c->realistic || near_misses < width * height / 5);
         planes_free(in);
         planes_free(out);
@@ -203,7 +203,7 @@ TEST(identity)
     }
 }
 
-/* A polynomial that folds: beyond the fold there is nothing, not a mirrored image. */
+/* A polynomial that folds: nothing beyond the fold, not a mirrored image. */
 TEST(fold)
 {
     const uint32_t side = 128;
@@ -230,7 +230,7 @@ TEST(fold)
     free(grid);
 }
 
-/* Any coefficients give an answer, never undefined behaviour; wild ones an error. */
+/* Any coefficients give a result, never undefined behaviour; wild ones give an error. */
 TEST(wild)
 {
     uint64_t seed = 21;

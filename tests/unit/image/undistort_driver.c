@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* undistort_driver WIDTH HEIGHT KIND FX FY CX CY K1..K5: R, G, B planes on stdin, undistorted ones on stdout.
- * KIND 1 radial-tangential, 2 fisheye. For undistort_opencv.py. */
+/* undistort_driver WIDTH HEIGHT KIND FX FY CX CY K1..K5: reads R, G, B planes from stdin, writes undistorted ones to
+ * stdout. KIND 1 radial-tangential, 2 fisheye. For undistort_opencv.py. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""undistort_opencv.py DRIVER: undistorted pictures against OpenCV's own maps and interpolation."""
+"""undistort_opencv.py DRIVER: compares undistorted pictures with OpenCV's own maps and interpolation."""
 import subprocess
 import sys
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Poses corrected until views agree: a disturbed pose comes back, right poses stay bit for bit, repeated analyses begin
- * from the poses given, builds that may not be aligned are not; and the small equations are solved as in doubles. */
+/* Pose correction until views agree: a disturbed pose is restored, right poses stay bit for bit, repeated analyses
+ * start from the given poses, builds that may not be aligned are not; and the small equations are solved as in
+ * doubles. */
 #include "rgbd_frame.h"
 #include "unit/unit.h"
 
@@ -97,7 +98,7 @@ static double turned(const t3r_camera *a, const t3r_camera *b)
     return 2 * acos(fmin(1, fabs(dot) / sqrt(aa * bb)));
 }
 
-/* Returns the error of the turn between two cameras, against the room's own. */
+/* Returns the error of the rotation between two cameras, against the room's own. */
 static double error_of_turn(const t3r_camera *first, const t3r_camera *second, uint32_t to)
 {
     return fabs(turned(first, second) - turned(&camera[0], &camera[to]));
@@ -116,11 +117,11 @@ TEST(a_disturbed_pose_comes_back)
         t3r_camera found[2];
         for (uint32_t v = 0; v < 2; v++) {
             assert_int_equal(t3r_view_camera(rt, v, &found[v]), T3R_OK);
-            assert_true(turned(&found[v], &cameras[v]) > fabs(by[i].angle) / 8); /* each goes a part of the way */
+            assert_true(turned(&found[v], &cameras[v]) > fabs(by[i].angle) / 8); /* each corrects a part of it */
         }
         const double before = error_of_turn(&cameras[0], &cameras[1], 1),
                      behind = error_of_turn(&found[0], &found[1], 1);
-        assert_true(behind < before / 2); /* the rest is a shift that shows much the same */
+        assert_true(behind < before / 2); /* the rest is a shift with nearly the same effect */
         print_message("%.3f radians, %.2f m: turn off by %.5f, then by %.5f\n", by[i].angle, by[i].shift, before,
                       behind);
         assert_true(scene_hash(rt) == hash); /* from the given poses, not from the aligned ones */
@@ -128,7 +129,7 @@ TEST(a_disturbed_pose_comes_back)
     }
 }
 
-/* With depth at an eighth of the pixels, these are compared more closely than with depth everywhere. */
+/* When only an eighth of the pixels has depth, these are compared more densely than with depth everywhere. */
 TEST(little_depth_is_enough)
 {
     enum { FIRST = SIDE * 21 / 64, LAST = SIDE * 43 / 64 };
@@ -152,10 +153,10 @@ TEST(little_depth_is_enough)
     }
     const double before = error_of_turn(&cameras[0], &cameras[1], 1), behind = error_of_turn(&found[0], &found[1], 1);
     print_message("little depth: turn off by %.5f, then by %.5f\n", before, behind);
-    assert_true(4 * behind < 3 * before); /* seen in a small window, a shift shows much the same */
+    assert_true(4 * behind < 3 * before); /* in a small window a shift has nearly the same effect */
 }
 
-/* A target view has a pose like the given ones: its loss is measured before alignment. */
+/* A target view has a pose like the given ones, so its loss is measured before alignment. */
 TEST(a_bounded_loss_goes_by_the_poses_given)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, SIDE * SIDE);
@@ -172,7 +173,7 @@ TEST(a_bounded_loss_goes_by_the_poses_given)
         assert_int_equal(t3r_choose_budget(rt, views, T3R_MAX_LOSS_Q8 / 4, &build, NULL), T3R_OK);
         assert_memory_equal(&views[1].pose, &before, sizeof before);
         chosen[i] = build.gaussians;
-        t3r_note_placement(&rt->given[1], &rt->camera[1]); /* then as if the poses found had been given */
+        t3r_note_placement(&rt->given[1], &rt->camera[1]); /* then as if the aligned poses had been given */
         t3r_note_placement(&rt->given[0], &rt->camera[0]);
     }
     print_message("poses off: %u Gaussians, as found: %u\n", chosen[0], chosen[1]);
@@ -219,7 +220,7 @@ TEST(right_poses_stay)
     }
 }
 
-/* Without differences alignment has nothing to reduce. */
+/* Grey views have no differences to reduce. */
 TEST(grey_views)
 {
     static uint8_t grey[2][SIDE * SIDE * 3];
@@ -234,7 +235,7 @@ TEST(grey_views)
     }
 }
 
-/* A view at the end of the range of positions stays as given, and the other one is still aligned. */
+/* A view at the end of the range of positions keeps its given pose, and the other one is still aligned. */
 TEST(positions_stay_in_range)
 {
     const t3r_config config = settings(2, 1);
@@ -267,8 +268,8 @@ TEST(builds_that_follow_are_as_given)
     assert_true(scene_hash(with_views(&config, cameras)) == asked);
 }
 
-/* Noise in views that share a narrow strip: they differ less once they look away from it. Such a step is rejected,
- * and the poses stay. */
+/* Noise in views that share a narrow strip: they differ less if they turn away from it. Such a step is rejected, and
+ * the poses stay. */
 TEST(narrow_strips_of_noise)
 {
     static const struct {
@@ -293,7 +294,7 @@ TEST(narrow_strips_of_noise)
     }
 }
 
-/* Views with nothing in common or without contents: the poses stay. */
+/* Views without overlap or contents keep their poses. */
 TEST(views_without_anything_in_common)
 {
     const t3r_config config = settings(2, 1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The validity plane: its predicates exclude each other, and its numbers outside the runtime are those of the SPEC. */
+/* The validity plane: its predicates exclude each other, and its numbers outside the runtime are the SPEC's. */
 #include "unit/unit.h"
 
 #include "state/views.h"
@@ -25,7 +25,7 @@ TEST(confidences)
     }
 }
 
-/* Of any byte, as a copied arena may hold any: one source, and 0 only where there is none. */
+/* For any byte, since a copied arena may hold any: one source, and 0 only without one. */
 TEST(sources)
 {
     for (int byte = 0; byte <= UINT8_MAX; byte++) {
@@ -34,7 +34,7 @@ TEST(sources)
         assert_int_equal(of, t3r_has_depth(validity));
         assert_int_equal(t3r_confidence_of(validity) != 0, t3r_has_depth(validity));
         assert_int_equal(t3r_unmarked(validity), t3r_depth_source_of(validity));
-        const uint8_t found = validity & (T3R_DEPTH_SOURCE_BITS | T3R_MARKS); /* whatever lies above */
+        const uint8_t found = validity & (T3R_DEPTH_SOURCE_BITS | T3R_MARKS); /* for any bits above */
         assert_int_equal(t3r_is_marked(validity), t3r_unmarked(validity) != found);
         assert_int_equal(t3r_is_reliable(validity), found == T3R_MEASURED);
         assert_int_equal(t3r_is_known(validity), found == T3R_MEASURED || found == T3R_FILLED);
@@ -55,8 +55,8 @@ TEST(marks)
     }
 }
 
-/* Each label comes back, beside all marks, and leaves them and the neighbours as they were; none is left once marks are
- * taken back, of whichever kind. */
+/* Each label reads back with all marks, and changes neither them nor the neighbours; none is left when marks of either
+ * kind are removed. */
 TEST(labels)
 {
     enum { PIXELS = 3 };
@@ -78,7 +78,7 @@ TEST(labels)
     }
 }
 
-/* Of the comparison nothing is left: neither marks nor what was bridged; depth of other pixels stays. */
+/* A reset removes all traces of the comparison, marks and bridges; depth of other pixels stays. */
 TEST(reset)
 {
     enum { PIXELS = 6 };

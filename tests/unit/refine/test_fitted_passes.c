@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How many passes pay: as the formula in doubles, within its bounds at all extremes, fewer for more Gaussians and for
- * views that disagree more. Whole builds are in test_refine.c. */
+/* The chosen number of passes: equal to the formula in doubles, within its bounds at all extremes, fewer for more
+ * Gaussians and for views that disagree more. Whole builds are in test_refine.c. */
 #include "unit/unit.h"
 
 #include "refine/fitted_passes.h"
 
-/* sqrt(512 / (share x levels^2)), rounded; a share above a quarter counts as one */
+/* Computes sqrt(512 / (share x levels^2)), rounded; a share above a quarter counts as one. */
 static double wanted(uint32_t points, uint32_t gaussians, uint32_t disagreement_q8)
 {
     return sqrt(512.0 * points / fmin(gaussians, ceil(points / 4.0)) / (disagreement_q8 / 256.0));
@@ -48,7 +48,7 @@ TEST(extremes)
     assert_int_equal(t3r_predict_passes(most_points, 1, 0, 16), 16);
     assert_int_equal(t3r_predict_passes(most_points, most_points, worst, 16), 1);
     assert_int_equal(t3r_predict_passes(1, 1, 0, 1), 1);
-    assert_int_equal(t3r_predict_passes(0, 0, 100, 16), 1); /* a restored arena may be without points */
+    assert_int_equal(t3r_predict_passes(0, 0, 100, 16), 1); /* a restored arena may lack points */
     assert_int_equal(t3r_predict_passes(0, 5, 100, 16), 1);
     assert_int_equal(t3r_predict_passes(1, 1, UINT32_MAX, 16), 1);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Refinement on the built-in room: it gains what it promises, changes nothing where nothing is missing, can be
- * cancelled anywhere, and neither the arena's size nor the order of parallel work shows in its bits. */
+/* Refinement on the built-in room: it reaches its documented gain, changes nothing without residuals, can be cancelled
+ * anywhere, and its bits depend neither on the arena's size nor on the order of parallel work. */
 #include "rgbd_frame.h"
 #include "sanitized_cpu.h"
 #include "unit/unit.h"
@@ -27,7 +27,7 @@ static t3r_correction solve(const t3r_refine_sums *sums, const t3r_correction *b
 
 typedef struct counter {
     uint32_t calls, cancel_at; /* 0 = never */
-    uint32_t views, last;      /* views refined, each pass for itself; the last of them, from 1 on */
+    uint32_t views, last;      /* number of refined views in all passes; the last one, from 1 on */
 } counter;
 
 static int count_refine(void *user, t3r_stage stage, uint32_t done, uint32_t total)
@@ -75,7 +75,7 @@ static t3r_config settings(uint32_t refine)
     return config;
 }
 
-/* Least arena plus `share` sixteenths of what full speed takes more. */
+/* Opens an arena of the minimum plus `share` sixteenths of the difference to full speed. */
 static t3r_runtime *open_arena(const t3r_config *config, uint32_t share)
 {
     t3r_plan_info plan;
@@ -116,7 +116,7 @@ static double refined_psnr(uint32_t refine, uint32_t gaussians)
 {
     t3r_config config = settings(refine);
     config.gaussians = config.max_gaussians = gaussians;
-    config.flying = config.redundancy = config.exposure = 0; /* measured against the pictures as they came */
+    config.flying = config.redundancy = config.exposure = 0; /* measured against the original pictures */
     t3r_runtime *rt = open_arena(&config, 16);
     t3r_scene scene;
     assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
@@ -136,8 +136,7 @@ TEST(gains_what_it_promises)
     }
 }
 
-/* The same view twice, its depth up to 3 % off: splats of both lie in each other, and answer every residual together.
- */
+/* Makes two equal views, their depth up to 3 % off: splats of both overlap, and react to every residual together. */
 static void see_it_twice(void)
 {
     uint64_t seed = 7;
@@ -158,7 +157,7 @@ TEST_WITH(many_passes_go_on, NULL, draw_room)
     see_it_twice();
     static const struct {
         uint32_t passes;
-        double least; /* dB; with a quarter of every step they are at 33.9, 38.8 and 42.0 */
+        double least; /* dB; with a fixed quarter of every step: 33.9, 38.8 and 42.0 */
     } promises[] = {{4, 34.7}, {8, 40.8}, {16, 45.2}};
     for (size_t i = 0; i < sizeof promises / sizeof promises[0]; i++) {
         double db = refined_psnr(promises[i].passes, POINTS * 2 / 5);
@@ -205,7 +204,7 @@ TEST(nothing_missing_changes_nothing)
     }
 }
 
-/* Sums at their bounds, whatever their signs: no overflow (the sanitizers' word), and a sound Gaussian. */
+/* Sums at their bounds, of any sign: no overflow (by the sanitizers), and a valid Gaussian. */
 TEST(extremes_stay_in_range)
 {
     uint64_t seed = 2;
@@ -218,7 +217,7 @@ TEST(extremes_stay_in_range)
         }
         memcpy(&sums, words, sizeof words);
         t3r_correction c = {.step_q16 = {0}};
-        for (uint32_t pass = 0; pass < 4; pass++) { /* momentum adds up */
+        for (uint32_t pass = 0; pass < 4; pass++) { /* momentum accumulates */
             c = solve(&sums, &c);
             assert_true(abs(c.step_q16[0]) <= 32767);
             assert_true(sums.weight <= 0 ? c.share_q14 == 0 : c.share_q14 >= 512 && c.share_q14 <= 8192);
@@ -246,7 +245,7 @@ TEST(extremes_stay_in_range)
     }
 }
 
-/* Where nothing is missing any more a share of the pass before goes on, and no more than that. */
+/* Without residuals only a share of the previous pass is repeated. */
 TEST(momentum_fades)
 {
     t3r_refine_sums sums = {.weight = 1 << 15, .area = 1};
@@ -261,14 +260,14 @@ TEST(momentum_fades)
         for (int k = 0; k < T3R_REFINE_PARAMETERS; k++) {
             assert_int_equal(c.step_q16[k], t3r_round_shift32(before.step_q16[k] * 3, 4));
         }
-        assert_int_equal(c.share_q14, 1000); /* no curvature: nothing is known of the answer */
+        assert_int_equal(c.share_q14, 1000); /* no curvature: the effect is unknown */
     }
     sums.weight = 0; /* not seen: nothing moves */
     c = solve(&sums, &c);
     assert_memory_equal(&c, &still, sizeof c);
 }
 
-/* A Gaussian whose parameters do not mix, and which is told of `quarters` of a step. */
+/* Makes sums of a Gaussian with independent parameters, whose gradient asks for `quarters` of a step. */
 static t3r_refine_sums told_of(int32_t quarters)
 {
     t3r_refine_sums sums = {.weight = 1 << 15,
@@ -281,13 +280,13 @@ static t3r_refine_sums told_of(int32_t quarters)
     return sums;
 }
 
-/* The next share by how much of the step before, which took 11/64 of it, is asked for again: all of it and half double
- * the share, more is not believed; a quarter takes 4/3 of it; none the same; as much back half, three times as much and
- * more a quarter, again the least that is believed. */
+/* The next share depends on how much of the previous step, which took 11/64 of it, is requested again: with all or
+ * half of it the share doubles, its maximum; with a quarter it grows to 4/3, with none it stays; if as much is
+ * requested in the other direction it halves, if three times as much or more it becomes a quarter, its minimum. */
 TEST(share_follows_the_answer)
 {
     static const struct {
-        int32_t quarters; /* of what was asked for at first */
+        int32_t quarters; /* of the first request */
         int32_t share_q14;
     } cases[] = {{4, 5632}, {2, 5632}, {1, 3755}, {0, 2816}, {-4, 1408}, {-12, 704}, {-40, 704}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -310,7 +309,7 @@ TEST(share_follows_the_answer)
     assert_int_equal(to_and_fro.share_q14, 512);
 }
 
-/* Steps at their bounds, on every diagonal the largest sum: the quotient stays in 64 bits (the sanitizers' word). */
+/* Steps at their bounds, with the largest sum on every diagonal: the quotient fits in 64 bits (by the sanitizers). */
 TEST(largest_share_stays_in_range)
 {
     t3r_refine_sums sums = {.weight = 1, .area = 1 << 28};
@@ -327,7 +326,7 @@ TEST(largest_share_stays_in_range)
     }
 }
 
-/* The scale of sums holds its bound for every area: at most 64 times what one pixel may add. */
+/* The scale of sums keeps its bound for every area: at most 64 times one pixel's maximum. */
 TEST(scale_follows_area)
 {
     for (uint32_t area = 0; area <= 1u << 28; area += 1 + area / 1000) {
@@ -378,7 +377,7 @@ TEST(cancelled_anywhere_it_can_be_done_again)
         uint64_t whole = hash_of(&scene);
         uint32_t calls = c.calls;
         assert_int_equal(c.views, 4);      /* two passes, two views, one slice */
-        assert_true(calls >= 2 * c.views); /* before a view is listed, and before its tiles */
+        assert_true(calls >= 2 * c.views); /* before each view is listed, and before its tiles */
         for (uint32_t at = 1; at <= calls; at += at < 8 ? 1 : 7) {
             c = (counter){.cancel_at = at};
             t3r_status status = keep ? t3r_rebuild(rt, NULL, &scene) : t3r_reconstruct(rt, NULL, &scene);
@@ -393,7 +392,7 @@ TEST(cancelled_anywhere_it_can_be_done_again)
     }
 }
 
-/* An arena moves at any time: what refinement left of the analysis is not taken for one. */
+/* An arena moves at any time: the remains of an analysis after refinement are not used as one. */
 TEST(moves_after_it)
 {
     for (int keep = 0; keep < 2; keep++) {
@@ -415,7 +414,7 @@ TEST(moves_after_it)
     }
 }
 
-/* Another budget refines likewise: the same scene as built with it from the start. */
+/* Another budget is refined likewise: the scene equals one built with it from the start. */
 TEST(rebudget_refines)
 {
     uint64_t hash[2];
@@ -435,8 +434,8 @@ TEST(rebudget_refines)
     assert_true(hash[0] == hash[1]);
 }
 
-/* As many passes as pay: fewer for all points than for a tenth, the same scene as by that very number, and never more
- * than are allowed. */
+/* The number of passes is fitted: fewer for all points than for a tenth, the same scene as with exactly that number,
+ * and never more than the maximum. */
 TEST(fits_its_passes)
 {
     uint32_t passes[2];
@@ -469,7 +468,7 @@ TEST(fits_its_passes)
     assert_int_equal(t3r_refinement_passes(rt), 2);
     free(memory);
 
-    /* a view alone says nothing of noise: 150 levels^2 are taken for it */
+    /* a single view does not show its noise: 150 levels^2 are assumed */
     config = settings(T3R_MAX_REFINE);
     config.gaussians = config.max_gaussians = BUDGET / 4;
     config.fit_passes = 1;
@@ -495,11 +494,11 @@ static uint64_t hash_with(uint32_t views, uint32_t passes, uint32_t structural)
     return hash;
 }
 
-/* A view with a curve of its own, which no gain levels: the scene keeps to the middle of both, and each view, less its
- * own level, is met as well as if both were alike. */
+/* A view with its own tone curve, which no gain corrects: the scene takes the middle of both, and each view without
+ * its own level is matched as well as if both were equal. */
 TEST_WITH(structure_passes_over_levels, NULL, draw_room)
 {
-    for (uint32_t views = 1; views <= 2; views++) { /* one alone has no level that others lack */
+    for (uint32_t views = 1; views <= 2; views++) { /* a single view has no level of its own */
         assert_true(hash_with(views, 0, 1) == hash_with(views, 0, 0));
         assert_true(hash_with(views, 4, 1) != hash_with(views, 4, 0));
     }
@@ -518,7 +517,7 @@ TEST_WITH(structure_passes_over_levels, NULL, draw_room)
             t3r_runtime *rt = open_arena(&config, 16);
             t3r_scene scene;
             assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
-            for (uint32_t i = 0; i < sizeof rgb[0]; i++) { /* what it should have met */
+            for (uint32_t i = 0; i < sizeof rgb[0]; i++) { /* the expected pictures */
                 rgb[0][i] = (uint8_t)(24 + as_it_is[0][i] * 6 / 8);
                 rgb[1][i] = (uint8_t)(24 + as_it_is[1][i] * 6 / 8);
             }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a tile's pixels add to splats of all kinds, small and huge, needles, centred far outside, one behind the other:
- * against sums in double over the rasterizer's own weights, and the same bits whatever is kept between the drawings and
- * however the scene is sliced. */
+/* The contributions of a tile's pixels to splats of all kinds, small and huge, needles, centred far outside, one in
+ * front of the other: against sums in double over the rasterizer's own weights, and the same bits for any kept data
+ * and any slices of the scene. */
 #include "unit/unit.h"
 
 #include "refine/refine_tile.h"
@@ -120,11 +120,11 @@ static void clear_sums(t3r_refine_sums *sums, uint32_t first, uint32_t count)
     }
 }
 
-/* One band: every Gaussian adds to its own sums. */
+/* One band: every Gaussian uses its own sums. */
 static const t3r_refine_band all_tiles = {0};
 static t3r_wanted wanted;
 
-/* Splats that are drawn again: at most so many in one go. */
+/* The most splats that are drawn again at once. */
 static uint32_t again_most;
 
 static bool draws_again(void *context, uint32_t count)
@@ -184,7 +184,7 @@ TEST(tiles_without_the_slice_are_left_alone)
     assert_memory_equal(&wanted, &before, sizeof wanted);
 }
 
-/* What a splat blends in a tile, by its own integers; 0 beyond its rows. */
+/* A splat's weights in a tile, by its own integers; 0 outside its rows. */
 typedef struct layer {
     double weight[SIDE_OF_TILE][SIDE_OF_TILE], alpha[SIDE_OF_TILE][SIDE_OF_TILE];
     bool draws;
@@ -208,18 +208,20 @@ static void blend_layer(const t3r_splat *s, uint32_t left, uint32_t top, t3r_til
     }
 }
 
-/* A tile in double, from the last layer to the first: the colour behind, and by how much the integers may be off. */
+/* A tile in double, from the last layer to the first: the colour behind, and the bound on the integers' error. */
 typedef struct tile_behind {
     double colour[3][SIDE_OF_TILE][SIDE_OF_TILE], off[SIDE_OF_TILE][SIDE_OF_TILE];
 } tile_behind;
 
-/* Sums of a layer in double. `all`: of the sizes of its terms, with powers of 1 + |e|; `most`: the largest of these. */
+/* Sums of a layer in double. `all`: of the absolute values of the terms, with powers of 1 + |e|; `most`: their
+ * maximum. */
 typedef struct expected {
     double weight, colour[3], lacks_all[3], gg[MOMENTS], gg_all[5], gr[MOMENTS], gr_all[5], gr_most[5], off[5],
         gr_off[5];
 } expected;
 
-/* g is right to a unit of w times the largest step, a half of its own, and what the colour behind is off. */
+/* The error of g is at most a unit of w times the largest step, half a unit of its own, and the error of the colour
+ * behind. */
 static void add_pixel(double w, double unit, double dx, double dy, const double step[3], const double lacks[3],
                       double behind_off, const own_axes *axes, expected *sum)
 {
@@ -258,7 +260,7 @@ static double near(double got, double want, double by)
     return fabs(got - want) / by;
 }
 
-/* What the layer's pixels add, and off the tile it goes. */
+/* Returns the contributions of the layer's pixels, and removes the layer from the tile. */
 static expected take_off(const layer *l, const t3r_splat *s, const own_axes *axes, uint32_t left, uint32_t top,
                          const t3r_tile *drawn, double unit, tile_behind *behind)
 {
@@ -292,8 +294,8 @@ static double largest_of(const layer *l)
     return most;
 }
 
-/* Weights take 10 to 15 bits, rounded down. Moments may be off by a hundredth of their terms, as these take 8 to 14
- * bits, and by the largest of g . r. */
+/* Weights have 10 to 15 bits, rounded down. The error of moments is at most a hundredth of their terms, which have 8
+ * to 14 bits, and the largest g . r. */
 static double compare_sums(const t3r_refine_sums *got, const expected *want, double unit)
 {
     const double h = 1 << t3r_refine_shift(got->area);
@@ -352,7 +354,7 @@ TEST(follows_double)
     assert_true(accumulated > 5000);
 }
 
-/* What is not before the camera has no footprint there. */
+/* A Gaussian that is not in front of the camera has no footprint there. */
 TEST(unseen_have_no_footprint)
 {
     t3r_gaussian g = scene[0];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Splats taken off a tile: what is behind the first is what was drawn; the largest values that there can be fit; and
- * the same splats in another scale of brightness, or a tile further, add what they should. */
+/* Splats removed from a tile: the colours behind the first equal the picture drawn before it; the largest possible
+ * values fit; and the same splats at another brightness, or a tile further, give consistent sums. */
 #include "unit/unit.h"
 
 #include "kernels/scatter_bits.h"
@@ -44,7 +44,7 @@ static t3r_scatter_splat scatter_of(const t3r_tile_splat *span, const t3r_blende
                                .pixels = 256};
 }
 
-/* Every layer's colour is mixed over what was behind it: all of them off, that is the picture. */
+/* Every layer's colour is mixed over the colour behind it, so without all layers the whole picture is left. */
 TEST(behind_all_is_the_picture)
 {
     uint64_t seed = 3;
@@ -67,12 +67,12 @@ TEST(behind_all_is_the_picture)
         for (uint32_t k = 0; k < 3 * SIDE * SIDE; k++) {
             const int32_t want_q7 = drawn.colour_q7[k / (SIDE * SIDE)][k / SIDE % SIDE][k % SIDE];
             const int32_t got_q7 = tile.pixels.colour_q7[k / (SIDE * SIDE)][k / SIDE % SIDE][k % SIDE];
-            assert_in_range(got_q7 - want_q7 + 128, 128 - 32, 128 + 64); /* a quarter of a level, half of one */
+            assert_in_range(got_q7 - want_q7 + 128, 128 - 32, 128 + 64); /* -1/4 to 1/2 level */
         }
     }
 }
 
-/* White on black, all of it, and as much missing: the sums are exact. */
+/* White on black with full weights and the largest residual: the sums are exact. */
 TEST(the_most_there_can_be_fits)
 {
     static t3r_wanted tile;
@@ -91,7 +91,7 @@ TEST(the_most_there_can_be_fits)
         t3r_refine_sums sums = {.area = 256};
         const t3r_scatter_splat splat = {.span = &white, .rows = rows, .origin_q13 = {8192, 8192}, .pixels = 256};
         t3r_scatter_c(&tile, &splat, &sums);
-        /* 256 pixels, a quarter of them counted (area), each 255^2 x 3 levels^2 but for roundings, at x = y = 1 */
+        /* 256 pixels, a quarter of them counted (area), each 255^2 x 3 levels^2 up to rounding, at x = y = 1 */
         const double most = 64.0 * 3 * 255 * 255 * 128;
         for (int k = 0; k < T3R_REFINE_MOMENTS_4; k++) {
             assert_true(fabs(sums.curvature[k] / most - 1) < 0.03);
@@ -104,7 +104,7 @@ TEST(the_most_there_can_be_fits)
     }
 }
 
-/* Weights an eighth of others add an eighth to what is linear in them, and a 64th to what is square. */
+/* Weights of an eighth give an eighth of the linear sums, and a 64th of the square ones. */
 TEST(faint_splats_keep_their_bits)
 {
     uint64_t seed = 6;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What structural similarity asks for: as in doubles for tiles of all contrasts with pixels that do not count, and
- * within bounds. */
+/* The structural loss: equal to doubles for tiles of all contrasts with pixels that do not count, and within bounds. */
 #include "unit/unit.h"
 
 #include "core/fixed.h"
@@ -92,8 +91,8 @@ TEST(as_in_double)
     assert_true(worst < 0.25);
 }
 
-/* A level that a whole tile lacks is no structure; what is missing of a weak contrast counts more than of a strong one;
- * pixels that do not count change nothing in others. */
+/* A level that is missing in a whole tile is no structure; a residual of a weak contrast counts more than of a strong
+ * one; pixels that do not count change nothing in others. */
 TEST(structure_alone)
 {
     t3r_wanted tile = {0};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Levels of views: found as they were made, the mean of all left to the scene, taken off what is missing, within their
- * bounds at all extremes. */
+/* Levels of views: found as made, their mean left to the scene, removed from the residuals, within their bounds at all
+ * extremes. */
 #include "unit/unit.h"
 
 #include "refine/view_levels.h"
@@ -53,7 +53,7 @@ TEST(found_as_they_were_made)
         t3r_move_levels(&levels[0], &lines[0]);
         t3r_move_levels(&levels[1], &lines[1]);
         for (int c = 0; c < 3; c++) {
-            /* against the mean of both, and the target for the drawn level: 0.08 / (1 + 0.02) */
+            /* relative to the mean of both, and the target for the drawn level: 0.08 / (1 + 0.02) */
             assert_in_range(levels[0].offset_q8[c] + 10000, 10000 + 7.6 * 256, 10000 + 8.6 * 256);
             assert_in_range(levels[0].slope_q14[c] + 10000, 10000 + 0.073 * 16384, 10000 + 0.083 * 16384);
             assert_true(abs(levels[0].offset_q8[c] + levels[1].offset_q8[c]) <= 2);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Planes where stereo matched nothing: found among noise and strays, continued beyond what was matched, bounded, the
- * same on views of any side; and outlines that matched outlines. Whole builds are in test_stereo_views.c. */
+/* Planes where stereo matched nothing: found among noise and outliers, extended beyond the matches, bounded, the same
+ * on views of any size; and outlines that matched outlines. Whole builds are in test_stereo_views.c. */
 #include "unit/unit.h"
 
 #include "stereo/planes/plane_fill.h"
@@ -10,7 +10,7 @@
 
 enum { W = 96, H = 64, PIXELS = W * H };
 
-/* A view and its planes; depths as some surface has them. */
+/* A view and its planes, with the depths of a surface. */
 typedef struct shot {
     t3r_view view;
     double truth[PIXELS];
@@ -20,7 +20,7 @@ typedef struct shot {
 
 static _Alignas(64) uint8_t work[T3R_PLANE_FILL_BYTES(W, H)];
 
-/* A floor, and behind it a wall that turns away, both matched but where x is in from..end - 1. */
+/* Makes a floor, and behind it a slanted wall, both matched except where x is in from..end - 1. */
 static shot *shoot(uint32_t from, uint32_t end)
 {
     shot *s = unit_array(1, sizeof *s);
@@ -45,7 +45,7 @@ static shot *shoot(uint32_t from, uint32_t end)
     return s;
 }
 
-/* Share of the filled pixels that are off by more than 2 %. */
+/* Returns the share of the filled pixels that are off by more than 2 %. */
 static double off(const shot *s)
 {
     uint32_t filled = 0, wrong = 0;
@@ -67,7 +67,7 @@ TEST(found)
     t3r_search_planes(&s->view, work, &planes);
     assert_in_range(planes.count, 2, T3R_PLANES_MOST);
     uint64_t seed = 5;
-    for (uint32_t i = 0; i < PIXELS; i++) { /* noise of 1 %; one patch in ten anywhere */
+    for (uint32_t i = 0; i < PIXELS; i++) { /* noise of 1 %; one patch in ten at random */
         s->depth[i] = (uint16_t)(s->depth[i] + s->depth[i] * unit_between(&seed, -10, 10) / 1000);
         if (s->depth[i] != 0 && (i % W / 6 + i / W / 6 * 7) % 10 == 0) {
             s->depth[i] = (uint16_t)unit_between(&seed, 1000, 60000);
@@ -78,7 +78,7 @@ TEST(found)
     free(s);
 }
 
-/* To the picture's end, where no other side holds a surface; what was matched stays. */
+/* Planes continue to the picture's end, where no surface follows; matches stay. */
 TEST(continued)
 {
     shot *s = shoot(50, W), *before = shoot(50, W);
@@ -97,7 +97,7 @@ TEST(continued)
     free(s);
 }
 
-/* Strays beyond the floor, nearer in the picture than all else: the floor bounds what they fill. */
+/* Outliers beyond the floor, nearer than everything else: the floor bounds the area that they fill. */
 TEST(bounded)
 {
     shot *s = shoot(50, W);
@@ -112,7 +112,7 @@ TEST(bounded)
     free(s);
 }
 
-/* As many planes as there is room for, of twice as many strips; and none where nothing is matched. */
+/* Of twice as many strips as planes fit, the most are found; and none if nothing is matched. */
 TEST(counted)
 {
     shot *s = shoot(0, W);
@@ -128,7 +128,7 @@ TEST(counted)
     free(s);
 }
 
-/* So few samples of a patch are as it says at once: everything is filled at its distance. */
+/* A patch with few samples gives its plane at once: everything is filled at its distance. */
 TEST(of_a_patch)
 {
     enum { WIDTH = 33, HEIGHT = 200, COUNT = WIDTH * HEIGHT, DEPTH = 1000 };
@@ -156,7 +156,7 @@ TEST(of_a_patch)
     free(grey);
 }
 
-/* Stripes so unlike that a way across half a hundred of them is longer than any that counts. */
+/* Stripes of such contrast that a path across fifty of them exceeds every limit. */
 TEST(out_of_reach)
 {
     enum { MATCHED = 30, REACH = 51 };
@@ -175,7 +175,7 @@ TEST(out_of_reach)
     free(s);
 }
 
-/* Black pixels show nothing; what is beyond all steps is a hole; without planes nothing is done. */
+/* Black pixels are not filled; a depth beyond all steps is a hole; without planes nothing changes. */
 TEST(left_alone)
 {
     shot *s = shoot(50, W);
@@ -201,7 +201,7 @@ TEST(left_alone)
     free(s);
 }
 
-/* Any depths on views of any side: every depth within its range, the same again. */
+/* Any depths on views of any size: every depth is within its range, and repeated runs agree. */
 TEST(anything)
 {
     static const uint32_t sides[][2] = {{32, 32}, {33, 200}, {500, 40}, {64, 65}};
@@ -246,7 +246,7 @@ TEST(anything)
     }
 }
 
-/* Rows that end at the same distance from both of a pair, at another, and nowhere near. */
+/* Rows that end at the same distance as the other view's, at another distance, and nowhere near. */
 TEST(outlines)
 {
     enum { SIDE = 40, COUNT = 16, RIGHT = SIDE + COUNT - 1 };
@@ -257,12 +257,12 @@ TEST(outlines)
         memset(right, 90, sizeof right);
         memset(left, 0, 10);
         memset(right, 0,
-               (size_t)(10 + COUNT - 1 - 5 + moved)); /* disparity 5 leads from end to end, moved by as much */
+               (size_t)(10 + COUNT - 1 - 5 + moved)); /* from end to end the disparity is 5, changed by `moved` */
         memset(confidence, 70, sizeof confidence);
         for (int i = 0; i < RIGHT; i++) {
             disparity[0][i] = disparity[1][i] = 5 << T3R_DISPARITY_BITS;
         }
-        for (int i = 0; i < RIGHT; i++) { /* as agreement leaves them */
+        for (int i = 0; i < RIGHT; i++) { /* as the check for agreement leaves them */
             confidence[0][i] = i < SIDE && left[i] != 0 && right[i + COUNT - 1 - 5] != 0 ? 70 : 0;
             const int x = i - (COUNT - 1 - 5);
             confidence[1][i] = x >= 0 && x < SIDE && right[i] != 0 && left[x] != 0 ? 70 : 0;
@@ -275,7 +275,7 @@ TEST(outlines)
                                  .confidence = {confidence[0], confidence[1]}};
         t3r_plane_outline(&match);
         for (int x = 0; x < SIDE; x++) {
-            /* 16 pixels from the farther of the two ends, if both are within 3 */
+            /* no confidence up to 16 pixels from the farther end, if the two ends are within 3 */
             const int shown = x >= 10 + moved, near = moved <= 3 && x - 10 + 1 < 16;
             assert_int_equal(confidence[0][x] != 0, shown && !near);
             assert_int_equal(confidence[1][x + COUNT - 1 - 5] != 0, shown && !near);

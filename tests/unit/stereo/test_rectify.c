@@ -33,7 +33,7 @@ static void turned(double degrees, double x, double y, double z, double q[4])
     q[3] = sin(half) * z / length;
 }
 
-/* Computes where a camera sees a point: pixel and distance along z; 0 if the point is behind the camera. */
+/* Projects a point into a camera: pixel and distance along z; returns 0 if the point is behind the camera. */
 static int sees(const t3r_camera *c, const double point[3], double pixel[2], double *z)
 {
     int32_t r[9];
@@ -85,7 +85,7 @@ static int check_points(const t3r_camera *first, const t3r_camera *second, const
         if (!both) {
             continue;
         }
-        /* polar rows end where they begin, 8 units on */
+        /* polar rows wrap around: they end where they begin, 8 units on */
         double rows = (place[0][1] - place[1][1]) / 65536.0, turn = 8.0 * rect->scale_q16[1] / 65536;
         rows = fabs(rows) > turn / 2 ? fabs(rows) - turn : rows;
         assert_true(fabs(rows) < 0.02);
@@ -93,7 +93,7 @@ static int check_points(const t3r_camera *first, const t3r_camera *second, const
         const t3r_column a = t3r_rectified_column(rect, place[0][0]), b = t3r_rectified_column(rect, place[1][0]);
         const double apart = (double)distance_q24(&a, &b) / (1 << 24);
         if (place[0][0] - place[1][0] < 65536 || a.b_q24 < 1 << 20 || b.b_q24 < 1 << 20) {
-            continue; /* too far, or too near to the epipole, for the distance to be known */
+            continue; /* too far, or too near the epipole, to determine the distance */
         }
         const double ab = (double)a.b_q24 / (1 << 24) * b.b_q24 / (1 << 24);
         for (int i = 0; i < 2; i++) {
@@ -105,7 +105,7 @@ static int check_points(const t3r_camera *first, const t3r_camera *second, const
     return checked;
 }
 
-/* Planes are no larger than the macros promise. */
+/* Checks that planes are no larger than the macros say. */
 static void check_size(const t3r_rectification *rect, uint32_t width, uint32_t height, uint32_t disparities)
 {
     const size_t side = T3R_RECTIFIED_SIDE(width, height);
@@ -173,7 +173,7 @@ TEST(identity)
     free(out);
 }
 
-/* A plane's pixels are the view's pixels at t3r_rectified_place(): in a picture that is a slope. */
+/* A plane's pixels are the view's pixels at t3r_rectified_place(): checked on a slope of grey. */
 TEST(sampled)
 {
     for (int kind = 0; kind < 3; kind++) {
@@ -213,7 +213,7 @@ TEST(sampled)
                     }
                     const double got =
                         (1 - fy) * ((1 - fx) * p[0] + fx * p[1]) + fy * ((1 - fx) * below[0] + fx * below[1]);
-                    /* half a level of rounding; bending within a pixel of the plane, most near the epipole */
+                    /* half a level of rounding; and the row's bending within a pixel, most near the epipole */
                     assert_true(fabs(got - 2 * (along ? v : u) - 20) < (rect.polar ? 2.5 : 1));
                     looked++;
                 }
@@ -250,7 +250,7 @@ TEST(refused)
     assert_string_equal(t3r_pair_text(T3R_PAIR_COUNT), "unknown");
 }
 
-/* Rays that go nowhere: far to a plane's side, along the baseline, or steeper than is looked at. */
+/* Rays without a place: far to a plane's side, along the baseline, or steeper than the limit. */
 TEST(nowhere)
 {
     t3r_rectification rect;
@@ -285,7 +285,8 @@ TEST(nowhere)
     }
 }
 
-/* A camera whose picture is far below its axis and leans the other way: rays of more than 4, still in a plane. */
+/* A camera whose picture is far below its axis, and which leans the other way: rays steeper than 4, still in a plane.
+ */
 TEST(steep_in_a_plane)
 {
     enum { WIDE = 400, TALL = 520, FOCAL = 580 };
@@ -324,7 +325,7 @@ TEST(steep_in_a_plane)
     }
 }
 
-/* Any camera that passes its check: an answer, sizes within their bounds, rows that can be drawn. */
+/* Any camera that passes its check gives a result, sizes within their bounds, and rows that can be drawn. */
 TEST(anything)
 {
     uint64_t seed = 12;
@@ -380,7 +381,7 @@ TEST(anything)
     assert_true(matched > 200);
 }
 
-/* Planes around the direction of motion are tall: up to what the work memory allows, in pictures of every size. */
+/* Planes around the direction of motion are tall: up to the limit of the work memory, in pictures of every size. */
 TEST(tall)
 {
     static const uint32_t sides[] = {90, 100, 300, 408, 412, 1200, 1630, 1645, 2400, 4096};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Stereo: depth of a scene that is drawn here, from pairs of every kind. */
+/* Stereo: depth of a drawn scene, from pairs of every kind. */
 #include "unit/unit.h"
 
 #include "core/camera.h"
@@ -16,7 +16,7 @@ typedef struct shot {
     double depth[PIXELS];
 } shot;
 
-/* A smooth random texture: noise on a lattice of `cell`, four octaves. */
+/* Computes a smooth random texture: noise on a lattice of `cell`, four octaves. */
 static double lattice(int64_t x, int64_t y, int64_t seed)
 {
     uint64_t s = (uint64_t)(x * 73856093) ^ (uint64_t)(y * 19349663) ^ (uint64_t)(seed * 83492791);
@@ -36,7 +36,7 @@ static double texture(double x, double y, int64_t seed)
     return sum / 4;
 }
 
-/* A wall that leans, z = 3 + 0.3 x, and before it a board at z = 2, 1 by 0.8; all at `scale`. */
+/* Draws a leaning wall, z = 3 + 0.3 x, and in front of it a board at z = 2, 1 by 0.8; all at `scale`. */
 static shot *shoot(double x, double y, double z, const double q[4], double gain, double scale, int64_t seed)
 {
     shot *s = unit_array(1, sizeof *s);
@@ -102,7 +102,7 @@ static t3r_pair match(const t3r_stereo_settings *how, shot *a, shot *b, int garb
     return pair;
 }
 
-/* Shares of a view's pixels, percent: matched; of these off by more than `tolerance`; filled. */
+/* Computes shares of a view's pixels, percent: matched; of these off by more than `tolerance`; filled. */
 static void judge(const shot *s, uint64_t unit, double tolerance, double out[3])
 {
     double matched = 0, wrong = 0, filled = 0;
@@ -181,7 +181,7 @@ TEST(refused)
     shot_free(near);
 
     shot *b = shoot(0.25, 0, 0, straight, 1, 1, 7), *other = shoot(0.25, 0, 0, straight, 1, 1, 5000);
-    /* Another place: pixels that match by chance are the fewer, the more they had to choose from. */
+    /* another place: the more candidates pixels have, the fewer match by chance */
     const t3r_stereo_settings many = {&t3r_kernels_c, 128, 4, 1, {NULL, 1}, 0};
     assert_int_equal(match(&many, a, other, 0, &unit), T3R_PAIR_OVERLAP);
     shot_free(other);
@@ -193,7 +193,7 @@ TEST(refused)
     shot_free(b);
 }
 
-/* What lay in the work, and flat or black pictures, do not matter or harm. */
+/* Neither previous contents of the work memory nor flat or black pictures do harm. */
 TEST(repeated)
 {
     uint64_t unit[2];
@@ -221,7 +221,7 @@ TEST(repeated)
     shot_free(b);
 }
 
-/* Noise for pictures, any settings, any pose: an answer, and depths within their range. */
+/* Noise for pictures, any settings, any pose: a result, and depths within their range. */
 TEST(anything)
 {
     uint64_t seed = 6, unit;
@@ -248,7 +248,7 @@ TEST(anything)
     shot_free(b);
 }
 
-/* Without filling: the same matches, nothing between them. */
+/* Without filling: the same matches, and nothing between them. */
 TEST(unfilled)
 {
     uint64_t unit[2];
@@ -277,7 +277,7 @@ TEST(unfilled)
     }
 }
 
-/* A channel that is all but dark still shows something. */
+/* A channel that is almost dark still has contents. */
 TEST(dark_is_not_nothing)
 {
     uint64_t unit[2];
@@ -285,7 +285,7 @@ TEST(dark_is_not_nothing)
     for (int turn = 0; turn < 2; turn++) {
         a[turn] = shoot(0, 0, 0, straight, 1, 1, 7);
         b[turn] = shoot(0.25, 0, 0, straight, 1, 1, 7);
-        for (int c = 0; c < 3; c++) { /* luma 0.1 or 1: the least there is */
+        for (int c = 0; c < 3; c++) { /* luma 0.1 or 1: the smallest one */
             memset(a[turn]->view.colour[c], turn == 0 ? c == 2 : 1, 40 * W);
             memset(b[turn]->view.colour[c], turn == 0 ? c == 2 : 1, 40 * W);
         }
@@ -319,7 +319,7 @@ static void backwards(void *user, uint32_t count, void (*task)(void *context, ui
     }
 }
 
-/* A picture of fewer rows in the first look than there are workers. */
+/* A picture with fewer rows in the first look than workers. */
 TEST(small_pictures_have_few_workers)
 {
     enum { SIDE = 56, MOST = 16 };
@@ -350,7 +350,7 @@ TEST(small_pictures_have_few_workers)
     memset(work, 0xa5, bytes);
     assert_int_equal(t3r_stereo_match_score(&many, cameras, views, work, &shared), pair);
     assert_true(score > 0 && score == shared);
-    /* refused before anything is looked at */
+    /* refused before any comparison */
     cameras[1] = cameras[0];
     assert_int_equal(t3r_stereo_match_score(&one, cameras, views, work, &score), T3R_PAIR_NO_BASELINE);
     assert_int_equal(score, 0);
@@ -359,9 +359,9 @@ TEST(small_pictures_have_few_workers)
     shot_free(s[1]);
 }
 
-/* Two cameras whose first look compares so many disparities that its matching leaves no room for what it draws: that is
- * drawn in bands, each worker's its own; in the larger picture of eight rows, which are the most. Any picture, any
- * number of workers: the same. */
+/* Two cameras whose first look compares so many disparities that matching leaves no room for the rectified pictures:
+ * these are drawn in bands, one per worker; in the larger picture of eight rows, the maximum. Any picture gives the
+ * same for any number of workers. */
 TEST(bands_where_nothing_is_kept)
 {
     enum { SIDE = 53, MOST = 16 };
@@ -410,7 +410,7 @@ TEST(bands_where_nothing_is_kept)
     }
 }
 
-/* Planes of two disparities, from each half of either view: the depth unit of a pair so far apart. */
+/* Makes planes of two disparities, each in half of either view; returns the depth unit of that pair. */
 static t3r_pair unit_of(t3r_rectification *rect, const t3r_view views[2], double near, double far, uint64_t *unit_q40,
                         uint32_t *steps)
 {
@@ -435,7 +435,7 @@ static t3r_pair unit_of(t3r_rectification *rect, const t3r_view views[2], double
     return pair;
 }
 
-/* 60,000 steps reach the farthest, but not beyond 64 times the median; a step is a whole number of 2^-40 world units,
+/* 60,000 steps reach the farthest depth, at most 64 times the median; a step is a whole number of 2^-40 world units,
  * below 2^47. */
 TEST(units)
 {
@@ -451,9 +451,9 @@ TEST(units)
         assert_true(reach > 0.99 && reach < 1.1);
     }
     assert_int_equal(unit_of(&rect, views, 100, 50, &unit, &steps), T3R_PAIR_OK);
-    for (int long_steps = 0; long_steps < 2; long_steps++) { /* of the nearest places, and of the farthest */
+    for (int long_steps = 0; long_steps < 2; long_steps++) { /* for the nearest places, and for the farthest */
         const double disparity = long_steps ? 0.6 : 100;
-        rect.baseline_q31 = long_steps ? 3719550786u : rect.baseline_q31; /* 2^31 sqrt 3, the longest there is */
+        rect.baseline_q31 = long_steps ? 3719550786u : rect.baseline_q31; /* 2^31 sqrt 3, the longest possible */
         (void)unit_of(&rect, views, disparity, disparity, &unit, &steps);
         const double exact = (double)rect.baseline_q31 * (1 << 24) / steps;
         int fitting = 0;

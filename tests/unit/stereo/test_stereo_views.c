@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Depth by stereo in the pipeline: the built-in room from colours alone, refusals, more than two views, and its parts:
- * several pairs brought together, what was not matched filled. */
+ * combining several pairs, filling unmatched pixels. */
 #include "rgbd_frame.h"
 #include "unit/unit.h"
 
@@ -14,10 +14,10 @@
 
 enum { W = 128, H = 96, PIXELS = W * H, BUDGET = 1500, MOST = 5 };
 
-/* Frames of the room, and whatever else a test puts in their place. */
+/* Frames of the room, or a test's own in their place. */
 typedef struct shots {
     uint8_t *rgb[MOST];
-    uint16_t *depth[MOST]; /* the truth, millimetres */
+    uint16_t *depth[MOST]; /* true depth, millimetres */
     t3r_camera camera[MOST];
     uint32_t count;
 } shots;
@@ -107,7 +107,7 @@ static t3r_status reconstruct(bench *b, t3r_scene *scene)
     return t3r_reconstruct(b->rt, NULL, scene);
 }
 
-/* Of a view: pixels matched with confidence, the share of these off by more than a tenth, pixels without depth. */
+/* For a view: pixels matched with confidence, the share of these off by more than a tenth, pixels without depth. */
 typedef struct verdict {
     uint32_t measured, none;
     double wrong;
@@ -162,13 +162,13 @@ TEST(colours_alone)
     /* again from the same planes, which now hold depth */
     assert_int_equal(reconstruct(&b, &scene), T3R_OK);
     assert_int_equal(b.hash, hash);
-    /* a sensor's depth is ignored, even nonsense */
+    /* a sensor's depth, even nonsense, is ignored */
     assert_int_equal(t3r_reset(b.rt), T3R_OK);
     add(&b, &s, 0, s.depth[1], 0);
     add(&b, &s, 1, s.depth[0], UINT64_MAX);
     assert_int_equal(reconstruct(&b, &scene), T3R_OK);
     assert_int_equal(b.hash, hash);
-    /* and a moved arena remembers */
+    /* and an arena works after a move */
     void *moved = aligned_alloc(T3R_ARENA_ALIGN, b.bytes);
     t3r_runtime *rt;
     assert_non_null(moved);
@@ -192,14 +192,14 @@ TEST(unfilled)
     assert_int_equal(reconstruct(&b, &filled), T3R_OK);
     b.rt->config.fill_radius = 0;
     assert_int_equal(reconstruct(&b, &scene), T3R_OK);
-    assert_int_equal(scene.valid_points, filled.valid_points); /* filling adds no budget */
+    assert_int_equal(scene.valid_points, filled.valid_points); /* filling adds nothing to the budget */
     const verdict left = judge(&b, &s, 0), right = judge(&b, &s, 1);
     assert_int_equal(left.none + right.none, 2 * PIXELS - scene.valid_points);
     free(b.arena);
     shots_free(&s);
 }
 
-/* Returns a wall that turns away, with texture only at its left and right. */
+/* Returns a slanted wall, with texture only at its left and right. */
 static shots wall_shots(void)
 {
     shots s = {.count = 2};
@@ -270,7 +270,7 @@ TEST(planes)
     }
 }
 
-/* Black areas show nothing: they are neither matched nor filled. */
+/* Black areas are neither matched nor filled. */
 TEST(nothing_shown)
 {
     shots s = room_shots((const uint32_t[]){0, 2}, 2);
@@ -358,7 +358,7 @@ TEST(refused)
     s.camera[1] = second;
     noise(s.rgb[1], 5);
     expect_refusal(&s, T3R_PAIR_OVERLAP);
-    memset(s.rgb[1], 0, 3 * PIXELS); /* shows nothing */
+    memset(s.rgb[1], 0, 3 * PIXELS); /* no contents */
     memset(s.rgb[2], 0, 3 * PIXELS);
     s.count = 3;
     expect_refusal(&s, T3R_PAIR_OVERLAP);
@@ -448,12 +448,12 @@ TEST(fused)
         {1000, 0, 90, 0, 1000, 90},       /* nothing new */
         {0, 500, 0, 70, 1000, 70},        /* nothing old; units of 2 */
         {1000, 500, 60, 20, 1000, 80},    /* the same */
-        {1000, 510, 60, 20, 1005, 80},    /* nearly: the mean by confidence */
+        {1000, 510, 60, 20, 1005, 80},    /* nearly: the mean weighted by confidence */
         {1000, 510, 200, 200, 1010, 255}, /* held to 255 */
-        {1000, 700, 90, 30, 1000, 60},    /* another: the surer, less sure */
+        {1000, 700, 90, 30, 1000, 60},    /* another: the surer one, with less confidence */
         {1000, 700, 30, 90, 1400, 60},    /* */
-        {1000, 700, 50, 50, 1000, 2},     /* the first of two equal ones, with little confidence */
-        {1000, 700, 1, 2, 1400, 2},       /* matched before filled */
+        {1000, 700, 50, 50, 1000, 2},     /* of two equal ones the first, with little confidence */
+        {1000, 700, 1, 2, 1400, 2},       /* matched wins over filled */
         {1000, 700, 2, 1, 1000, 2},       /* */
         {1000, 700, 1, 1, 1000, 1},       /* */
         {0, 700, 0, 1, 1400, 1},          /* */
@@ -526,7 +526,7 @@ TEST(filled)
         colour[i] = i % WIDTH < WIDTH / 2 ? 40 : 90;
     }
     colour[3] = 0;
-    t3r_stereo_fill(&view, work); /* nothing to take */
+    t3r_stereo_fill(&view, work); /* nothing to fill from */
     for (int i = 0; i < COUNT; i++) {
         assert_true(depth[i] == 0 && confidence[i] == T3R_STEREO_NONE);
     }
@@ -544,7 +544,7 @@ TEST(filled)
     free(work);
 }
 
-/* In large pictures the sums over the steepest possible slope have more bits than a quotient has room for. */
+/* In large pictures the sums over the steepest possible slope have more bits than a quotient can hold. */
 TEST(extended_in_large_pictures)
 {
     enum { WIDTH = 4096, HEIGHT = 480 };
@@ -574,7 +574,7 @@ TEST(extended_in_large_pictures)
     free(work);
 }
 
-/* Depths on a plane in the left half go on in the right one. */
+/* Depths on a plane in the left half continue in the right half. */
 TEST(extended)
 {
     enum { WIDTH = 80, HEIGHT = 64, COUNT = WIDTH * HEIGHT };

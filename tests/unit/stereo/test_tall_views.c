@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Depth by stereo of pictures as tall as a block of 8, 16, 32 and 64 rows is for: a wall two metres away. */
+/* Depth by stereo of pictures tall enough for blocks of 8, 16, 32 and 64 rows: a wall two metres away. */
 #include "unit/unit.h"
 
 #include "rgbd_frame.h"
 
 enum { W = 48, SHIFT = 4, BUDGET = 200 };
 
-/* A camera that looks at the wall from `index` eighths of a metre to the right sees it 4 pixels to the left. */
+/* Adds a camera `index` eighths of a metre to the right, which sees the wall 4 pixels further to the left. */
 static void add(t3r_runtime *rt, uint32_t height, uint32_t index, const uint8_t *wall, uint8_t *rgb)
 {
     const t3r_camera camera = {.fx_q16 = 64 << 16,

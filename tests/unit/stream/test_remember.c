@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a stream remembers of keyframes whose planes are gone: colours in five bits that keep their mean, those that the
- * map needs, and a map that goes on showing them. */
+/* Remembered keyframes without planes: colours in five bits that keep their mean, the choice by the map's need, and a
+ * map that keeps showing them. */
 #include "unit/unit.h"
 
 #include "rgbd_frame.h"
@@ -32,7 +32,7 @@ static t3r_runtime *begin(const t3r_config *config)
     return rt;
 }
 
-/* A grey wall two metres before a camera at x, z metres. The leftmost column has no depth. */
+/* Takes a keyframe of a grey wall two metres in front of a camera at x, z metres. The leftmost column has no depth. */
 static t3r_status try_to_take(t3r_runtime *rt, double x, double z, uint8_t level)
 {
     const uint32_t mm = (uint32_t)((2 - z) * 1000);
@@ -86,7 +86,7 @@ static uint32_t numbers_of(const t3r_runtime *rt)
     return bits;
 }
 
-/* Of those that show the same place one is forgotten, and not the only one of another, whatever its number. */
+/* Of several keyframes of one place one is forgotten, and not the only one of another place, for any numbers. */
 TEST(forgets_what_is_shown_often)
 {
     const t3r_config config = stream_config(3);
@@ -104,7 +104,7 @@ TEST(forgets_what_is_shown_often)
     assert_int_equal(rt->remembered, 0);
 }
 
-/* A camera that stands still remembers keyframes all over its time. */
+/* A stationary camera remembers keyframes spread over its time. */
 TEST(spreads_over_time)
 {
     const t3r_config config = stream_config(3);
@@ -126,7 +126,7 @@ static uint32_t mean_level(const t3r_runtime *rt)
     return (uint32_t)(sum_q7 / scene.count / 128);
 }
 
-/* The wall is darker in the end than it was for long: the map follows, but not all the way. */
+/* The wall turns darker after a long time: the map follows, but not completely. */
 TEST(the_map_remembers)
 {
     uint32_t level[2];
@@ -144,7 +144,7 @@ TEST(the_map_remembers)
     assert_true(level[1] > level[0] + 20 && level[1] < 197);
 }
 
-/* From afar alone a Gaussian stays as it is, unless a remembered keyframe shows it closely. */
+/* From afar alone a Gaussian does not change, unless a remembered keyframe shows it closely. */
 TEST(holds_what_it_shows)
 {
     for (uint32_t remember = 0; remember < 2; remember++) {
@@ -158,8 +158,8 @@ TEST(holds_what_it_shows)
     }
 }
 
-/* Where a remembered keyframe had no depth it shows nothing. The second one stands eight columns to the right of the
- * first: of what the first one gave the map, a column falls on its column without depth, and some miss it. */
+/* A remembered keyframe shows nothing where it had no depth. The second one is eight columns to the right of the
+ * first: one column of the first one's Gaussians falls on its column without depth, and some miss it. */
 TEST(hides_what_had_no_depth)
 {
     const t3r_config config = stream_config(1);
@@ -184,7 +184,7 @@ TEST(hides_what_had_no_depth)
     assert_true(held > 50 && hidden > 2);
 }
 
-/* One that saw everything from afar holds nothing that was seen closely. */
+/* A keyframe that saw everything from afar protects nothing that was seen closely. */
 TEST(holds_nothing_from_afar)
 {
     const t3r_config config = stream_config(1);
@@ -193,7 +193,7 @@ TEST(holds_nothing_from_afar)
     take(rt, 0, -2, 90);
     const t3r_map_record *record = &t3r_map_of(rt).records[rt->gaussians / 2];
     assert_int_equal(record->idle, 0);
-    take(rt, 0, -2, 90); /* the one from afar takes the place of the near one */
+    take(rt, 0, -2, 90); /* the distant one replaces the near one */
     assert_int_equal(record->idle, 1);
 }
 
@@ -202,8 +202,8 @@ static double units(const t3r_runtime *rt, int count)
     return ldexp(count, rt->frame.exponent);
 }
 
-/* The map's range is 1,024 units about an origin that follows the camera. What is beyond it neither holds nor refines,
- * and is forgotten first, whatever its number. */
+/* The map's range is 1,024 units around an origin that follows the camera. A keyframe beyond it neither protects nor
+ * refines, and is forgotten first, for any numbers. */
 TEST(forgets_first_what_is_out_of_range)
 {
     const t3r_config config = stream_config(2);
@@ -218,7 +218,7 @@ TEST(forgets_first_what_is_out_of_range)
     assert_int_equal(numbers_of(rt), 1 << 3 | 1 << 4);
 }
 
-/* The keyframe whose planes are taken can itself be out of range. It shows nothing of the map. */
+/* The keyframe that loses its planes can itself be out of range. It shows nothing of the map. */
 TEST(remembers_what_is_out_of_range)
 {
     const t3r_config config = stream_config(2);
@@ -227,11 +227,11 @@ TEST(remembers_what_is_out_of_range)
     take(rt, 0, 0, 90);
     take(rt, -units(rt, 500), 0, 90);
     assert_int_equal(numbers_of(rt), 1 << 1 | 1 << 2);
-    take(rt, units(rt, 900), 0, 90); /* 1,400 units from the one before */
+    take(rt, units(rt, 900), 0, 90); /* 1,400 units from the previous one */
     assert_int_equal(numbers_of(rt), 1 << 3 | 1 << 2);
 }
 
-/* A keyframe at hand that came out of range lost its depth, and is not remembered. */
+/* A live keyframe that went out of range lost its depth, and is not remembered. */
 TEST(remembers_only_what_shows_something)
 {
     t3r_config config = stream_config(2);
@@ -246,7 +246,7 @@ TEST(remembers_only_what_shows_something)
     assert_int_equal(numbers_of(rt), 1 << 2);
 }
 
-/* Memory may come back otherwise than it was: a camera that is none shows nothing, and is forgotten first. */
+/* Memory may come back changed: an invalid camera shows nothing, and is forgotten first. */
 TEST(passes_over_cameras_that_are_none)
 {
     const t3r_config config = stream_config(3);
@@ -272,7 +272,7 @@ static int progress(void *user, t3r_stage stage, uint32_t done, uint32_t total)
     return ++s->calls == s->cancel_at;
 }
 
-/* A keyframe is cancelled while remembered ones refine the map, too. */
+/* A keyframe is also cancelled while remembered ones refine the map. */
 TEST(is_cancelled_at_every_step)
 {
     uint32_t calls = 1;
@@ -290,7 +290,7 @@ TEST(is_cancelled_at_every_step)
     assert_true(calls > 12); /* before and in each of two keyframes, in two passes, and before each stage */
 }
 
-/* As many keyframes as there is no room for are no state that the library left. */
+/* More keyframes than there is room for cannot be a state of the library. */
 TEST(refuses_more_than_fit)
 {
     const t3r_config config = stream_config(1);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Who stays in a stream's map: against sorting; what stays grows and nothing else changes; moves are exact. */
+/* The Gaussians that stay in a stream's map: compared with sorting; those that stay grow and change in nothing else;
+ * moves are exact. */
 #include "unit/unit.h"
 
 #include "budget/budget.h"
@@ -23,7 +24,7 @@ static void fill(site *s, uint64_t *seed, uint32_t key_range)
     memset(s, 0, sizeof *s);
     s->map = (t3r_map){s->gaussians, s->records, (uint32_t)unit_between(seed, 0, MOST)};
     for (uint32_t i = 0; i < s->map.count; i++) {
-        s->gaussians[i].position_q20[0] = (int32_t)i; /* who it is */
+        s->gaussians[i].position_q20[0] = (int32_t)i; /* identifies the Gaussian */
         s->gaussians[i].factor[0] = 1000;
         s->gaussians[i].factor_exponent = -20;
         s->records[i].key = (uint16_t)(T3R_MAP_KEY_LEAST + unit_between(seed, 0, key_range));
@@ -51,7 +52,7 @@ static uint32_t key_of(const t3r_map_record *r)
     return T3R_MIN((uint32_t)r->key + r->faded_q10, 65535u);
 }
 
-/* One that competes: the order of staying is key, then points, then Gaussians from the newest on. */
+/* A competitor: ordered by key, then points, then Gaussians from the newest on. */
 typedef struct rival {
     uint32_t key, rank;
     int gaussian; /* -1: a point */
@@ -108,7 +109,7 @@ static double size_of(const t3r_gaussian *g)
     return ldexp(g->factor[0], g->factor_exponent);
 }
 
-/* A quarter of the density is twice the width; no thinning, no change; nobody ever narrows. */
+/* A quarter of the density gives twice the width; without thinning nothing changes; nothing narrows. */
 TEST(widens_by_density)
 {
     static site s;
@@ -136,7 +137,7 @@ TEST(widens_by_density)
     }
 }
 
-/* Half the density, an octave, in every `half_life` keyframes on end, evenly. */
+/* The density halves, an octave, in every `half_life` consecutive keyframes, evenly. */
 TEST(fades_by_half_life)
 {
     static site s;
@@ -158,7 +159,7 @@ TEST(fades_by_half_life)
     }
 }
 
-/* However long nobody sees a Gaussian, its counts stay at their most. */
+/* The counts of a Gaussian that is never seen stay at their maximum. */
 TEST(counts_are_held)
 {
     static site s;
@@ -178,7 +179,7 @@ TEST(counts_are_held)
     }
 }
 
-/* What a head put at the end of the range or beyond is not taken over; what is, keeps its own pixel's record. */
+/* A head's Gaussians at the end of the range or beyond are dropped; the others keep their own pixel's record. */
 TEST(what_is_out_of_range_is_left_out)
 {
     static site s;
@@ -213,7 +214,7 @@ TEST(what_is_out_of_range_is_left_out)
     assert_int_equal(s.map.count, 3);
     assert_int_equal(s.gaussians[2].position_q20[0], T3R_POSITION_MOST_Q20 - 1);
     assert_int_equal(s.records[2].key, 40006);
-    assert_int_equal(s.records[2].wanted_q10, INT16_MAX); /* 2 log2 of 65,543 is a little above */
+    assert_int_equal(s.records[2].wanted_q10, INT16_MAX); /* 2 log2 of 65,543 is slightly larger */
 }
 
 TEST(moves_are_exact)
@@ -235,7 +236,7 @@ TEST(moves_are_exact)
     t3r_map_move(&s.map, (int64_t[3]){0, 0, (int64_t)500 << 20});
     assert_int_equal(s.gaussians[0].position_q20[2], 1000 << 20);
     assert_int_equal(s.gaussians[1].position_q20[2], 7);
-    /* out of range along one axis or several: gone all the same */
+    /* out of range along one axis or several: dropped in each case */
     s.gaussians[0].position_q20[1] = -(1000 << 20);
     t3r_map_move(&s.map, (int64_t[3]){(int64_t)100 << 20, -((int64_t)100 << 20), 0});
     assert_int_equal(s.map.count, 1);

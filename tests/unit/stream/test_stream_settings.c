@@ -87,8 +87,8 @@ TEST(each_setting)
         assert_int_equal(run(&other[i], again), count);
         assert_memory_equal(first, again, count * sizeof *first);
         const bool clustered = other[i].allocate == T3R_ALLOCATE_PAPER || other[i].allocate == T3R_ALLOCATE_PIXEL;
-        /* a stream has one SuperCluster, so that these are one allocation, and refines without the structural loss,
-         * with the given poses */
+        /* a stream has one SuperCluster, so these are one allocation, and refines without the structural loss, with
+         * the given poses */
         if (clustered || other[i].clusters != 0 || other[i].structural != 0 || other[i].align == 0) {
             assert_int_equal(count, usually);
             assert_memory_equal(first, usual, count * sizeof *first);
@@ -96,7 +96,7 @@ TEST(each_setting)
     }
 }
 
-/* With fitted passes a keyframe takes the maximum of a stream; otherwise the number requested. */
+/* With fitted passes a keyframe takes a stream's maximum; otherwise the requested number. */
 TEST(fitted_passes_have_a_bound)
 {
     static t3r_gaussian fitted[BUDGET], bound[BUDGET], more[BUDGET];
@@ -113,7 +113,7 @@ TEST(fitted_passes_have_a_bound)
     assert_memory_not_equal(fitted, more, count * sizeof *fitted);
 }
 
-/* A damaged arena may hold another head than the configuration's, whose weights are not bound. */
+/* A damaged arena may hold another head than the configuration's, with unbound weights. */
 TEST(a_stream_builds_as_it_is_configured)
 {
     const t3r_camera camera = camera_at(0);

@@ -132,8 +132,8 @@ static void real_line(double *x, uint32_t n, t3r_wavelet kind, double *middle)
     memcpy(x + lows, high, highs * sizeof *x);
 }
 
-/* weights[i][k]: contribution of sample k of a line of n to coefficient i after all levels (Mallat order); middle
- * likewise for the last level's d1. */
+/* Computes weights[i][k]: contribution of sample k of a line of n to coefficient i after all levels (Mallat order);
+ * likewise middle for the last level's d1. */
 static void line_weights(double weights[80][80], double middle[80][80], uint32_t n, uint32_t levels, t3r_wavelet kind)
 {
     for (uint32_t k = 0; k < n; k++) {
@@ -154,7 +154,7 @@ static void line_weights(double weights[80][80], double middle[80][80], uint32_t
     }
 }
 
-/* The largest sums of absolute weights after exactly `level` levels, any length: low, high, d1. */
+/* Finds the largest sums of absolute weights after exactly `level` levels, for any length: low, high, d1. */
 static void worst_sums(uint32_t level, t3r_wavelet kind, double worst[3])
 {
     static double weights[80][80], middle[80][80];
@@ -181,7 +181,7 @@ static void worst_sums(uint32_t level, t3r_wavelet kind, double worst[3])
     }
 }
 
-/* The table of wavelet_level.h, and that everything stored fits 16 bits. */
+/* Checks the table of wavelet_level.h, and that everything stored fits 16 bits. */
 TEST(proof)
 {
     const double table[KINDS][LEVELS][3] = {
@@ -212,8 +212,8 @@ TEST(proof)
     }
 }
 
-/* For a coefficient (i, j), the black and white image that drives it furthest: the integer transform follows the
- * real one to its extreme, so nothing has wrapped round. */
+/* For a coefficient (i, j), the black and white image that drives it furthest: the integer transform follows the real
+ * one to its extreme, so nothing has overflowed. */
 TEST(attained)
 {
     static double across[80][80], down[80][80];
@@ -268,8 +268,8 @@ TEST(attained)
     assert_true(largest > 32600 && worst_error < 100);
 }
 
-/* The low and high halves are db2's published filters, coefficient n over samples 2 n - 1 .. 2 n + 2, up to the
- * stated gains and the sign of the high half. The first and the last ones follow the border's own rules. */
+/* The low and high halves are db2's published filters, coefficient n over samples 2 n - 1 .. 2 n + 2, up to the stated
+ * gains and the sign of the high half. The first and last ones follow the border's rules. */
 TEST(daubechies)
 {
     enum { N = 48, BORDER = 2 };
@@ -403,7 +403,7 @@ TEST(texture_of_nothing)
     image_free(x);
 }
 
-/* The image that drives a coefficient of level 5 furthest exceeds Q4 in 16 bits: its pixels stay at the top. */
+/* The image that drives a coefficient of level 5 furthest exceeds Q4 in 16 bits: its pixels saturate. */
 TEST(texture_saturates)
 {
     static double weights[80][80];
@@ -442,7 +442,7 @@ TEST(held_at_odd_sides)
     }
     const uint8_t *const colour[3] = {x.colour[0], x.colour[1], x.colour[2]};
     t3r_wavelet_texture(&t3r_kernels_c, colour, WIDTH, HEIGHT, LEVELS, T3R_WAVELET_DB2, x.texture, x.b.plane, x.b.work);
-    for (int i = HEIGHT / 2 * WIDTH; i < HEIGHT * WIDTH; i++) { /* 72,165 of that level alone */
+    for (int i = HEIGHT / 2 * WIDTH; i < HEIGHT * WIDTH; i++) { /* 72,165 from that level alone */
         assert_int_equal(x.texture[i], UINT16_MAX);
     }
     image_free(x);

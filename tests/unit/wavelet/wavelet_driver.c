@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* wavelet_driver WIDTH HEIGHT LEVELS: R, G, B planes on stdin, db2's periodized texture (uint16, host order) on
- * stdout. For wavelet_pywavelets.py. */
+/* wavelet_driver WIDTH HEIGHT LEVELS: reads R, G, B planes from stdin, writes db2's periodized texture (uint16, host
+ * order) to stdout. For wavelet_pywavelets.py. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """wavelet_pywavelets.py DRIVER [DATA]: texture energies against PyWavelets' db2, periodized, within 1 % in sum.
 
-On made-up images always; on the first pictures of each scene in DATA too, where that folder is there.
+Always on synthetic images; if DATA exists, also on the first pictures of each of its scenes.
 """
 import pathlib
 import subprocess

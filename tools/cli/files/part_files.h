@@ -12,7 +12,7 @@
  * many. */
 bool part_files_add(char *path);
 void part_files_forget(const char *path);
-/* Removes the parts and ends the process by that signal. For handlers of those who caught it themselves. */
+/* Removes the parts and ends the process with that signal, for handlers of programs that catch it themselves. */
 void part_files_end(int signal_number);
 
 #endif

@@ -59,8 +59,6 @@ uint32_t process_pool_processors(void)
     return count < 1 ? 1 : count > (long)PROCESS_POOL_MOST ? PROCESS_POOL_MOST : (uint32_t)count;
 }
 
-/* ---- in a worker ------------------------------------------------------------------------------------------------ */
-
 static bool write_all(int file, const void *bytes, size_t count)
 {
     const uint8_t *at = bytes;
@@ -122,8 +120,6 @@ static void serve(const process_pool_job *job, atomic_uint *next, int pipe)
         job->leave(job->context);
     }
 }
-
-/* ---- in the caller ---------------------------------------------------------------------------------------------- */
 
 static bool start_worker(pool *p, atomic_uint *next)
 {

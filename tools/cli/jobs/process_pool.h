@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Runs independent items of work in several processes. What they send arrives in the order of the items, whichever
- * process made it.
+/* Runs independent items of work in several processes. Their parts arrive in the order of the items, for any number of
+ * processes.
  *
  * Processes, not threads: a crash loses one item, and no state has to be passed, since a worker is a copy of the
- * caller. So parts may contain pointers to what existed before. */
+ * caller. So parts may contain pointers to objects that existed before. */
 #ifndef TRIM3R_TOOLS_PROCESS_POOL_H
 #define TRIM3R_TOOLS_PROCESS_POOL_H
 
@@ -19,7 +19,7 @@ typedef struct process_pool_job {
     uint32_t processes; /* 1: everything runs in the caller's own process */
     /* In a worker, for items in ascending order: sends any number of parts. Returns an exit status of cli.h. */
     int (*make)(void *context, uint32_t item, process_pool_line *line);
-    /* In the caller: takes a part as soon as the ones before it are taken. Returns an exit status of cli.h. */
+    /* In the caller: takes a part as soon as the earlier ones are taken. Returns an exit status of cli.h. */
     int (*take)(void *context, uint32_t item, const void *part, size_t bytes);
     /* In a worker, before it ends; may be NULL. */
     void (*leave)(void *context);

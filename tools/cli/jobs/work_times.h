@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where the time of a command went, by kind of work. */
+/* Times of a command by kind of work. */
 #ifndef TRIM3R_TOOLS_WORK_TIMES_H
 #define TRIM3R_TOOLS_WORK_TIMES_H
 

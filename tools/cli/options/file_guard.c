@@ -37,8 +37,6 @@ static bool is_sink(const file_place *place)
            (minor(place->special) == 3 || minor(place->special) == 7);
 }
 
-/* ---- each file by itself ----------------------------------------------------------------------------------------- */
-
 /* Reports a missing folder on the path by its name; words and devices are no paths. */
 static int check_way(const named_file *file)
 {
@@ -118,8 +116,6 @@ static int check_kind(const named_file *file, file_kind found)
                      file_kind_name(found), file_kind_name(one));
 }
 
-/* ---- pairs of files ---------------------------------------------------------------------------------------------- */
-
 static int check_pair(const named_file *output, const named_file *other)
 {
     return cli_error(CLI_BAD_USAGE, "%s %s and %s%s%s are one file: it would be %s", output->option, output->path,
@@ -194,8 +190,6 @@ int file_guard_begin(named_file *files, uint32_t count, bool force)
     }
     return code;
 }
-
-/* ---- while files are written ------------------------------------------------------------------------------------- */
 
 /* Returns the output with exactly this path; NULL = the path was derived from an output. */
 static const named_file *output_of(const char *path)

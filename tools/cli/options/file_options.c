@@ -163,7 +163,7 @@ static void refuse_option(const option_list *list, const char *word)
     exit(cli_error(CLI_BAD_USAGE, "unrecognized option '--%s'; trim3r %s --help lists them", name, cli_command()));
 }
 
-/* Reads the line as argp will; false: argp will refuse it, or print help. */
+/* Reads the line like argp; false: argp will refuse it, or print help. */
 static bool read_line(const option_list *list, int argc, char **argv, file_list *files)
 {
     char **line = must(calloc((size_t)argc + 1, sizeof *line)), *letters = short_options(list);
@@ -235,8 +235,8 @@ static bool lists_values(const char *argument)
     return strchr(argument, '|') != NULL && argument[strspn(argument, "abcdefghijklmnopqrstuvwxyz0123456789|")] == '\0';
 }
 
-/* For completion: each option, what its value is ("file", "value", "one|other" or nothing), and its help, tabs
- * between. */
+/* Prints for completion: each option, the kind of its value ("file", "value", "one|other" or nothing), and its help,
+ * separated by tabs. */
 static void print_completion(const option_list *list)
 {
     for (uint32_t i = 0; i < list->count; i++) {
@@ -284,12 +284,12 @@ static error_t parse_force(int key, char *argument, struct argp_state *state)
 
 static const struct argp_option listing_options[] = {
     {"color", KEY_COLOR, "WHEN", 0,
-     "use of colours in messages and headings: auto (default), on terminals alone; always; never", -1},
+     "use of colours in messages and headings: auto (default), only on terminals; always; never", -1},
     {"file-options", KEY_LISTING, NULL, OPTION_HIDDEN, "the options that name files, as JSON", -1},
     {"complete", KEY_COMPLETE, NULL, OPTION_HIDDEN, "all options, for completion", -1},
     {0}};
 static const struct argp_option force_options[] = {
-    {"force", KEY_FORCE, NULL, 0, "replace a file of another kind than the one to be written, too", -1}, {0}};
+    {"force", KEY_FORCE, NULL, 0, "replace also a file of another kind", -1}, {0}};
 static const struct argp listing_argp = {.options = listing_options, .parser = parse_listing};
 static const struct argp force_argp = {.options = force_options, .parser = parse_force};
 

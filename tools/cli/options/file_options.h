@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which options of a command name files: declared in its own table, in `flags` next to argp's. The guard of files
- * (file_guard.h) and the tests read them from there. */
+/* Options of a command that name files, declared in its own table, in `flags` next to argp's. The guard of files
+ * (file_guard.h) and the tests read them there. */
 #ifndef TRIM3R_TOOLS_FILE_OPTIONS_H
 #define TRIM3R_TOOLS_FILE_OPTIONS_H
 

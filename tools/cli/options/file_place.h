@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where a path leads: two paths to one place are one file, whatever the names or links. */
+/* Resolves where a path leads: two paths to one place are one file, whatever the names or links. */
 #ifndef TRIM3R_TOOLS_FILE_PLACE_H
 #define TRIM3R_TOOLS_FILE_PLACE_H
 

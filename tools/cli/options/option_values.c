@@ -75,7 +75,7 @@ uint64_t option_bytes(struct argp_state *state, const char *option, const char *
 {
     uint64_t bytes;
     if (!bytes_of_text(text, &bytes) || bytes == 0) {
-        argp_error(state, "--%s takes a number of bytes, with K, M or G behind it or not, not '%s'", option, text);
+        argp_error(state, "--%s takes a number of bytes, optionally followed by K, M or G, not '%s'", option, text);
     }
     return bytes;
 }
@@ -92,7 +92,7 @@ uint64_t option_time(struct argp_state *state, const char *option, const char *t
                                                                  : 0;
     const double most = 1e15; /* eleven days */
     if (digits == 0 || end != unit || !(value * each >= 1 && value * each <= most)) {
-        argp_error(state, "--%s takes a time as 100ms, 0.1s or 900us, not '%s'", option, text);
+        argp_error(state, "--%s takes a time like 100ms, 0.1s or 900us, not '%s'", option, text);
     }
     return (uint64_t)(value * each);
 }

@@ -14,8 +14,7 @@ static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "Without effect on the result:", PROCESSOR_GROUP},
     {"threads", KEY_THREADS, "N|all", 0, "number of threads, 1..16, or all: one for each processor (1)", 0},
     {"cpu-mask", KEY_CPU_MASK, "MASK", 0,
-     "vector extensions to use, of those that the processor has: all (default), none, names as avx2,vnni, or a number",
-     0},
+     "vector extensions of the processor to use: all (default), none, names like avx2,vnni, or a number", 0},
     {0},
 };
 
@@ -37,7 +36,7 @@ static uint32_t parse_mask(struct argp_state *state, const char *text)
 {
     uint32_t mask = 0;
     if (!t3r_cpu_parse_mask(text, &mask)) {
-        argp_error(state, "--cpu-mask takes all, none, names as avx2,vnni or a number, not '%s'", text);
+        argp_error(state, "--cpu-mask takes all, none, names like avx2,vnni or a number, not '%s'", text);
     }
     return t3r_cpu_features() & mask;
 }

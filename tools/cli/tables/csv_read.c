@@ -79,7 +79,7 @@ static const char *take(csv_reader *reader, row_state *state)
         return NULL;
     }
     if (state->closed) {
-        return "text behind a quoted cell";
+        return "text after a quoted cell";
     }
     if (*p == '"') {
         if (state->begun) {

@@ -19,12 +19,12 @@ typedef struct csv_reader {
     char row[CSV_ROW_BYTES_MOST]; /* the cells point into it */
 } csv_reader;
 
-/* `text` need not end in a 0. A byte order mark is skipped. */
+/* Opens a table; `text` need not end in a 0. A byte order mark is skipped. */
 void csv_reader_open(csv_reader *reader, const char *name, const char *text, size_t bytes);
 
-/* The next row that is not an empty line, as texts in `cell`, valid until the next call: 1, or 0 at the end, or -1 with
- * "name:line: why" in error[]: an open quote, text behind a quoted cell, a control character, bytes that are no
- * printable UTF-8, a row of too many cells or bytes. */
+/* Reads the next row that is not empty into `cell`, as texts valid until the next call: 1, or 0 at the end, or -1 with
+ * "name:line: why" in error[]: an open quote, text after a quoted cell, a control character, invalid UTF-8, or too
+ * many cells or bytes. */
 int csv_reader_next(csv_reader *reader, char *error, size_t error_bytes);
 
 /* Parses a finite decimal number, *given = true; for "" and "nan" *given = false. Returns 0, or -1 for other texts. */

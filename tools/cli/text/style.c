@@ -42,8 +42,6 @@ const char *style_end(FILE *out)
     return style_is_on(out) ? "\033[0m" : "";
 }
 
-/* ---- argp's output ----------------------------------------------------------------------------------------------- */
-
 static struct {
     char *text; /* heap; NULL: argp writes to the stream itself */
     size_t bytes;

@@ -13,7 +13,7 @@ typedef struct text_list {
     uint32_t count;
 } text_list;
 
-/* Adds a line, cleaned and cut as reasons are (reason.h). Returns 0, or -1 when out of memory. */
+/* Adds a line, cleaned and cut like reasons (reason.h). Returns 0, or -1 when out of memory. */
 int text_list_add(text_list *list, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void text_list_free(text_list *list);
 /* Prints "what: line" for each line on stdout. */

@@ -186,7 +186,7 @@ static bool pose_of_tree(bag_frames *b, int64_t stamp_ns, rigid *out)
         return false;
     }
     if (b->fixed.count == 0 && !transform_tree_moves(&b->tree, camera)) { /* frames inside a rigid rig are no poses */
-        remark(b, "no pose topic was chosen, and transforms stand still", b->camera, (t3r_text){"its root", 8});
+        remark(b, "no pose topic was chosen, and no transform moves", b->camera, (t3r_text){"its root", 8});
         return false;
     }
     t3r_text to =

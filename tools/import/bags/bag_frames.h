@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What import does with a bag's frames beyond reading them: composes and interpolates poses, registers depth to
- * colour. */
+/* Import's changes to a bag's frames: composes and interpolates poses, registers depth to colour. */
 #ifndef TRIM3R_TOOLS_BAG_FRAMES_H
 #define TRIM3R_TOOLS_BAG_FRAMES_H
 
@@ -16,7 +15,7 @@ typedef struct bag_frames_options {
     const char *fixed_frame;  /* parent frame of the poses; NULL: the pose topic's, or the root above the camera */
     const char *camera_frame; /* NULL: the colour images' frame */
     bool keep_poses;          /* keep the poses that frames come with */
-    int64_t near_ns;          /* the ends of a track hold for so long outside it */
+    int64_t near_ns;          /* the first and the last pose of a track are used this long outside it */
 } bag_frames_options;
 
 typedef struct bag_frames {

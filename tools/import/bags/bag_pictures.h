@@ -10,7 +10,7 @@ typedef struct bag_pictures {
     picture colour, depth; /* the last ones decoded */
 } bag_pictures;
 
-/* Returns a decoder of JPEG, PNG and the PNG of compressedDepth, 16UC1 unchanged and 32FC1 by the scale in the message.
+/* Returns a decoder of JPEG, PNG and the PNG of compressedDepth (16UC1 unchanged, 32FC1 by the scale in the message).
  * `pictures` is initialised with zeros and outlives the recording; call bag_pictures_free() when the recording is
  * closed. */
 t3r_image_decoder bag_pictures_decoder(bag_pictures *pictures);

@@ -17,8 +17,6 @@
 
 #define ERROR_BYTES 1024
 
-/* ---- making ---- */
-
 typedef struct made_frames {
     bag_frames *frames;
     const pose_account *accounts; /* NULL: poses were not estimated */
@@ -70,8 +68,6 @@ static int estimate_all(t3r_recording *recording, const recording_import_request
     return code;
 }
 
-/* ---- the report ---- */
-
 /* Describes what was lost by a cut; "" without one. */
 static void say_lost(const t3r_recording *recording, char *text, size_t bytes)
 {
@@ -80,11 +76,11 @@ static void say_lost(const t3r_recording *recording, char *text, size_t bytes)
         text[0] = '\0';
     } else if (cut.offset == cut.file_bytes) {
         snprintf(text, bytes,
-                 "the end and its index alone: the file stops at byte %" PRIu64 ", behind %" PRIu64 " whole messages",
+                 "the end and its index alone: the file stops at byte %" PRIu64 ", after %" PRIu64 " whole messages",
                  cut.offset, cut.messages);
     } else {
         snprintf(text, bytes,
-                 "what stood behind %" PRIu64 " whole messages: the file is cut or damaged from byte %" PRIu64
+                 "everything after %" PRIu64 " whole messages: the file is cut or damaged from byte %" PRIu64
                  " of %" PRIu64 " on",
                  cut.messages, cut.offset, cut.file_bytes);
     }
@@ -184,8 +180,6 @@ static void print_text(const recording_import_request *r, const t3r_recording *r
         poses_print(NULL, totals->frames, accounts);
     }
 }
-
-/* ---- both ---- */
 
 static int import_opened(const recording_import_request *r, t3r_recording *recording)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Writes a recording, or a bag from elsewhere, anew: complete indexed frames, decoded images, composed poses,
+/* Rewrites a recording, or a bag from elsewhere: complete indexed frames, decoded images, composed poses,
  * registered depth, cuts repaired. */
 #ifndef TRIM3R_TOOLS_RECORDING_IMPORT_H
 #define TRIM3R_TOOLS_RECORDING_IMPORT_H

@@ -105,8 +105,8 @@ static const char *read_image(FILE *file, colmap_model *model)
     return colmap_model_add_image(model, name, camera, pose);
 }
 
-/* Reads a count, and so many items by `read`. Every item takes at least the bytes of its fields, so a false count ends
- * at the end of the file. */
+/* Reads a count, and that many items with `read`. Every item takes at least the bytes of its fields, so a false count
+ * ends at the end of the file. */
 static int read_all(FILE *file, colmap_model *model, const char *(*read)(FILE *file, colmap_model *model),
                     const char *what, char *error, size_t error_bytes)
 {

@@ -20,16 +20,16 @@ typedef struct model_files {
     int (*read_images)(FILE *file, colmap_model *model, char *error, size_t error_bytes);
 } model_files;
 
-/* In COLMAP's order of preference. */
+/* in COLMAP's order of preference */
 static const model_files forms[] = {
     {"cameras.bin", "images.bin", colmap_read_cameras_binary, colmap_read_images_binary},
     {"cameras.txt", "images.txt", colmap_read_cameras_text, colmap_read_images_text},
 };
 #define FORMS (sizeof forms / sizeof *forms)
 
-/* Where models lie: the folders of COLMAP, 3DGS and nerfstudio, or the folder itself. */
+/* Folders with models: those of COLMAP, 3DGS and nerfstudio, or the folder itself. */
 static const char *const model_places[] = {"sparse", "colmap/sparse", "."};
-/* Where pictures lie; the last ones are for a model in the folder itself. */
+/* Folders with pictures; the last ones are for a model in the folder itself. */
 static const char *const picture_places[] = {"images", "input", "rgb", "color", ".", "../images", "../../images"};
 static const char *const depth_places[] = {"depth", "depths"};
 static const char *const depth_endings[] = {".png", ".exr"};

@@ -364,7 +364,7 @@ int exr_depth_size(const char *path, uint32_t *width, uint32_t *height, char *er
 
 const char *exr_depth_missing(void)
 {
-    return "this build does not read OpenEXR: install it (Debian: libopenexr-dev) and build anew";
+    return "this build does not read OpenEXR: install it (Debian: libopenexr-dev) and build again";
 }
 
 int exr_depth_read(const char *path, double unit, picture *out, char *error, size_t error_bytes)

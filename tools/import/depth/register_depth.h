@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Converts the depth of one camera to what another camera beside it would have measured. */
+/* Converts the depth of one camera to the depth that another camera next to it would have measured. */
 #ifndef TRIM3R_TOOLS_REGISTER_DEPTH_H
 #define TRIM3R_TOOLS_REGISTER_DEPTH_H
 

@@ -29,7 +29,7 @@
 static const char *const colour_places[] = {"intrinsic/extrinsic_color.txt", "extrinsic_color.txt", NULL};
 static const char *const depth_places[] = {"intrinsic/extrinsic_depth.txt", "extrinsic_depth.txt", NULL};
 
-/* What all frames of a folder have in common. */
+/* Shared by all frames of a folder. */
 typedef struct cameras {
     posed_intrinsics colour, depth; /* depth.fx 0: same view as colour */
     rigid from_depth;               /* to colour's camera, in depth steps */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How folders with a text for each pose name their files. */
+/* File names in folders with a text file for each pose. */
 #ifndef TRIM3R_TOOLS_POSE_LAYOUT_H
 #define TRIM3R_TOOLS_POSE_LAYOUT_H
 
@@ -13,7 +13,7 @@ typedef struct pose_layout {
     const char *const *colour_endings, *const *depth_endings;
     const char *const *colour_lenses, *const *depth_lenses; /* files with a camera matrix */
     uint16_t no_depth;     /* a sample of depth pictures that means "none", besides 0; 0: there is no other */
-    const char *lens_hint; /* what to give if no file has colour's lens */
+    const char *lens_hint; /* option to suggest if no file has colour's lens */
 } pose_layout;
 
 /* Returns NULL if the folder has no such layout. */

@@ -47,8 +47,6 @@ bool record3d_is(const char *directory)
     return layout_of(directory) != NULL;
 }
 
-/* ---- metadata --------------------------------------------------------------------------------------------------- */
-
 /* Reads exactly `count` finite numbers. */
 static bool take_numbers(const cJSON *array, int count, double *numbers)
 {
@@ -173,8 +171,6 @@ int record3d_parse(const char *text, size_t bytes, posed_folder *out, uint32_t d
     cJSON_Delete(root);
     return status;
 }
-
-/* ---- files ------------------------------------------------------------------------------------------------------ */
 
 /* Whether depth of that file is packed with LZFSE, whose blocks begin with "bvx", and cannot be read. */
 static int is_packed(const char *directory, const char *name, bool *packed, char *error, size_t error_bytes)

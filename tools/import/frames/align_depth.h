@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Aligns depth pictures of another lens, at colour's place or beside it. */
+/* Aligns depth pictures of another lens, at colour's place or next to it. */
 #ifndef TRIM3R_TOOLS_ALIGN_DEPTH_H
 #define TRIM3R_TOOLS_ALIGN_DEPTH_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Frames of a posed folder: what every reader fills in, and what is derived from it. */
+/* Frames of a posed folder: the fields that every reader fills in, and values derived from them. */
 #ifndef TRIM3R_TOOLS_POSED_FRAME_H
 #define TRIM3R_TOOLS_POSED_FRAME_H
 
@@ -26,7 +26,7 @@ typedef struct posed_intrinsics {
 typedef struct posed_frame {
     char *image;                 /* path relative to the folder, as the folder spells it */
     char *depth;                 /* likewise; NULL = none */
-    raw_depth depth_raw;         /* storage of depth that is no picture */
+    raw_depth depth_raw;         /* storage of depth that is not a picture */
     uint16_t no_depth;           /* a depth sample that means "none", besides 0; 0: there is no other */
     char *pointmap, *confidence; /* likewise: depth from pointmaps (pointmaps.h) */
     bool posed;                  /* false: the pose is the identity */

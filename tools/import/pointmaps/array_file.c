@@ -23,14 +23,12 @@ struct array_file {
 
 struct array_stream {
     array_file *file;
-    zip_uint64_t index; /* in the archive */
+    zip_uint64_t index; /* index in the archive */
     zip_file_t *member; /* NULL: not open, or a single .npy */
     npy_array array;
     uint64_t at; /* bytes read */
     uint8_t block[BLOCK_BYTES];
 };
-
-/* ---- files ---- */
 
 static const char *first_bytes(zip_source_t *source, uint8_t first[2])
 {
@@ -125,8 +123,6 @@ bool array_file_is_lone(const array_file *file)
     return file->zip == NULL;
 }
 
-/* ---- bytes of an array ---- */
-
 static const char *reopen(array_stream *s)
 {
     s->at = 0;
@@ -179,8 +175,6 @@ static const char *check_end(array_stream *s)
            : got > 0 ? "longer than its header says"
                      : zip_error_strerror(zip_file_get_error(s->member));
 }
-
-/* ---- arrays ---- */
 
 /* Gets the size of the array's file within the archive. */
 static const char *stat_array(array_stream *s, uint64_t *bytes)

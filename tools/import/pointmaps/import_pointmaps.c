@@ -269,7 +269,7 @@ static int settle_unit(const pointmap_source *source, depths *d, posed_folder *f
     return 0;
 }
 
-/* ---- the whole -------------------------------------------------------------------------------------------------- */
+/* ---- all frames ------------------------------------------------------------------------------------------------- */
 
 static int note_frame(pointmap_source *source, posed_folder *folder, uint32_t index, depths *d, char *error,
                       size_t error_bytes)

@@ -11,7 +11,7 @@ typedef struct pointmap_options {
     const char *file;        /* one .npz for all frames, in their order; NULL: each frame's pointmap_path */
     double confidence_least; /* points of lower confidence give no depth */
     double depth_unit;       /* 0: the folder's, else a power of two for which the median depth is 4096 to 8192 steps */
-    bool resect;             /* compute all poses from the points, whatever other poses there are */
+    bool resect;             /* compute all poses from the points, ignoring all others */
 } pointmap_options;
 
 typedef struct pointmap_source {

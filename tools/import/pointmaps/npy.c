@@ -134,7 +134,7 @@ static const char *read_header(remainder *t, npy_array *out)
         }
     }
     skip_spaces(t);
-    return t->at != t->end             ? "there is something behind the header's dictionary"
+    return t->at != t->end             ? "there is something after the header's dictionary"
            : !(type && order && shape) ? "the header lacks descr, fortran_order or shape"
                                        : NULL;
 }

@@ -21,7 +21,6 @@ typedef struct npy_array {
  * error[]. */
 int npy_parse(const uint8_t *bytes, size_t count, uint64_t file_bytes, npy_array *out, char *error, size_t error_bytes);
 
-/* Returns the number at these bytes. */
 double npy_value(const npy_array *array, const uint8_t *bytes);
 
 /* Writes the shape, such as "2x288x512x3". */

@@ -35,7 +35,7 @@ typedef struct stack {
     const uint32_t *shape; /* shape of one view */
 } stack;
 
-/* Where views are read from. */
+/* The source of the views. */
 struct pointmaps_input {
     char *path, *confidence_path; /* NULL: read from memory; part of the same file */
     array_file *file, *confidence_file;

@@ -20,7 +20,7 @@
 #include "geometry/rigid.h"
 #include "pictures/picture.h"
 
-/* An open file: what all views share, and one view's numbers at a time. */
+/* An open file: the data that all views share, and one view's numbers at a time. */
 typedef struct pointmaps {
     uint32_t count, width, height;
     rigid *poses;            /* camera to the points' frame; NULL = none */

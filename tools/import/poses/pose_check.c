@@ -23,6 +23,6 @@ const char *pose_check(const rigid *pose)
 {
     const char *wrong = pose_check_position(pose->position);
     const double norm = quaternion_norm(pose->rotation);
-    /* also where it is not a number */
+    /* negated so that NaN is refused too */
     return wrong == NULL && !(norm >= 0.9 && norm <= 1.1) ? "the quaternion's norm is not 1 within 0.1" : wrong;
 }

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Poses as matrices, as other programs' files hold them. */
+/* Poses as matrices, in the conventions of other programs' files. */
 #ifndef TRIM3R_TOOLS_POSE_MATRIX_H
 #define TRIM3R_TOOLS_POSE_MATRIX_H
 
 #include "geometry/rigid.h"
 
 typedef enum camera_axes {
-    AXES_OPENCV, /* x right, y down, z forward: those of every pose in trim3r */
+    AXES_OPENCV, /* x right, y down, z forward: the axes of every pose in trim3r */
     AXES_OPENGL  /* x right, y up, z backward */
 } camera_axes;
 
-/* A camera-to-world matrix, row-major, whose last row is 0 0 0 1, to a pose of a camera with the axes of OpenCV. NULL,
- * or what is wrong: an entry that is not finite, a rotation that is none, a position of 2^T3R_LIMIT_POSITION_LOG2 or
- * more. */
+/* Converts a camera-to-world matrix, row-major, whose last row is 0 0 0 1, to a pose of a camera with the axes of
+ * OpenCV. Returns NULL, or what is wrong: an entry that is not finite, an invalid rotation, a position of
+ * 2^T3R_LIMIT_POSITION_LOG2 or more. */
 const char *pose_of_matrix(const double matrix[16], camera_axes axes, rigid *pose);
 
 #endif

@@ -9,7 +9,7 @@
 
 #include "geometry/rigid.h"
 
-#define POSE_TRACK_GAP_NS INT64_C(2000000000) /* no interpolation between neighbours farther apart */
+#define POSE_TRACK_GAP_NS INT64_C(2000000000) /* neighbours farther apart are not interpolated */
 
 typedef struct pose_track {
     struct pose_track_item {
@@ -21,7 +21,7 @@ typedef struct pose_track {
     bool standing; /* holds at all times */
 } pose_track;
 
-/* false: out of memory. */
+/* Returns false when out of memory. */
 bool pose_track_add(pose_track *track, int64_t stamp_ns, const rigid *pose);
 /* Sorts the track; call once, when all poses are added. */
 void pose_track_sort(pose_track *track);

@@ -59,8 +59,6 @@ static void order(trajectory *t)
     t->count = kept;
 }
 
-/* ---- lines ---- */
-
 /* Takes seconds with up to nine decimal places as whole nanoseconds, without binary fractions in between; *text moves
  * past them. */
 static bool take_seconds(char **text, int64_t *stamp_ns)
@@ -141,8 +139,6 @@ int trajectory_parse(char *text, const char *path, trajectory *out, char *error,
     order(out);
     return 0;
 }
-
-/* ---- bags ---- */
 
 /* Finds the stream on the topic, or the only one with poses. */
 static int find_stream(const t3r_recording *bag, const char *path, const char *topic, uint32_t *found, char *error,
@@ -232,8 +228,6 @@ int trajectory_read(const char *path, const char *topic, trajectory *out, char *
     free(bytes);
     return status;
 }
-
-/* ---- look-up ---- */
 
 bool trajectory_at(const trajectory *t, int64_t stamp_ns, rigid *pose)
 {

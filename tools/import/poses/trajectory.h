@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where a camera was over time, by another clock: a TUM trajectory, EuRoC's table, or a topic of a ROS 2 bag. */
+/* A camera's positions over time, by another clock: a TUM trajectory, EuRoC's table, or a topic of a ROS 2 bag. */
 #ifndef TRIM3R_TOOLS_TRAJECTORY_H
 #define TRIM3R_TOOLS_TRAJECTORY_H
 
@@ -26,7 +26,7 @@ typedef struct trajectory {
  * `seconds tx ty tz qx qy qz qw` (TUM), or `nanoseconds,px,py,pz,qw,qx,qy,qz,...` (EuRoC). Stamps keep their
  * nanoseconds. Returns 0, or -1 with "path: line: what" in error[]. */
 int trajectory_read(const char *path, const char *topic, trajectory *out, char *error, size_t error_bytes);
-/* Parses the text of the two line formats; commas tell them apart. */
+/* Parses the text of the two line formats; commas distinguish them. */
 int trajectory_parse(char *text, const char *path, trajectory *out, char *error, size_t error_bytes);
 void trajectory_free(trajectory *t);
 

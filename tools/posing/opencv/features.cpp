@@ -9,8 +9,8 @@
 namespace
 {
 
-constexpr double CONTRAST_LEAST = 0.01; // SIFT's default, 0.04, finds too few features in small pictures
-constexpr float NEXT_LEAST = 0.9f;      // distance of the best match relative to the next
+constexpr double CONTRAST_LEAST = 0.005; // SIFT's default, 0.04, finds too few features in small pictures
+constexpr float NEXT_LEAST = 0.9f;       // distance of the best match relative to the next
 
 cv::Mat descriptors_of(const pose_features *features)
 {

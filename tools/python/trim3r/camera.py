@@ -128,7 +128,7 @@ class Camera:
 
     @classmethod
     def from_native(cls, camera: Any) -> "Camera":
-        """Of a t3r_camera."""
+        """Makes a camera of a t3r_camera."""
         lens = next(name for name, value in _LENSES.items() if value == camera.distortion)
         x, y, z = camera.position_q32
         w, i, j, k = camera.rotation_q30
@@ -155,7 +155,8 @@ def _rigid(pose: ArrayLike) -> "NDArray[np.float64]":
 
 
 def _quaternion(rotation: "NDArray[np.float64]") -> "NDArray[np.float64]":
-    """Of unit length, w x y z, w >= 0. The largest of the four is found first: the others are divided by it."""
+    """Returns the unit quaternion w x y z, w >= 0. The largest of the four is computed first, because the others are
+    divided by it."""
     m = rotation
     trace = m[0, 0] + m[1, 1] + m[2, 2]
     squares = np.array([1 + trace, *(1 + 2 * m[i, i] - trace for i in range(3))])

@@ -48,7 +48,7 @@ def configuration(width: int, height: int, views: int, gaussians: Optional[int],
 
 
 def preset(name: str) -> Dict[str, Any]:
-    """Head and settings for so much work, as `--preset` of the program chooses them.
+    """Head and settings for an amount of work, like `--preset` of the program.
 
     Parameters
     ----------

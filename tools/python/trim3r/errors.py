@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What calls raise."""
+"""Exceptions of the package."""
 from typing import Dict, Type
 
 
@@ -28,7 +28,7 @@ class Cancelled(Trim3rError):
 
 
 class UnsupportedError(Trim3rError, NotImplementedError):
-    """The library was built without what is asked for."""
+    """The library was built without the requested feature."""
 
 
 _OF_STATUS: Dict[str, Type[Trim3rError]] = {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How well scenes show a view that they were not given: the measure of `trim3r eval`."""
+"""Scores of scenes on a held-out view, as in `trim3r eval`."""
 import dataclasses
 from typing import List, Optional, Sequence, Tuple
 
@@ -95,7 +95,7 @@ def evaluate(context: Sequence[Frame], target: Frame, keep: Sequence[float] = (1
 
 def _masks(context: Sequence[Frame], pictures: Sequence[Frame], width: int, height: int, depth: str, workers: int,
            settings: Settings) -> List["NDArray[np.bool_]"]:
-    """Where the unpruned scene of the frames' own depth covers each picture."""
+    """Returns the pixels that the unpruned scene of the frames' own depth covers in each picture."""
     sensed = all(frame.depth is not None for frame in context)
     plain: Settings = {**settings, "fill_radius": 0, "bridge_radius": 0, "allocate": "uniform", "flying": 0,
                        "redundancy": 0, "exposure": 0, "fit_widths": 0, "align": 0, "refine": 0,
@@ -114,7 +114,7 @@ def _transmittance(made: Reconstructor, picture: Frame) -> "NDArray[np.float64]"
 
 
 def _colour(frame: Frame) -> "NDArray[np.uint8]":
-    """Of a developed frame: one array."""
+    """Returns a developed frame's colour, a single array."""
     assert not isinstance(frame.colour, tuple)
     return frame.colour
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames: one captured instant as arrays, handed to the library where they lie."""
+"""Frames: one captured instant as arrays, passed to the library without a copy."""
 import dataclasses
 from typing import Any, Optional, Tuple, Union
 
@@ -12,7 +12,7 @@ from .fixed import fixed
 
 _CHANNELS = {"rgb24": 3, "bgr24": 3, "grey": 1, "yuyv": 2, "uyvy": 2, "nv12": 1}
 _STEPS_MOST = 65535
-_STRIDE_LIMIT = 1 << 19  # bytes; rows lie less apart
+_STRIDE_LIMIT = 1 << 19  # bytes; the limit of the distance of rows
 
 Colour = Union["NDArray[np.uint8]", Tuple["NDArray[np.uint8]", "NDArray[np.uint8]"]]
 

@@ -38,7 +38,7 @@ def head_of(name: HeadName) -> Head:
     Raises
     ------
     InputError
-        There is no such head, or the file holds no sound weights.
+        There is no such head, or the file holds no valid weights.
     OSError
         The file cannot be read.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the library calls while it works: progress, hashes of stages, threads."""
+"""Callbacks of the library while it works: progress, hashes of stages, threads."""
 from typing import Any, Callable, Dict, Optional
 
 from ._native import check, ffi, lib

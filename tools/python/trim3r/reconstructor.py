@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The runtime: views in, a scene of exactly so many Gaussians, pictures of it."""
+"""The runtime: views in, a scene of an exact number of Gaussians, pictures of it."""
 import collections
 import contextlib
 import os
@@ -26,7 +26,7 @@ class Reconstructor:
     """A runtime and its arena, which is all the memory that it uses.
 
     The order of calls is that of trim3r.h: views are added, then a scene is built, rebuilt at other budgets and drawn;
-    `reset()` begins anew. It is a context manager, and `close()` ends it. Calls release Python's lock, so several
+    `reset()` starts over. It is a context manager, and `close()` ends it. Calls release Python's lock, so several
     reconstructors work at the same time in threads. One of them takes one call at a time.
 
     Parameters
@@ -300,7 +300,7 @@ class Reconstructor:
             self._check(lib.t3r_get_scene, runtime, scene)
         return Picture(colour, depth, alpha, scene.frame.exponent)
 
-    # ---- what is known of it ----
+    # ---- properties ----
 
     @property
     def valid_points(self) -> Optional[int]:
@@ -340,7 +340,7 @@ class Reconstructor:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    # ---- inside ----
+    # ---- internal ----
 
     @contextlib.contextmanager
     def _at_work(self) -> Iterator[Any]:
@@ -398,7 +398,7 @@ class Reconstructor:
         check(status)
 
     def _budget(self, runtime: Any, gaussians: Optional[int], keep: Optional[float]) -> int:
-        """In Gaussians; 0 = that of the constructor."""
+        """Returns the budget in Gaussians; 0 = the constructor's."""
         most = self._config.max_gaussians
         if gaussians is not None and keep is not None:
             raise ValueError("a budget is either `gaussians` or `keep`")
@@ -414,7 +414,7 @@ class Reconstructor:
         return min(int(most), max(1, int(np.floor(points * keep / 100 + 0.5))))
 
     def _matched(self, runtime: Any) -> int:
-        """The points that a match finds: of the scene at hand, else of a build of one Gaussian."""
+        """Returns the number of points that a match finds: of the current scene, else of a build of one Gaussian."""
         scene = ffi.new("t3r_scene *")
         if lib.t3r_get_scene(runtime, scene) != lib.T3R_OK:
             request = ffi.new("t3r_request *", {"gaussians": 1, "head": lib.T3R_HEAD_ANALYTIC})
@@ -430,8 +430,8 @@ class Reconstructor:
 
 
 def _measured(frame: Frame, config: Any) -> Optional[int]:
-    """Pixels with a depth at the working size. A runtime tells them with a scene alone, so the image stage is asked.
-    None by stereo."""
+    """Returns the number of pixels with a depth at the working size, by the image stage, because a runtime counts
+    them only with a scene. None by stereo."""
     if config.depth != lib.T3R_DEPTH_SENSOR:
         return None
     steps = develop(frame, config.width, config.height).depth

@@ -85,7 +85,7 @@ class Recording:
         return text_of(lib.t3r_recording_note(self._recording))
 
     def _rows(self, pointer: Any, height: int, row_bytes: int, stride: int) -> "np.ndarray[Any, Any]":
-        """The bytes of `height` rows, which lie `stride` bytes apart."""
+        """Returns the bytes of `height` rows, `stride` bytes apart."""
         flat = borrowed(pointer, stride * (height - 1) + row_bytes, self._recording, _BYTE)
         return np.lib.stride_tricks.as_strided(flat, (height, row_bytes), (stride, 1), writeable=False)
 

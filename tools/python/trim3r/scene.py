@@ -23,7 +23,7 @@ class Scene:
     Attributes
     ----------
     origin_q32 : tuple of 3 int
-        Where the scene's frame stands, in 1/2**32 world units.
+        The origin of the scene's frame, in 1/2**32 world units.
     exponent : int
         A scene unit is 2**exponent world units, -24..24.
     valid_points : int
@@ -39,7 +39,7 @@ class Scene:
 
     @classmethod
     def read(cls, path: Union[str, "os.PathLike[str]"]) -> "Scene":
-        """A scene from a file: .ply, .splat, .spz, .glb and what else `trim3r convert` reads. Colours are those of
+        """A scene from a file: .ply, .splat, .spz, .glb and all that `trim3r convert` reads. Colours are those of
         harmonics of degree 0.
 
         Raises
@@ -63,7 +63,7 @@ class Scene:
         return cls(gaussians, (x, y, z), frame.exponent, valid_points, fresh)
 
     def save(self, path: Union[str, "os.PathLike[str]"], local: bool = False, comments: bool = False) -> None:
-        """Writes a file in the format of its suffix: .ply, .splat, .spz, .glb and what else `trim3r build` writes.
+        """Writes a file in the format of its suffix: .ply, .splat, .spz, .glb and all that `trim3r build` writes.
 
         Parameters
         ----------
@@ -73,7 +73,7 @@ class Scene:
             Positions are from the scene's origin, not the world's.
         comments : bool
             A .ply names the bits epoch and the scene's frame, with which read() gives the same integers. Some readers
-            choke on comments.
+            fail on comments.
 
         Raises
         ------
@@ -115,7 +115,7 @@ class Scene:
 
     @property
     def origin(self) -> "NDArray[np.float64]":
-        """Where the scene's frame stands, in world units, (3,)."""
+        """The origin of the scene's frame in world units, (3,)."""
         return np.ldexp(np.array(self.origin_q32, dtype=np.float64), -32)
 
     @property
@@ -145,7 +145,7 @@ class Scene:
 
     @property
     def confidences(self) -> "NDArray[np.float32]":
-        """How far the depths were measured, 0..1, (N,): 1 = measured, less = filled or doubtful."""
+        """The confidence of the depths, 0..1, (N,): 1 = measured, less = filled or doubtful."""
         return self.gaussians["confidence"].astype(np.float32) / np.float32(255)
 
     def native_frame(self) -> Any:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which trim3r this is."""
+"""The version of trim3r."""
 from ._native import lib, text_of
 
 __version__ = text_of(lib.t3r_version())

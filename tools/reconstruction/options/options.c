@@ -17,7 +17,7 @@ enum { KEY_GAUSSIANS = 256, KEY_KEEP, KEY_CONTEXT, KEY_MAX_LOSS, KEY_WORKING, KE
 static const struct argp_option settings[] = {
     {NULL, 0, NULL, 0, "Settings:", 20},
     {"preset", KEY_PRESET, "fast|balanced|best", 0,
-     "head and refinement for so much work (balanced); settings after it change it", 0},
+     "head and refinement for an amount of work (balanced); later settings override it", 0},
     {"auto", OPTION_TO(reconstruction_options, automatic), NULL, 0,
      "take no more Gaussians than the scene needs: as few as are predicted to stay within --max-loss, and at most the "
      "budget (all valid points)",
@@ -44,7 +44,8 @@ void reconstruction_parse_arena(struct argp_state *state, const char *text, reco
         o->arena = ARENA_MIN;
     } else {
         if (!bytes_of_text(text, &o->arena_bytes)) {
-            argp_error(state, "--arena takes a number of bytes, with K, M or G behind it or not, min or full, not '%s'",
+            argp_error(state,
+                       "--arena takes a number of bytes, optionally followed by K, M or G, or min or full, not '%s'",
                        text);
         }
         o->arena = ARENA_BYTES;
@@ -114,8 +115,7 @@ const struct argp reconstruction_settings_argp = {
 static const struct argp_option budget[] = {
     {NULL, 0, NULL, 0, "Views and budget:", 10},
     {"context", KEY_CONTEXT, "A,B,...", 0, "frames that the scene is made of, 1..16 (the first two)", 0},
-    {"gaussians", KEY_GAUSSIANS, "Z", 0, "number of Gaussians: exactly Z, or all valid points where there are fewer",
-     0},
+    {"gaussians", KEY_GAUSSIANS, "Z", 0, "number of Gaussians: exactly Z, or all valid points if there are fewer", 0},
     {"keep", KEY_KEEP, "P%", 0, "percent of the valid points to retain, rounded half up to a number", 0},
     {0},
 };

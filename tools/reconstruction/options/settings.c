@@ -78,9 +78,7 @@ void settings_add_json(cJSON *object, const t3r_config *config)
     }
 }
 
-/* ---- the command line ------------------------------------------------------------------------------------------ */
-
-#define FIRST_KEY 512 /* above those of the commands */
+#define FIRST_KEY 512 /* above the commands' keys */
 
 /* Appends the range and the default to the help of a setting: ", 0..16 (4)", " (on)". */
 static void append_values(const setting *s, char *text, size_t bytes)
@@ -94,7 +92,7 @@ static void append_values(const setting *s, char *text, size_t bytes)
         length +=
             (size_t)snprintf(text + length, bytes - length, ", %" PRIu32 "..%" PRIu32, s->low / unit, s->high / unit);
     }
-    if (s->kind == SETTING_q8) { /* two digits: 0.7, which 1/256 holds as 0.6992 */
+    if (s->kind == SETTING_q8) { /* two digits: 0.7 is stored in 1/256 as 0.6992 */
         snprintf(value, sizeof value, "%.2g", setting_value(s, &usual) / 256.0);
     }
     snprintf(text + length, bytes - length, " (%s)", value);
@@ -106,7 +104,7 @@ static char *complete_help(int key, const char *text, void *input)
     char *whole;
     const size_t bytes = 512;
     if (key < FIRST_KEY || key >= FIRST_KEY + COUNT || (whole = malloc(bytes)) == NULL) {
-        return (char *)(uintptr_t)text; /* argp frees only what is another text */
+        return (char *)(uintptr_t)text; /* argp frees only a different text */
     }
     snprintf(whole, bytes, "%s", text);
     append_values(&settings_table[key - FIRST_KEY], whole, bytes);
@@ -172,7 +170,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 #define KEY(name, kind, low, high, usual, feature, from, group, ...) KEY_OF_##group(name)
 enum { T3R_SETTINGS(KEY) };
 
-/* What --help calls the value: of an enumeration its names, "db2|haar|cdf53". */
+/* The value's name in --help; for an enumeration its names, "db2|haar|cdf53". */
 #define OR_NAME(NAME, name) "|" #name
 #define ARGUMENT_number "N"
 #define ARGUMENT_q8 "X"

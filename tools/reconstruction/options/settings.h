@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The settings of the runtime that a user may change: the rows of trim3r_settings.h with an option. They feed the
- * parser,
- * --help, the words in tables and in names of pictures, and JSON. */
+/* The settings of the runtime that a user may change: the rows of trim3r_settings.h with an option. The parser,
+ * --help, JSON, and the words in tables and in names of pictures are made from them. */
 #ifndef TRIM3R_TOOLS_SETTINGS_H
 #define TRIM3R_TOOLS_SETTINGS_H
 
@@ -14,30 +13,29 @@
 
 typedef enum setting_kind {
     SETTING_number,
-    SETTING_q8,     /* a decimal number, which the configuration holds in 1/256 */
+    SETTING_q8,     /* a decimal number, stored in 1/256 */
     SETTING_toggle, /* on or off */
-    SETTING_name    /* one of the names of the values low and up */
+    SETTING_name    /* one of the names of the values low to high */
 } setting_kind;
 
 typedef struct setting {
-    const char *option; /* its name on the command line, in tables and in JSON */
-    size_t offset;      /* in t3r_config, of 32 bits */
+    const char *option; /* the name on the command line, in tables and in JSON */
+    size_t offset;      /* offset of 32 bits in t3r_config */
     setting_kind kind;
     uint32_t low, high;            /* UINT32_MAX: --help shows no range */
-    const char *(*name)(uint32_t); /* of SETTING_name */
+    const char *(*name)(uint32_t); /* for SETTING_name */
 } setting;
 
 extern const setting settings_table[];
 extern const uint32_t settings_count;
 
-/* The options of builds, and those of streams. Each parent's parser hands a t3r_config * on in state->child_inputs[].
- */
+/* Options of builds, and options of streams. Each parent's parser passes a t3r_config * in state->child_inputs[]. */
 extern const struct argp settings_argp, stream_settings_argp;
 
 uint32_t setting_value(const setting *s, const t3r_config *config);
-/* "0.5", "off", "haar": the value as the option takes it. */
+/* Writes the value as the option takes it: "0.5", "off", "haar". */
 void setting_text(const setting *s, const t3r_config *config, char *text, size_t bytes);
-/* Every setting by its option's name. */
+/* Adds every setting by its option's name. */
 void settings_add_json(cJSON *object, const t3r_config *config);
 
 #endif

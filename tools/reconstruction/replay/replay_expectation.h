@@ -23,8 +23,8 @@ typedef struct expectation {
     uint64_t hash;
 } expectation;
 
-/* Reads 16 hexadecimal digits or a file; NULL: nothing is expected. Returns an exit status of cli.h; expectation_free()
- * is due in any case. */
+/* Reads 16 hexadecimal digits or a file; NULL: nothing is expected. Returns an exit status of cli.h; call
+ * expectation_free() in any case. */
 int expectation_read(expectation *e, const char *text);
 void expectation_free(expectation *e);
 
@@ -33,7 +33,7 @@ void expectation_free(expectation *e);
 t3r_stage expectation_missed(const expectation *e, const reconstruction *r, uint64_t hash, char *text,
                              size_t text_bytes);
 
-/* Reports the result, unless `quiet` and all is well; returns the exit status. */
+/* Reports the result, unless `quiet` and all matches; returns the exit status. */
 int expectation_verdict(const expectation *e, const char *recording, uint64_t hash, const char *difference, bool quiet);
 /* Adds the same to a JSON object. */
 void expectation_add(cJSON *object, const expectation *e, const char *difference);

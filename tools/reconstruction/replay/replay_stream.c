@@ -324,7 +324,7 @@ static void print_json(const stream_run *s, uint64_t hash, const expectation *e,
 static void print_text(const stream_run *s, uint64_t hash)
 {
     const reconstruction *r = &s->r;
-    printf("%s: %" PRIu32 " keyframes, one in %" PRIu32 " frames at least, %" PRIu32 " at hand, at most %" PRIu32
+    printf("%s: %" PRIu32 " keyframes, one in %" PRIu32 " frames at least, %" PRIu32 " live, at most %" PRIu32
            " Gaussians, head %s, arena %zu bytes\n",
            s->path, s->keyframe_count, s->every, r->config.views, r->config.gaussians, r->head.name, r->arena_bytes);
     printf("%s%8s %10s %8s %8s %8s %8s %8s%s\n", style_begin(stdout, STYLE_HEADING), "keyframe", "Gaussians", "added",
@@ -339,7 +339,7 @@ static void print_text(const stream_run *s, uint64_t hash)
     if (m.final_count > 0) {
         printf("held-back frames, mean PSNR where they have a depth | everywhere:");
         if (m.live_count > 0) {
-            printf(" behind the next keyframe %.2f | %.2f dB (%" PRIu32 "),", m.live, m.live_all, m.live_count);
+            printf(" after the next keyframe %.2f | %.2f dB (%" PRIu32 "),", m.live, m.live_all, m.live_count);
         }
         printf(" in the end %.2f | %.2f dB (%" PRIu32 ")\n", m.final, m.final_all, m.final_count);
     }

@@ -13,8 +13,6 @@
 
 enum { ROW_BYTES = 32, SCALE_AT = 12, COLOUR_AT = 24, OPACITY_AT = 27, ROTATION_AT = 28 };
 
-/* ---- reading ---------------------------------------------------------------------------------------------------- */
-
 static int read_row(void *user, uint32_t index, scene_row *row, char *error, size_t error_bytes)
 {
     const uint8_t *bytes = (const uint8_t *)user + (size_t)index * ROW_BYTES;
@@ -46,8 +44,6 @@ static int splat_parse(const uint8_t *bytes, size_t count, const scene_sink *sin
         .count = (uint32_t)(count / ROW_BYTES), .read = read_row, .user = (void *)(uintptr_t)bytes};
     return sink->take(sink->user, &rows, error, error_bytes);
 }
-
-/* ---- writing ---------------------------------------------------------------------------------------------------- */
 
 typedef struct ranked {
     double rank;

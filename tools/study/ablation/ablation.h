@@ -12,8 +12,8 @@
 
 #define ABLATIONS_MOST 32u
 
-/* "full", "no-adaptation", "k-5", ...; NULL past the last, of which there are at most ABLATIONS_MOST. The first is
- * the settings as they are. */
+/* Returns "full", "no-adaptation", "k-5", ...; NULL after the last, of which there are at most ABLATIONS_MOST. The
+ * first is the unchanged settings. */
 const char *ablation_name(uint32_t ablation);
 
 /* Whether the ablation changes anything for this head, for a recording or for a single image on a plane. */
@@ -23,8 +23,8 @@ bool ablation_applies(uint32_t ablation, const chosen_head *head, bool planar);
 void ablation_apply(uint32_t ablation, reconstruction_options *settings);
 
 /* Writes a Markdown table of an evaluation's means: a line for each scene and ablation, a column for each budget,
- * cells "PSNR / SSIM". With several scenes the last lines are means in which every scene counts once. False when
- * memory runs out. */
+ * cells "PSNR / SSIM". With several scenes the last lines are means in which every scene counts once. Returns false
+ * when memory runs out. */
 bool ablation_table(FILE *out, const evaluation_row *means, uint32_t count, bool planar);
 
 #endif

@@ -41,7 +41,7 @@ static void print_cell(FILE *out, const evaluation_row *rows, uint32_t count, co
     fprintf(out, " %13s |", "");
 }
 
-/* The lines of one scene; its name stands in the first. */
+/* Prints the lines of one scene; its name is in the first. */
 static void print_scene(FILE *out, const evaluation_row *rows, uint32_t count, const evaluation_row *scene, bool planar)
 {
     const char *name = scene->scene;

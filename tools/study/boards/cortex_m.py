@@ -12,12 +12,8 @@ TOOLS = (COMPILER, EMULATOR, "cc")
 
 
 def lacks():
-    """Returns what else is missing."""
+    """Returns a missing tool, or None."""
     return None
-
-
-def made_with():
-    return [run(COMPILER, "--version").splitlines()[0], run(EMULATOR, "--version").splitlines()[0]]
 
 
 def plugin(options):
@@ -45,7 +41,7 @@ def marks_of(elf):
 
 
 def count(board, elf, line, options):
-    """{stage: instructions}, and the longest stretch without a call of progress."""
+    """Returns {stage: instructions}, and the longest stretch without a call of progress."""
     table = options.out / f"{elf.stem}.counts"
     start(board, elf, [*line, "hashes=0"], "-plugin", f"{plugin(options)}{marks_of(elf)}", "-d", "plugin", "-D", table)
     rows = [parts for parts in map(str.split, table.read_text().splitlines()) if parts[0] in STAGES]
@@ -53,7 +49,7 @@ def count(board, elf, line, options):
 
 
 def prepare(options):
-    """Prepares what all boards share."""
+    """Prepares the part that all boards share."""
     plugin(options)
 
 

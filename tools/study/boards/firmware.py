@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the ports of the firmware share: its sources, its build, and what it prints."""
+"""The common part of the firmware's ports: its sources, its build, and its output."""
 import json
 import pathlib
 import re
@@ -15,7 +15,7 @@ FEATURES = tuple(name.lower() for name in re.findall(
     r"#ifndef T3R_FEATURE_(\w+)", (RUNTIME / "include" / "trim3r_features.h").read_text()))
 BOARDS = {path.parent.name: json.loads(path.read_text()) for path in sorted(BAREMETAL.glob("boards/*/board.json"))}
 STAGES = ("image", "depth", "pointmap", "wavelet", "superclusters", "budget", "head", "refine", "raster")
-# What the firmware takes of the platform: the reader of recordings without a heap.
+# The parts of platform/ in the firmware: the reader of recordings without a heap.
 READER = ("host/fixed_text", "host/text", "mcap/mcap_records", "messages/cdr", "messages/fixed_camera", "messages/fixed_double",
           "messages/message_frame", "messages/ros_messages", "messages/ros_schemas", "recording/frame_reader",
           "messages/pixel_layout")
@@ -41,7 +41,7 @@ CLOSED_FORM = "analytic" # the head without weights
 
 
 def is_small(options):
-    """Whether the firmware is to be small: it lacks features, reads planes and no recording, and runs plain C."""
+    """Whether the firmware is small: without some features, with planes instead of a recording, and in plain C."""
     return bool(left_out(options))
 
 
@@ -61,19 +61,20 @@ def sources_of(board, options):
 
 
 def features_of(options):
-    """The compiler's words for the runtime."""
+    """Returns the compiler's arguments for the runtime."""
     return [*(f"-DT3R_FEATURE_{name.upper()}=0" for name in left_out(options)), *(["-flto=auto"] if options.lto else [])]
 
 
 def choices_of(options):
-    """The compiler's words for features, weights and the firmware's kernels."""
+    """Returns the compiler's arguments for features, weights and the firmware's kernels."""
     weights = f"t3r_head_{options.head}"
     head = [] if options.head == CLOSED_FORM else [f"-DHEAD={weights}", f"-DHEAD_BYTES={weights}_bytes"]
     return [*head, *features_of(options), *(["-DPLAIN_C"] if is_small(options) else [])]
 
 
 def build(board, suffix, compiler, link, options, runtime_compiler=None):
-    """The board's firmware, by this compiler with these words for the linker; the runtime may be by another."""
+    """Builds the board's firmware with this compiler and these linker arguments; the runtime may have another
+    compiler."""
     parts = [f"{board}-{options.head}{options.optimize}", *(["lto"] if options.lto else []),
              *(["clang"] if options.clang else []),
              *(f"no_{name}" for name in left_out(options)), *([str(options.ram)] if options.ram else [])]
@@ -86,7 +87,7 @@ def build(board, suffix, compiler, link, options, runtime_compiler=None):
 
 
 def planes(path, options):
-    """The recording's frames as a firmware reads them that has no reader of recordings."""
+    """Writes the recording's frames for a firmware without a reader of recordings."""
     made = options.out / f"{path.stem}-{'x'.join(map(str, options.size))}.planes"
     program = made.with_suffix(".program")
     run("cc", "-std=c11", "-O1", *INCLUDE, pathlib.Path(__file__).with_name("planes.c"),
@@ -96,7 +97,7 @@ def planes(path, options):
 
 
 def words(path, options):
-    """The firmware's command line, but for hashes and the view."""
+    """Returns the firmware's command line, without hashes and view."""
     width, height = options.size
     return [f"frames={planes(path, options) if is_small(options) else path}", f"width={width}", f"height={height}", f"views={options.views}",
             f"gaussians={options.gaussians}", f"clusters={options.clusters}", f"refine={options.refine}",
@@ -104,7 +105,7 @@ def words(path, options):
 
 
 def said_by(board, *command):
-    """What the firmware prints, as {name: text}."""
+    """Returns the firmware's output as {name: text}."""
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=SECONDS_MOST)
     if done.returncode != 0:
         sys.exit(f"tools/boards: {board}: status {done.returncode}\n{done.stdout}{done.stderr}")
@@ -112,7 +113,7 @@ def said_by(board, *command):
 
 
 def row(board, said, flash_bytes, view):
-    """What each port tells of a run with hashes."""
+    """Returns each port's results of a run with hashes."""
     hashes = {name[5:]: text for name, text in said.items() if name.startswith("hash ")}
     return {
         "board": board,

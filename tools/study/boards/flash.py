@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What small firmwares take of a Cortex-M7's flash."""
+"""The use of a Cortex-M7's flash by small firmwares."""
 import argparse
 import concurrent.futures
 import os
@@ -8,24 +8,15 @@ from cortex_m import firmware_of, flash_of, start
 from firmware import words
 
 BOARD = "mps2-an500"
-# What is in them, head, context views, features, and the most bytes of flash.
+# Contents, head, context views, features, and the most bytes of flash.
 FIRMWARES = (("one view, `analytic`", "analytic", 1, (), 48 << 10),
              ("one view, `tiny`, refinement", "tiny", 1, ("learned", "refinement"), 80 << 10),
              ("one view, `small`, refinement", "small", 1, ("learned", "refinement"), 110 << 10),
              ("two views, `tiny`, refinement", "tiny", 2, ("learned", "refinement", "comparison"), None))
-SECTION = """
-## Flash
-
-What small firmwares take on a Cortex-M7, with `-Os` and `-flto`: code, constants, weights and the port. They read planes
-as a camera leaves them, and no recording, and they run plain C. Their runtime is built
-[without other features](../library.md#leave-out-what-you-do-not-use). Their hashes are those of a desktop, too.
-
-{table}
-"""
 
 
 def measure(path, options, host):
-    """A row for each; host(path, options) returns the hash of this machine, and those of its stages."""
+    """Measures a row for each; host(path, options) returns this machine's hash and its stages' hashes."""
     def row(firmware):
         name, head, views, features, limit = firmware
         chosen = argparse.Namespace(**{**vars(options), "head": head, "views": views, "features": features, "lto": True,
@@ -40,7 +31,7 @@ def measure(path, options, host):
 
 
 def lines(rows):
-    """Of the table, its head first."""
+    """Returns the table's lines, starting with its head."""
     return [["firmware", "features", "flash, bytes", "at most"],
             *([row["name"], ", ".join(row["features"]) or "none", f"{row['flash_bytes']:,}",
                f"{row['limit_bytes']:,}" if row["limit_bytes"] else ""] for row in rows)]

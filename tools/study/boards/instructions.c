@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A plugin of QEMU (TCG plugins, API version 1) that counts the instructions between marks, exactly.
  *
- *     -plugin libinstructions.so,mark=head:0x1a2c,mark=refine:0x1a34 -d plugin -D counts.txt
+ *   -plugin libinstructions.so,mark=head:0x1a2c,mark=refine:0x1a34 -d plugin -D counts.txt
  *
- * A mark is the address of a function: instructions count for it from its call to the next mark's. At the end a line
- * for each mark: its name, the instructions, and the most of them between two marks, of which it is the first. QEMU's
- * header is in no package of Debian, so what is used of the interface is declared here. */
+ * A mark is the address of a function: it counts the instructions from its call to the next mark's. At the end a line
+ * is written for each mark: its name, its instructions, and the most of them between one of its calls and the next
+ * mark. QEMU's header is in no package of Debian, so the used part of the interface is declared here. */
 #include <inttypes.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -62,7 +62,7 @@ static void at_mark(unsigned processor, void *user)
     change_to((uint32_t)(uintptr_t)user);
 }
 
-/* Bit 0 of an address in a symbol table says Thumb. */
+/* bit 0 of an address in a symbol table means Thumb */
 static void on_block(plugin_id id, struct qemu_plugin_tb *block)
 {
     (void)id;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The runtime's objects by a compiler and its flags: compiled once, for all that link or examine them."""
+"""The runtime's objects by a compiler and its flags: compiled once for everything that links or examines them."""
 import concurrent.futures
 import fcntl
 import hashlib
@@ -37,7 +37,7 @@ def output_of(*command):
 
 
 def command_of(compiler):
-    """The compiler's words and all flags that its objects have in common."""
+    """Returns the compiler's arguments that all its objects share."""
     own = output_of(compiler[0], "-print-file-name=include").strip()
     by_gcc = "gcc" in pathlib.Path(compiler[0]).name
     return [*compiler, *FLAGS, *(GCC_FLAGS if by_gcc else ()), "-nostdinc", "-isystem", own]
@@ -53,8 +53,8 @@ def is_fresh(made):
 
 
 def compiled(compiler, chosen=None):
-    """Objects of these sources (all of the runtime) by the compiler, which is a list of words, flags included. Another
-    process that wants the same ones waits."""
+    """Compiles these sources (all of the runtime) with the compiler, a list of words that includes flags. Another
+    process that wants the same objects waits."""
     command = command_of(compiler)
     words = " ".join(map(str, command)) + output_of(compiler[0], "--version")
     name = pathlib.Path(compiler[0]).name + "".join(word for word in compiler[1:] if word.startswith(("-O", "-m")))

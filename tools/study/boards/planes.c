@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* planes WIDTH HEIGHT IN.mcap OUT: the frames of a recording as platform/baremetal/frames_planes.c reads them. */
+/* planes WIDTH HEIGHT IN.mcap OUT: writes the frames of a recording for platform/baremetal/frames_planes.c. */
 #include <stdio.h>
 #include <stdlib.h>
 

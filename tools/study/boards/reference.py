@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What every board is given, and what this machine makes of it."""
+"""The input of every board, and this machine's results for it."""
 import json
 
 from firmware import run
@@ -14,7 +14,7 @@ def recording(options):
 
 
 def host(path, options):
-    """The hash of this machine and {stage: hash}."""
+    """Returns this machine's hash and {stage: hash}."""
     context = ",".join(map(str, range(options.views)))
     said = json.loads(run(options.program, "replay", path, "--context", context, "--head",
                           options.head, "--gaussians", options.gaussians, "--clusters", options.clusters, "--refine",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The firmware as a WebAssembly module under Node.js: times, as there is nothing that counts instructions."""
+"""The firmware as a WebAssembly module under Node.js: measures times, because nothing counts its instructions."""
 import json
 
 from firmware import BAREMETAL, STAGES, build, row, run, said_by, words
@@ -12,17 +12,13 @@ ROUNDS = 5
 
 
 def lacks():
-    """What else is absent."""
+    """Returns a missing tool, or None."""
     found = run(*COMPILER, "-print-file-name=libc.a").strip()
     return "wasi-libc" if found == "libc.a" else None
 
 
-def made_with():
-    return [run("clang", "--version").splitlines()[0], f"Node.js {run('node', '--version').strip()}"]
-
-
 def prepare(options):
-    """What all boards share."""
+    """Prepares the part that all boards share."""
 
 
 def module(board, options):
@@ -33,7 +29,7 @@ def module(board, options):
 
 
 def start(board, made, runs, line):
-    # the optimizing compiler from the first call on: nothing is timed that a faster function replaces later
+    # The optimizing compiler from the first call on, so that no function is replaced by a faster one while it is timed.
     return said_by(board, "node", "--no-liftoff", HOST, made, runs, *line)
 
 
@@ -45,7 +41,7 @@ def measure(board, path, options):
 
 
 def native_milliseconds(path, cpu_mask, options):
-    """Of this machine's program, one thread: to build the same scene."""
+    """Times this machine's program with one thread, building the same scene."""
     context = ",".join(map(str, range(options.views)))
     said = json.loads(run(options.program, "build", path, "--context", context, "--head", options.head, "--gaussians",
                           options.gaussians, "--clusters", options.clusters, "--refine", options.refine, "--threads", 1,
@@ -54,8 +50,8 @@ def native_milliseconds(path, cpu_mask, options):
 
 
 def times(boards, path, options):
-    """{name: {stage: ms}} of each board, and of this machine in plain C and with its vectors all stages but the last;
-    the least of rounds that take turns."""
+    """Returns {name: {stage: ms}} for each board, and for this machine in plain C and with vectors, all stages but
+    the last: the minimum over alternating rounds."""
     line = [*words(path, options), "hashes=0"]
     found = {}
 

@@ -6,8 +6,8 @@
 
 #define ROOM 0.06       /* margin at either end, as a share of the range */
 #define LOG_RATIO 5.0   /* ratio of the largest to the smallest value from which an axis is logarithmic */
-#define LOG_LEAST 1e-9  /* smallest value on a logarithmic axis; smaller ones are no measurements */
-#define TICKS_WANTED 8u /* at most; steps are the smallest round ones that do */
+#define LOG_LEAST 1e-9  /* smallest value on a logarithmic axis; smaller ones are not measurements */
+#define TICKS_WANTED 8u /* at most; the step is the smallest round one that gives no more */
 
 static double value_on_scale(const chart_axis *axis, double value)
 {
@@ -19,8 +19,6 @@ double chart_axis_place(const chart_axis *axis, double value)
     double low = value_on_scale(axis, axis->low), high = value_on_scale(axis, axis->high);
     return (value_on_scale(axis, value) - low) / (high - low);
 }
-
-/* ---- names of values ------------------------------------------------------------------------------------------- */
 
 /* Writes the value with at most `decimals` decimals, without trailing zeros. */
 static void short_number(double value, int decimals, char *text, size_t bytes)
@@ -58,7 +56,7 @@ static void tick_label(chart_unit kind, double value, double step, char *text, s
     }
     char number[CHART_LABEL_BYTES - 8];
     double digits =
-        step > 0 ? ceil(-log10(step / unit) - 1e-9) : 6; /* of a logarithmic axis: as many as the tick needs */
+        step > 0 ? ceil(-log10(step / unit) - 1e-9) : 6; /* decimals that a tick of a logarithmic axis needs */
     short_number(value / unit, digits < 0 ? 0 : digits > 6 ? 6 : (int)digits, number, sizeof number);
     snprintf(text, bytes, "%s%s%s", number, *name != '\0' ? " " : "", name);
 }
@@ -80,8 +78,6 @@ void chart_value_text(chart_measure measure, double value, char *text, size_t by
     }
 }
 
-/* ---- ticks ----------------------------------------------------------------------------------------------------- */
-
 static void add(chart_axis *axis, chart_unit unit, double value, double step)
 {
     double place = axis->logarithmic && value <= 0 ? -1 : chart_axis_place(axis, value);
@@ -93,8 +89,8 @@ static void add(chart_axis *axis, chart_unit unit, double value, double step)
     }
 }
 
-/* The smallest step of 1, 2, 5 times a power of ten, or of bytes of a power of two, of which at most TICKS_WANTED fit.
- */
+/* Returns the smallest step of 1, 2, 5 times a power of ten (for bytes, a power of two) that gives at most
+ * TICKS_WANTED ticks. */
 static double round_step(chart_unit unit, double range)
 {
     double least = range / TICKS_WANTED;
@@ -132,8 +128,8 @@ static void binary_ticks(chart_axis *axis)
     }
 }
 
-/* Places ticks at 1, 2, 5 times powers of ten; at 1, 2, 3, 5, 7 times for a range of little more than one decade;
- * only at powers of ten, thinned if need be, where the axis has no room for more. */
+/* Places ticks at 1, 2, 5 times powers of ten; at 1, 2, 3, 5, 7 times for a range of little more than a decade; only
+ * at powers of ten, thinned if necessary, if those are too many. */
 static void decimal_ticks(chart_axis *axis, chart_unit unit)
 {
     static const double few[] = {1, 2, 3, 5, 7}, some[] = {1, 2, 5};
@@ -163,7 +159,7 @@ chart_axis chart_axis_make(chart_measure measure, double least, double most)
         axis.low = least / room;
         axis.high = most * room;
     } else {
-        /* hardly more than one value: widen the range until its digits differ, for bytes to whole ones */
+        /* least and most are nearly equal: widen the range until its digits differ, for bytes to whole ones */
         double range = most - least, digits = fmax(fabs(most), 1) * 1e-3;
         bool bytes = about->unit == CHART_BYTES, one = range <= (bytes ? fmax(digits, 16) : digits);
         double room = !one ? range * ROOM : bytes ? fmax(most * 0.05, 16) : 50 * digits;

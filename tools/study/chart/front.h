@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 typedef struct chart_place {
-    double cost, quality; /* less cost and more quality are better; NaN: takes no part */
+    double cost, quality; /* less cost and more quality are better; NaN: excluded */
     uint32_t index;       /* set by the caller */
 } chart_place;
 

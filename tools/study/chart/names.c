@@ -73,20 +73,20 @@ static void append(char *text, size_t bytes, const char *between, const char *mo
     }
 }
 
-/* Returns how a method makes Gaussians of its points: "+finetune", "+head", or "". */
+/* Returns the suffix for how a method makes Gaussians of its points: "+finetune", "+head", or "". */
 static const char *way_of(const char *method)
 {
     return method + strcspn(method, "+");
 }
 
-/* Writes the contestant, which has a colour of its own: the method that chose the points, and the head. */
+/* Writes the contestant, which decides the colour: the method that chose the points, and the head. */
 static void contestant(const chart_points *points, uint32_t point, char *text, size_t bytes)
 {
     const char *method = setting(points, point, CHART_METHOD);
     snprintf(text, bytes, "%.*s\001%s", (int)(way_of(method) - method), method, setting(points, point, CHART_HEAD));
 }
 
-/* Names the missing setting where two series differ only in that one of them does not give it. */
+/* Names the missing setting if two series differ only because one of them does not give it. */
 static void name_missing(chart_names *names, const chart_points *points, uint32_t series, const char *const usuals[])
 {
     char *text = names->series[series].text;

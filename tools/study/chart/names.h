@@ -14,8 +14,8 @@
 
 typedef struct chart_name {
     char text[CHART_NAME_BYTES]; /* the method, and its settings that differ from those of most series */
-    uint32_t colour;             /* the method and its head; 0..CHART_COLOURS - 1, over again when there are more */
-    uint32_t shape;              /* the rest, fine-tuning too; 0..CHART_SHAPES - 1 */
+    uint32_t colour;             /* of the method and its head; 0..CHART_COLOURS - 1, reused when there are more */
+    uint32_t shape;              /* of the other settings, including fine-tuning; 0..CHART_SHAPES - 1 */
 } chart_name;
 
 typedef struct chart_names {
@@ -23,7 +23,7 @@ typedef struct chart_names {
     char common[CHART_NAME_BYTES]; /* settings that names omit: "small, 8 bits, refine 4, ..."; may be "" */
 } chart_names;
 
-/* 0, or -1 without memory. */
+/* Returns 0, or -1 if out of memory. */
 int chart_names_make(chart_names *names, const chart_points *points);
 void chart_names_free(chart_names *names);
 

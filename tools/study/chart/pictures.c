@@ -49,7 +49,7 @@ static int encode(const gathering *g, const char *path, const picture *in, uint3
     return 0;
 }
 
-/* The picture of a file, CHART_NO_PICTURE where there is none. A path is looked up once. */
+/* Gets the picture of a file, or CHART_NO_PICTURE. Each path is looked up once. */
 static int look_up(const gathering *g, const char *path, uint32_t *number)
 {
     chart_pictures *to = g->to;
@@ -95,7 +95,7 @@ static bool find(const gathering *g, const chart_cell *cell, char path[PATH_BYTE
     return length >= 0 && length < PATH_BYTES && access(path, R_OK) == 0;
 }
 
-/* The picture `name` in the folder of the file `path`. */
+/* Gets the picture `name` in the folder of the file `path`. */
 static int beside(const gathering *g, const char *path, const char *name, uint32_t *number)
 {
     char other[PATH_BYTES];

@@ -13,7 +13,7 @@
 #define CHART_NO_PICTURE UINT32_MAX
 
 typedef struct chart_picture {
-    uint8_t *png; /* a PNG file's bytes, encoded here: of a foreign file only its pixels are used */
+    uint8_t *png; /* a PNG file encoded here, from the pixels of the file that was read */
     size_t bytes;
     uint32_t width, height;
 } chart_picture;
@@ -29,7 +29,7 @@ typedef struct chart_pictures {
     size_t room;
     chart_shots *of_cell; /* one per cell of the points */
     uint32_t missing;     /* renders that the tables name and the folders lack */
-    uint32_t left_out;    /* renders that there was no room for */
+    uint32_t left_out;    /* renders that did not fit */
     size_t bytes;         /* of all PNG files together */
     chart_texts paths;    /* looked up so far */
     uint32_t *of_path;
@@ -37,10 +37,9 @@ typedef struct chart_pictures {
 } chart_pictures;
 
 /* Reads a row's `picture`, and target.png and mask.png next to it, as FOLDER/picture or FOLDER/scene/picture, up to
- * `most` bytes in all. The first case of every point comes first, then the second, and so on; within a case the
- * points on the front of a view come first. folders: one for all tables, or one for each table; none = no pictures.
- * Returns 0, or -1 with "path: why" in error[]: a file is not an 8-bit picture, or a render differs in size from its
- * target. */
+ * `most` bytes in all. The first cases of all points have priority, then the second ones, and so on; within a round,
+ * the points on the front of a view. folders: one for all tables, or one for each table; none: no pictures. Returns 0,
+ * or -1 with "path: why" in error[]: a file is not an 8-bit picture, or a render differs in size from its target. */
 int chart_pictures_gather(chart_pictures *pictures, const chart_points *points, const chart_view *view,
                           char *const *folders, uint32_t folder_count, size_t most, char *error, size_t error_bytes);
 void chart_pictures_free(chart_pictures *pictures);

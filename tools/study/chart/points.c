@@ -24,14 +24,12 @@ double chart_quantile(const double *ascending, uint32_t count, double q)
     return ascending[below] + (at - below) * (ascending[above] - ascending[below]);
 }
 
-/* ---- rows to points -------------------------------------------------------------------------------------------- */
-
-/* A row's point and series, until they are objects. */
+/* Numbers of a row, its point and its series. */
 typedef struct key {
     uint32_t point, series, row;
 } key;
 
-/* The settings up to `count` as one text. */
+/* Joins the first `count` settings into one text. */
 static void join(const chart_row *row, int count, char text[KEY_BYTES])
 {
     size_t length = 0;
@@ -85,7 +83,7 @@ static int by_place(const void *left, const void *right)
     return order != 0 ? order : compare(a->is.row, b->is.row);
 }
 
-/* The number that the text begins with: a percentage, or a count of Gaussians. */
+/* Returns the number that the text begins with: a percentage, or a count of Gaussians. */
 static double budget_of(const chart_table *table, const chart_row *row)
 {
     const char *text = table->texts.text[row->setting[CHART_KEEP]];
@@ -96,7 +94,7 @@ static double budget_of(const chart_table *table, const chart_row *row)
     return csv_number(number, &budget, &given) == 0 && given ? budget : -1;
 }
 
-/* The rows [from, to) of one point and case as one cell. */
+/* Merges the rows [from, to) of one point and case into one cell. */
 static chart_cell merge(const chart_table *table, const sorted_key *keys, uint32_t from, uint32_t to, uint32_t point)
 {
     chart_cell cell = {.point = point, .scene_case = keys[from].scene_case};
@@ -206,8 +204,6 @@ void chart_points_free(chart_points *points)
     *points = (chart_points){0};
 }
 
-/* ---- means and quartiles --------------------------------------------------------------------------------------- */
-
 static int by_scene(const void *left, const void *right)
 {
     return compare(((const measured *)left)->scene, ((const measured *)right)->scene);
@@ -219,7 +215,7 @@ static int by_value(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
-/* The mean over scenes of the means over a scene's values. Sorts. */
+/* Returns the mean over scenes of each scene's mean. Sorts the values. */
 static double mean_of_scenes(measured *values, uint32_t count)
 {
     double sum = 0;

@@ -22,10 +22,10 @@ typedef struct chart_cell {
 typedef struct chart_point {
     uint32_t setting[CHART_SETTINGS]; /* numbers in the table's texts */
     uint32_t series;
-    uint32_t first_cell, cell_count; /* in the order of the cases */
+    uint32_t first_cell, cell_count; /* in the order of the table's cases */
 } chart_point;
 
-/* Points that differ in the budget alone. */
+/* Points that differ only in the budget. */
 typedef struct chart_series {
     uint32_t first_point, point_count; /* by falling budget; budgets that are not numbers come last */
 } chart_series;
@@ -44,7 +44,7 @@ typedef struct chart_points {
 
 typedef struct chart_spread {
     double mean;              /* over scenes, each the mean over its cases; NaN without any */
-    double low, median, high; /* quartiles over all cases, between neighbours in proportion */
+    double low, median, high; /* quartiles over all cases, interpolated */
     uint32_t cases;           /* cases with a value */
 } chart_spread;
 
@@ -53,7 +53,7 @@ typedef struct chart_spread {
 int chart_points_make(chart_points *points, const chart_table *table, char *error, size_t error_bytes);
 void chart_points_free(chart_points *points);
 
-/* `scene`: a number, or CHART_ALL_SCENES. */
+/* Returns the spread of a measure over all scenes (CHART_ALL_SCENES) or for one. */
 chart_spread chart_points_spread(const chart_points *points, uint32_t point, chart_measure measure, uint32_t scene);
 
 /* Returns the quantile q (0..1) of `count` >= 1 ascending values. */

@@ -101,7 +101,7 @@ static void write_axes(FILE *out, const panel *p, const chart_view *view)
             cost->title);
 }
 
-/* Writes the front; the area that the front does not reach lies above it. */
+/* Writes the front as steps; everything above it is better than any measured point. */
 static void write_front(FILE *out, const panel *p, const chart_view *view)
 {
     if (view->front_count == 0) {
@@ -165,7 +165,7 @@ static void write_about(FILE *out, const chart_points *points, const chart_view 
     fprintf(out, ": %s, %s%s</title>", quality, cost, spot->front ? ", on the front" : "");
 }
 
-/* Writes a budget's label left of the front and above it, where nothing else can be; at the edge of the plot to the
+/* Writes a budget's label left of the front and above it, where no point can be; at the left edge of the plot to the
  * right and below. */
 static void write_budget(FILE *out, panel *p, const chart_points *points, const chart_view *view, uint32_t point)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Charts as one SVG picture: a panel each, the legend below, settings where a pointer rests. */
+/* Charts as one SVG picture: one panel per view, the legend below, settings as tooltips. */
 #ifndef TRIM3R_TOOLS_CHART_SVG_H
 #define TRIM3R_TOOLS_CHART_SVG_H
 

@@ -36,7 +36,7 @@ const chart_measure_about chart_measures[CHART_MEASURES] = {
     [CHART_GAUSSIANS] = {"gaussians", "Gaussians", CHART_PLAIN, 0, 1},
 };
 
-/* Which cell holds what. */
+/* The columns of a table. */
 typedef struct layout {
     uint32_t scene, context, target, requested, picture;
     uint32_t setting[CHART_SETTINGS], measure[CHART_MEASURES];
@@ -62,7 +62,7 @@ static int read_heading(csv_reader *reader, layout *l, char *error, size_t error
 {
     for (uint32_t i = 0; i < reader->cell_count; i++) {
         if (reader->cell[i][0] != '\0' && column(reader, reader->cell[i]) != i) {
-            return fail(reader, error, error_bytes, reader->cell[i], " stands in the heading twice");
+            return fail(reader, error, error_bytes, reader->cell[i], " is in the heading twice");
         }
     }
     l->cells = reader->cell_count;
@@ -94,7 +94,7 @@ static const char *cell(const csv_reader *reader, uint32_t index)
     return index == NO_COLUMN ? "" : reader->cell[index];
 }
 
-/* Sets the number of the row's case, which is added if it is new. */
+/* Sets the number of the row's case; adds the case if it is new. */
 static int number_case(chart_table *table, const csv_reader *reader, const layout *l, uint32_t *number)
 {
     static const char *const parts[] = {"scene", "context", "target"};
@@ -119,7 +119,8 @@ static int number_case(chart_table *table, const csv_reader *reader, const layou
     return 0;
 }
 
-/* 5 and "5.0" are one budget; what is no number (auto) stays a text. A count stands where there is no percentage. */
+/* Returns the budget as text: 5 and "5.0" are equal; a text such as auto stays. Without a percentage the count is
+ * used. */
 static const char *budget_text(const char *percent, const char *count, char own[BUDGET_BYTES])
 {
     const bool counted = percent[0] == '\0';

@@ -62,10 +62,10 @@ extern const chart_setting_about chart_settings[CHART_SETTINGS];
 extern const chart_measure_about chart_measures[CHART_MEASURES];
 
 typedef struct chart_row {
-    uint32_t setting[CHART_SETTINGS]; /* numbers in `texts`; "" where a table does not give it */
+    uint32_t setting[CHART_SETTINGS]; /* numbers in `texts`; "" where a table lacks it */
     uint32_t scene_case;              /* number in `cases` */
     uint32_t picture;                 /* number in `texts` */
-    uint32_t file;                    /* which of the tables */
+    uint32_t file;                    /* number of the table */
     double value[CHART_MEASURES];     /* NaN = not given */
 } chart_row;
 

@@ -7,7 +7,7 @@
 #define FIRST_SLOTS 64u
 #define PROBES_MOST 160u /* with half of the slots free, a million random texts need at most 80 */
 
-/* FNV-1a. Texts may be made so that its values collide, hence the bound on probes. */
+/* FNV-1a. Texts can be made to collide, hence the bound on probes. */
 static uint32_t hash_of(const char *text)
 {
     uint32_t hash = 2166136261u;

@@ -17,8 +17,8 @@ typedef struct chart_choice {
 
 typedef struct chart_spot {
     chart_spread cost, quality;
-    bool shown;    /* has both */
-    bool complete; /* has both on as many cases as any point has: the front is among these alone */
+    bool shown;    /* has both measures */
+    bool complete; /* has both on as many cases as any point; only complete points can be on the front */
     bool front;
 } chart_spot;
 
@@ -27,7 +27,7 @@ typedef struct chart_view {
     chart_axis x, y;   /* cost, quality */
     chart_spot *spots; /* one per point */
     uint32_t shown;
-    uint32_t *front; /* points, from the cheapest to the best */
+    uint32_t *front; /* points on the front, from the cheapest to the best */
     uint32_t front_count;
     uint32_t cases; /* number of cases of a complete point */
 } chart_view;

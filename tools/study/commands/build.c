@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r build by a rival, too. */
+/* trim3r build, also by a rival. */
 #include "study/commands/commands.h"
 
 #include <argp.h>

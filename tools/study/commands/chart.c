@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r chart: tables of eval as pictures and as a report. */
+/* trim3r chart: charts and a report from tables of eval. */
 #include "study/commands/commands.h"
 
 #include <argp.h>
@@ -32,7 +32,7 @@ typedef struct options {
     char **folders; /* --pictures */
     uint32_t folder_count;
     const char *page, *svg, *png, *scene;
-    chart_measure quality; /* CHART_MEASURES = the first that there is */
+    chart_measure quality; /* CHART_MEASURES = the first available one */
     chart_measure costs[MOST_COSTS];
     uint32_t cost_count; /* 0 = the costs in the tables */
     size_t picture_bytes;
@@ -78,7 +78,7 @@ static void check_options(struct argp_state *state, const options *o)
         argp_error(state, "EVAL.csv is missing");
     }
     if (o->page == NULL && o->svg == NULL && o->png == NULL) {
-        argp_error(state, "nothing is to be written: give -o, --svg or --png");
+        argp_error(state, "there is no output: give -o, --svg or --png");
     }
     if (o->folder_count > 0 && o->page == NULL) {
         argp_error(state, "--pictures belongs to a report (-o)");
@@ -153,23 +153,25 @@ static const struct argp parser = {
     .options = argp_options,
     .parser = parse,
     .args_doc = "EVAL.csv...",
-    .doc =
-        "Chart quality against time and bytes, from the tables of eval.\v"
-        "A point is one method, head, bits, refinement, allocation, depth, wavelet, levels, clusters, ablation and "
-        "budget: its mean over scenes, each the mean over its cases. Points that differ in the budget alone are "
-        "joined. Ringed are those that nothing beats in cost and quality at once, among the points that were measured "
-        "on all cases. Tables may be of different runs and of older versions: a column that is missing counts as not "
-        "varied; rows that agree in everything are one measurement made again. A table that is malformed is refused "
-        "with its line.\n\n"
-        "The report shows the settings of the point under the pointer or with the keyboard's focus: arrow keys move, "
-        "Enter opens. It shows scenes one by one, and for each point its render, the target and a map of the error.\n"
-        "\n"
-        "Examples:\n  trim3r eval room.mcap --keep 100,20,5 --csv a.csv --images a\n"
-        "  trim3r chart a.csv --pictures a -o report.html\n"
-        "  trim3r eval room.mcap --keep 100,20,5 --refine 0 --csv b.csv --images b\n"
-        "  trim3r chart a.csv b.csv --pictures a --pictures b -o report.html\n"
-        "  trim3r chart a.csv b.csv --against build_ms --svg speed.svg --png speed.png\n  trim3r chart a.csv --quality "
-        "ssim --against scene_bytes --svg bytes.svg",
+    .doc = "Chart quality against time and bytes, from the tables of eval.\v"
+           "A point is one method, head, bits, "
+           "refinement, allocation, depth, wavelet, levels, clusters, ablation and budget: its mean over scenes, each "
+           "the mean over its cases. Points that differ only in the budget are joined. A ring marks those that nothing "
+           "beats in both cost and quality, among the points measured on all cases. Tables may be from different runs "
+           "and older versions: a missing column counts as not varied; equal rows are repeated measurements. A "
+           "malformed table is refused with its line.\n"
+           "\n"
+           "The report shows the settings of the point under the pointer or with the keyboard's focus: arrow keys "
+           "move, Enter opens. It shows scenes one by one, and for each point its render, the target and a map of the "
+           "error.\n"
+           "\n"
+           "Examples:\n"
+           "  trim3r eval room.mcap --keep 100,20,5 --csv a.csv --images a\n"
+           "  trim3r chart a.csv --pictures a -o report.html\n"
+           "  trim3r eval room.mcap --keep 100,20,5 --refine 0 --csv b.csv --images b\n"
+           "  trim3r chart a.csv b.csv --pictures a --pictures b -o report.html\n"
+           "  trim3r chart a.csv b.csv --against build_ms --svg speed.svg --png speed.png\n"
+           "  trim3r chart a.csv --quality ssim --against scene_bytes --svg bytes.svg",
 };
 
 /* ---- work ------------------------------------------------------------------------------------------------------ */

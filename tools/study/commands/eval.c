@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r eval with rivals, and with parts of the method taken away. */
+/* trim3r eval with rivals, and with parts of the method removed. */
 #include "study/commands/commands.h"
 
 #include <argp.h>
@@ -21,11 +21,9 @@ typedef struct study_options {
     const method *methods[METHOD_COUNT]; /* none = trim3r */
     uint32_t method_count;
     bool ablate;
-    uint32_t ablations[ABLATIONS_MOST]; /* the ablations named; none = all that apply */
+    uint32_t ablations[ABLATIONS_MOST]; /* the given ablations; none = all that apply */
     uint32_t ablation_count;
 } study_options;
-
-/* ---- arguments --------------------------------------------------------------------------------------------------- */
 
 static void add_ablation(struct argp_state *state, study_options *o, list_word name)
 {
@@ -56,7 +54,7 @@ static void parse_ablations(struct argp_state *state, study_options *o, const ch
     }
 }
 
-/* Runs before the end of evaluation_argp: argp ends with the first child. */
+/* Runs before the end of evaluation_argp, because argp ends with the first child. */
 static void check(struct argp_state *state, study_options *o)
 {
     evaluation_options *eval = &o->eval;
@@ -98,8 +96,8 @@ static error_t parse_own(int key, char *arg, struct argp_state *state)
 static const struct argp_option own_options[] = {
     {"methods", KEY_METHODS, "M,M,...", 0, METHOD_HELP, 1},
     {"ablate", KEY_ABLATE, "NAME,NAME,...", OPTION_ARG_OPTIONAL,
-     "parts to take away, one in each row (all), at 60, 40, 20, 10 and 5 % unless --keep names others; a table of what "
-     "each is worth comes at the end",
+     "parts to remove, one in each row (all), at 60, 40, 20, 10 and 5 % unless --keep names others; a table of "
+     "their effects comes at the end",
      1},
     {0},
 };
@@ -107,11 +105,11 @@ static const struct argp_option own_options[] = {
 static const struct argp own_argp = {
     .options = own_options,
     .parser = parse_own,
-    .doc = "\v--ablate: each row changes one thing of the settings given.\n"
+    .doc = "\v--ablate: each row changes one of the given settings.\n"
            "  full                      nothing\n"
            "  no-adaptation             the head works as if nothing had been pruned; what\n"
            "                            it makes of all points is pruned, then refined\n"
-           "  no-mask                   the network works so, but its splats still grow\n"
+           "  no-mask                   only the network works so; its splats still grow\n"
            "                            with the distance of retained neighbours\n"
            "  random, uniform, paper, pixel   --allocate\n"
            "  random-clusters           SuperClusters exchange their textures at random\n"
@@ -141,8 +139,6 @@ static const struct argp_child children[] = {
     {.argp = &evaluation_argp}, {.argp = &own_argp}, {.argp = &rival_argp}, {0}};
 static const struct argp argp = {.parser = parse, .children = children};
 
-/* ---- contestants ------------------------------------------------------------------------------------------------- */
-
 static int add_methods(const study_options *o, evaluation_contestants *chosen)
 {
     int code = CLI_OK;
@@ -166,7 +162,7 @@ static void add_ablated(const study_options *o, evaluation_contestants *chosen, 
     evaluation_contestants_add(chosen, &settings, ablation_name(ablation));
 }
 
-/* The ablations named, which must apply, or of none all that do. */
+/* Adds the given ablations, which must apply, or without any given all that apply. */
 static int add_ablations(const study_options *o, evaluation_contestants *chosen)
 {
     const bool planar = o->eval.planar;

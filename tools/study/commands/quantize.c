@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r quantize: a float head to a weight file. */
+/* trim3r quantize: converts a float head to a weight file. */
 #include "study/commands/commands.h"
 
 #include <argp.h>
@@ -33,7 +33,7 @@ typedef struct options {
     char **inputs; /* for calibration: at most one per argument */
     uint32_t input_count;
     uint32_t weight_bits, activation_bits, width, height;
-    double percentile; /* 0: by the activations' width */
+    double percentile; /* 0: the default for the activations' width */
     bool json;
 } options;
 
@@ -130,9 +130,10 @@ static const struct argp parser = {
     .parser = parse_option,
     .args_doc = "HEAD.safetensors [REC.mcap|IMAGE...]",
     .doc = "Turn a trained head into integers for the runtime.\v"
-           "A head trained with quantization in mind brings its ranges along (layerN.range). Those that it lacks are "
-           "measured. The float head runs on what the runtime makes of the recordings' context pairs and of images on "
-           "a plane, with 100, 40, 20, 10 and 5 percent of the points retained. The same input gives the same file.\n"
+           "A head trained for quantization has its ranges "
+           "(layerN.range). Missing ones are measured: the float head runs on the runtime's input from the "
+           "recordings' context pairs and from images on a plane, with 100, 40, 20, 10 and 5 percent of the points "
+           "retained. The same input gives the same file.\n"
            "\n"
            "Examples:\n"
            "  trim3r quantize small.safetensors -o small.t3w\n"
@@ -161,7 +162,7 @@ static int read_head(const options *o, float_head *head)
     return CLI_OK;
 }
 
-/* The first layer without a range, counted from 1; 0 when all have theirs. */
+/* Returns the first layer without a range, counted from 1; 0 if all have one. */
 static uint32_t without_range(const float_head *head)
 {
     for (uint32_t n = 1; n < head->graph.count; n++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r stress: what perturbed frames and hard scenes do to each method. */
+/* trim3r stress: measures how perturbed frames and hard scenes affect each method. */
 #include "study/commands/commands.h"
 
 #include <argp.h>
@@ -139,7 +139,7 @@ static const struct argp_option argp_options[] = {
      "number of triplets of each recording, spread evenly over those that it carries (1)", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
     {"csv", OPTION_TO(options, to.csv), "FILE", OPTION_WRITES(FILE_TABLE),
-     "table to write; each row appears when it is made, or all at the end where a table stands", 0},
+     "table to write; each row appears when it is made, or all at the end if a table exists", 0},
     {"html", OPTION_TO(options, to.page), "PAGE.html", OPTION_WRITES(FILE_PAGE),
      "page to write, with pictures of the worst cases; it needs no other file", 0},
     {"worst", KEY_WORST, "N", 0, "number of cases on the page, 1..64, one for each perturbation at most (12)", 0},
@@ -182,37 +182,36 @@ static const struct argp parser = {
     .parser = parse_option,
     .help_filter = list_rows,
     .args_doc = "[REC.mcap...]",
-    .doc =
-        "Measure how much each method loses when the frames are perturbed, and what it does with scenes that are hard; "
-        "without a recording, on the built-in room.\v"
-        "The context frames change in memory, the target stays as recorded. The budget is a number, that of the "
-        "unperturbed frames, so a method must use exactly as many Gaussians, or all valid points. Losses (dB, SSIM) "
-        "are against the same method on unperturbed frames, on their mask; those of the scene-* rows are against all "
-        "points. Columns:\n"
-        "  psnr_unpruned     of all points of the same frames\n"
-        "  flicker           mean change in 8-bit levels, on the mask, between the\n"
-        "                    renders of two captures of a still scene; these have noise\n"
-        "                    of 2 levels and of 0.2 % of the depth, too\n"
-        "  flicker_unpruned  the same of all points\n"
-        "  mask_changed      share of the retained pixels that the next such capture\n"
-        "                    does not retain (unperturbed rows)\n"
-        "  motion            median movement of the other Gaussians, as a share of\n"
-        "                    their spacing (unperturbed rows)\n"
-        "Chance is drawn from fixed seeds: the same command gives the same figures, but for times.\n"
-        "\n"
-        "An error with a reason is a refusal, which is a result. A broken invariant ends in exit status 1:\n"
-        "  another number of Gaussians than the budget, or another arena than before\n"
-        "  a Gaussian out of range or not finite, or a score that is no number\n"
-        "  trim3r beyond its bounds on a still scene of n Gaussians for each of its\n"
-        "    SuperClusters, n at least 1: 0.6 / sqrt(n) of the mask, at most half; a\n"
-        "    median movement of 3/4 of the spacing beyond what the depth's noise makes\n"
-        "Of several cases the tables show means; * marks that some were refused.\n"
-        "\n"
-        "Examples:\n"
-        "  trim3r stress\n"
-        "  trim3r stress room.mcap --methods trim3r,random,eagles --csv s.csv\n"
-        "  trim3r stress a.mcap b.mcap --rows noise,pose,scene-bars --html s.html\n"
-        "  trim3r stress --working 64x64 --strengths 2 --captures 0",
+    .doc = "Measure how much each method loses when the frames are perturbed, and how it copes with hard scenes; "
+           "without a recording, on the built-in room.\v"
+           "The context frames change in memory, the target stays as "
+           "recorded. The budget is the unperturbed frames' number, so a method must use exactly that many Gaussians, "
+           "or all valid points. Losses (dB, SSIM) are against the same method on unperturbed frames, on their mask; "
+           "losses of scene-* rows are against all points. Columns:\n"
+           "  psnr_unpruned     of all points of the same frames\n"
+           "  flicker           mean change in 8-bit levels, on the mask, between the\n"
+           "                    renders of two captures of a still scene; these have noise\n"
+           "                    of 2 levels and of 0.2 % of the depth, too\n"
+           "  flicker_unpruned  the same of all points\n"
+           "  mask_changed      share of the retained pixels that the next such capture\n"
+           "                    does not retain (unperturbed rows)\n"
+           "  motion            median movement of the other Gaussians, as a share of\n"
+           "                    their spacing (unperturbed rows)\n"
+           "Random numbers have fixed seeds: the same command gives the same figures, except times.\n"
+           "\n"
+           "An error with a reason is a refusal, which is a result. A broken invariant ends in exit status 1:\n"
+           "  another number of Gaussians than the budget, or another arena than before\n"
+           "  a Gaussian out of range or not finite, or a score that is no number\n"
+           "  trim3r beyond its bounds on a still scene of n Gaussians for each of its\n"
+           "    SuperClusters, n at least 1: 0.6 / sqrt(n) of the mask, at most half; a\n"
+           "    median movement of 3/4 of the spacing beyond the depth noise's share\n"
+           "Of several cases the tables show means; * marks that some were refused.\n"
+           "\n"
+           "Examples:\n"
+           "  trim3r stress\n"
+           "  trim3r stress room.mcap --methods trim3r,random,eagles --csv s.csv\n"
+           "  trim3r stress a.mcap b.mcap --rows noise,pose,scene-bars --html s.html\n"
+           "  trim3r stress --working 64x64 --strengths 2 --captures 0",
     .children = children,
 };
 
@@ -299,7 +298,7 @@ static int perturb_all(stress_report *report, const options *o, const stress_cas
     return code;
 }
 
-/* Measures a scene. Its rows are named after its perturbation. */
+/* Measures a scene. Its rows have the name of its perturbation. */
 static int measure_scene(stress_report *report, const options *o, const stress_case *c, cells *m,
                          const stress_scene *scene, uint32_t grade)
 {
@@ -313,7 +312,7 @@ static int measure_scene(stress_report *report, const options *o, const stress_c
     return code == CLI_OK ? stress_report_cell(report, m->rows, m->renders, NULL, c, NULL) : code;
 }
 
-/* `scene` NULL: a case of recorded frames. The case's `base` is filled. */
+/* Measures a case and fills its `base`. `scene` NULL: a case of recorded frames. */
 static int measure_case(stress_report *report, const options *o, stress_case *c, const stress_scene *scene,
                         uint32_t grade)
 {
@@ -400,7 +399,7 @@ static int stress_recording(stress_report *report, const options *o, const t3r_r
     uint32_t all = t3r_recording_triplet_count(recording), chosen = triplet_count(o, recording);
     int code = CLI_OK;
     for (uint32_t i = 0; i < chosen && code == CLI_OK; i++) {
-        /* of one triplet the first; of several, the first of each of as many equal parts */
+        /* the first triplet of one; of several, the first of each of that many equal parts */
         uint32_t at = (uint32_t)((uint64_t)i * all / chosen);
         code = stress_triplet(report, o, recording, path, t3r_recording_triplet(recording, at));
     }

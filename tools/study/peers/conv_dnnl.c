@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* conv_dnnl [RUNS]: an int8 network of the shape of a head by oneDNN on one thread (OMP_NUM_THREADS=1), 10^9
+/* conv_dnnl [RUNS]: measures an int8 network of a head's shape with oneDNN on one thread (OMP_NUM_THREADS=1), in 10^9
  * multiply-accumulates a second. */
 #include <oneapi/dnnl/dnnl.h>
 
@@ -29,7 +29,7 @@ static dnnl_memory_desc_t described(int count, const dnnl_dims_t sides, dnnl_dat
     return description;
 }
 
-/* Memory of that description, with any bytes. */
+/* Allocates memory of that description, with any bytes. */
 static dnnl_memory_t memory_of(const dnnl_memory_desc_t *description)
 {
     dnnl_memory_t memory;
@@ -38,7 +38,7 @@ static dnnl_memory_t memory_of(const dnnl_memory_desc_t *description)
     return memory;
 }
 
-/* The scales bring sums to bytes, and relu cuts them off. */
+/* Returns attributes that scale the sums to bytes and cut them off by relu. */
 static dnnl_primitive_attr_t scaled(void)
 {
     static const float scale = 0.0025f;

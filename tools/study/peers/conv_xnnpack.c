@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* conv_xnnpack [RUNS]: an int8 network of the shape of a head by XNNPACK on one thread, 10^9 multiply-accumulates a
- * second. */
+/* conv_xnnpack [RUNS]: measures an int8 network of a head's shape with XNNPACK on one thread, in 10^9
+ * multiply-accumulates a second. */
 #include <xnnpack.h>
 
 #include "shape.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The network that the peers run: the shape of the head `small`, so to speak, on the pixels of two 256x256 views. */
+/* The network that the peers run: the head `small` with layers of the nearest usual shapes, on the pixels of two
+ * 256x256 views. */
 #ifndef TRIM3R_TOOLS_PEERS_SHAPE_H
 #define TRIM3R_TOOLS_PEERS_SHAPE_H
 
@@ -15,7 +16,7 @@ static const struct {
     size_t inputs, outputs, side; /* shape of the kernel */
 } layers[LAYERS] = {{24, 32, 3}, {32, 32, 1}, {32, 16, 1}};
 
-/* Any bytes: the time does not depend on them. */
+/* any bytes: the time does not depend on them */
 static inline int8_t *filled(size_t count, int8_t most)
 {
     int8_t *bytes = malloc(count);
@@ -40,7 +41,8 @@ static inline int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Prints the median of `runs` of all layers, one not counted, as 10^9 multiply-accumulates a second. */
+/* Prints the median of `runs` runs of all layers, after one that is not counted, as 10^9 multiply-accumulates a
+ * second. */
 static inline int print_rate(int runs, int (*run)(void))
 {
     double seconds[RUNS_MOST];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which Gaussians of an unpruned scene stay, and which pixels of its views they came from. */
+/* Selects the Gaussians of an unpruned scene to keep, and finds the pixels of its views that they came from. */
 #ifndef TRIM3R_TOOLS_RIVALS_CHOOSE_H
 #define TRIM3R_TOOLS_RIVALS_CHOOSE_H
 
@@ -8,8 +8,8 @@
 
 #include "trim3r.h"
 
-/* The `count` indices of the highest scores, of equal ones the first, in rising order. kept[] has room for
- * `count`. False without memory. */
+/* Writes the indices of the `count` highest scores in rising order to kept[count]; ties go to the lower index. False
+ * if out of memory. */
 bool rival_choose(const double *score, uint32_t of, uint32_t count, uint32_t *kept);
 
 /* Makes the importances of the allocation `given`: 65535 at the pixels whose points became the Gaussians kept[count]

@@ -8,7 +8,7 @@
 #include "cli/cli.h"
 #include "study/rivals/photometric.h"
 
-/* values of 3D Gaussian Splatting */
+/* values from 3D Gaussian Splatting */
 #define MOMENTUM 0.9
 #define MEMORY 0.999
 #define LEAST 1e-15
@@ -20,8 +20,8 @@ typedef struct tuner {
     splat_model *model;
     splat_view *views;
     photometric *losses;
-    uint32_t view_count;  /* opened of both */
-    splat_gradient *flat; /* for one view */
+    uint32_t view_count;  /* number of opened entries in both */
+    splat_gradient *flat; /* derivatives of one view's splats */
     double *gradient;     /* of all parameters, like the next two */
     double *mean, *square;
     float *rgb, *rgb_gradient; /* for one view */

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Per-scene fine-tuning: Adam on all parameters of a fixed number of Gaussians, the context views its only examples.
+/* Per-scene fine-tuning: Adam on all parameters of a fixed number of Gaussians; the context views are the only
+ * examples.
  *
- * As 3D Gaussian Splatting trains (Kerbl et al. 2023, section 5), less its densification, and all context views in
- * every iteration. */
+ * Follows the training of 3D Gaussian Splatting (Kerbl et al. 2023, section 5), without densification and with all
+ * context views in every iteration. */
 #ifndef TRIM3R_TOOLS_RIVALS_FINETUNE_H
 #define TRIM3R_TOOLS_RIVALS_FINETUNE_H
 
@@ -17,17 +18,17 @@ typedef struct finetune_target {
     const uint8_t *rgb; /* width x height x 3 */
 } finetune_target;
 
-/* Steps of Adam, a parameter. */
+/* Step sizes of Adam, per kind of parameter. */
 typedef struct finetune_rates {
     double position; /* scene units: the median depth is between one and two */
     double log_scale, rotation, logit, colour;
 } finetune_rates;
 
-/* Tuned on training scenes (docs/rivals.md): over budgets of 40, 10 and 5 %, random and efficientgs, each rate by
- * itself up and down. Steps that fall over the iterations were no better. */
+/* Tuned on training scenes (docs/rivals.md) at budgets of 40, 10 and 5 % with random and efficientgs, varying one rate
+ * at a time. Decaying rates were no better. */
 extern const finetune_rates finetune_rates_default;
 
-/* Changes the model in place. False if out of memory, with the model as some iteration left it. */
+/* Changes the model in place. False if out of memory; the model is then the result of the last complete iteration. */
 bool finetune(splat_model *model, const finetune_target *targets, uint32_t target_count, uint32_t iterations,
               const finetune_rates *rates);
 

@@ -3,7 +3,7 @@
 
 #include "study/rivals/rival.h"
 
-/* Each kind in a way: the allocation is of trim3r's kind, refinement follows the head. */
+/* Each kind in one way. trim3r chooses an allocation itself; methods with a head of ours are refined. */
 #define METHOD(NAME, KIND, WAY)                                                                                        \
     {                                                                                                                  \
         {NAME, (KIND) == METHOD_TRIM3R, (WAY) == METHOD_HEAD, rival_build}, KIND, WAY                                  \

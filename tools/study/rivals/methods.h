@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The methods that trim3r is measured against, each as published, fine-tuned, or as the choice of points for our head.
- */
+/* The methods that trim3r is compared with: each as published, fine-tuned, or as the choice of points for our head. */
 #ifndef TRIM3R_TOOLS_RIVALS_METHODS_H
 #define TRIM3R_TOOLS_RIVALS_METHODS_H
 
@@ -14,12 +13,11 @@ typedef struct rival_method {
     method_way way;
 } rival_method;
 
-/* Every kind in every way. The first is method_trim3r; RIVAL_METHOD() names the others. */
+/* Each kind in each way. The first is method_trim3r; RIVAL_METHOD() names the others. */
 #define METHOD_COUNT (METHOD_WAY_COUNT * METHOD_KIND_COUNT)
 #define RIVAL_METHOD(kind, way) (&rival_methods[(way)*METHOD_KIND_COUNT + (kind)-1].method)
 extern const rival_method rival_methods[METHOD_COUNT - 1];
 
-/* NULL where there is none. */
 const method *method_named(list_word name);
 
 static inline method_kind method_kind_of(const method *m)
@@ -32,7 +30,7 @@ static inline method_way method_way_of(const method *m)
     return m == &method_trim3r ? METHOD_PLAIN : ((const rival_method *)m)->way;
 }
 
-/* Whether a rival's choice of points is what our head works on. */
+/* Whether our head makes Gaussians at a rival's points. */
 static inline bool method_ranks_for_head(const method *m)
 {
     return method_way_of(m) == METHOD_HEAD && method_kind_of(m) != METHOD_TRIM3R;

@@ -9,16 +9,16 @@
 #include "study/rivals/methods.h"
 
 #define METHOD_HELP                                                                                                    \
-    "trim3r (default), or a rival: random, eagles, lightgaussian, pup, efficientgs; +finetune behind any of them "     \
+    "trim3r (default), or a rival: random, eagles, lightgaussian, pup, efficientgs; +finetune after any of them "      \
     "fine-tunes its Gaussians, +head makes new ones of its points"
 
-/* The value of an option: a method, or one to METHOD_COUNT different ones with commas between. */
+/* Parse an option's value: a method, or up to METHOD_COUNT different ones separated by commas. */
 const method *option_method(struct argp_state *state, const char *option, const char *text);
 void option_methods(struct argp_state *state, const char *option, const char *text, const method *methods[METHOD_COUNT],
                     uint32_t *count);
 
-/* --finetune-iterations and --mask-head, for a parent that hands reconstruction_options * on; its doc describes the
- * rivals. */
+/* Parses --finetune-iterations and --mask-head for a parent that passes reconstruction_options *; its doc describes
+ * the rivals. */
 extern const struct argp rival_argp;
 
 /* Reports a usage error if the settings do not fit one of the methods. */

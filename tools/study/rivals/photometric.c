@@ -43,7 +43,7 @@ static void window(float taps[TAPS])
     }
 }
 
-/* line[] += weight x from[] shifted by `shift`, zeros beyond */
+/* Adds weight x from[] shifted by `shift` to line[], zeros beyond the border. */
 static void add_shifted(float *restrict line, const float *restrict from, ptrdiff_t shift, ptrdiff_t count,
                         float weight)
 {
@@ -53,7 +53,7 @@ static void add_shifted(float *restrict line, const float *restrict from, ptrdif
     }
 }
 
-/* The Gaussian mean of a plane in place; its own transpose. */
+/* Replaces a plane by its Gaussian mean; the operation is its own transpose. */
 static void blur(const photometric *p, float *values)
 {
     float taps[TAPS], *across = work(p, SCRATCH);
@@ -116,7 +116,7 @@ static float differentiate(float *mean, float *square, float *product, float tar
     return s;
 }
 
-/* Adds the share of one channel to gradient[]; its mean similarity. */
+/* Adds one channel's share to gradient[]; returns its mean similarity. */
 static double add_channel(const photometric *p, int channel, double share, const float *rgb, float *gradient)
 {
     size_t pixels = (size_t)p->width * p->height;

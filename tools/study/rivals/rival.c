@@ -12,9 +12,9 @@
 #include "study/rivals/score.h"
 #include "study/rivals/traced.h"
 
-#define FINETUNE_ITERATIONS 200u /* unless the options have a number */
+#define FINETUNE_ITERATIONS 200u /* default of --finetune-iterations */
 
-/* ---- what is shared ------------------------------------------------------------------------------------------- */
+/* ---- shared --------------------------------------------------------------------------------------------------- */
 
 static void close_source(void *made)
 {
@@ -31,7 +31,7 @@ static void close_source(void *made)
     free(source);
 }
 
-/* NULL without memory. */
+/* Returns a new source, or NULL if out of memory. */
 static rival_source *open_source(method_source *shared, const t3r_recording *recording, const char *path,
                                  const reconstruction_options *options)
 {
@@ -48,7 +48,7 @@ static rival_source *open_source(method_source *shared, const t3r_recording *rec
     return source;
 }
 
-/* Opens the context views as pictures: the frames and size that a build resolved, with the poses that it aligned. */
+/* Opens the context views as pictures: the frames and size that a build resolved, with its aligned poses. */
 static int open_pictures(rival_source *source, const reconstruction *r)
 {
     reconstruction_options *o = &source->options;
@@ -62,7 +62,7 @@ static int open_pictures(rival_source *source, const reconstruction *r)
         code = source->rgb[v] == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
                                       : developed_frame(source->recording, source->path, o->context[v], o->config.width,
                                                         o->config.height, source->rgb[v], NULL, &source->camera[v]);
-        t3r_camera aligned; /* a scene from a file has no views: the poses are the given ones */
+        t3r_camera aligned; /* a scene from a file has no aligned views: the given poses are used */
         if (code == CLI_OK && t3r_view_camera(r->runtime, v, &aligned) == T3R_OK) {
             source->camera[v] = aligned;
         }
@@ -84,7 +84,7 @@ static bool open_views(rival_source *source)
     return done;
 }
 
-/* Loads a scene made elsewhere instead of an unpruned one. */
+/* Loads a scene from a file in place of an unpruned one. */
 static int load_whole(rival_source *source)
 {
     scene_file scene;
@@ -106,7 +106,7 @@ static int load_whole(rival_source *source)
     return code;
 }
 
-/* The unpruned scene, in floats too, and its context views. */
+/* Builds the unpruned scene, converts it to floats, and opens its context views. */
 static int build_whole(rival_source *source)
 {
     reconstruction_options options = source->options;
@@ -149,7 +149,7 @@ static int make_score(rival_source *source, method_kind kind)
 
 /* ---- pruning -------------------------------------------------------------------------------------------------- */
 
-/* Room for `count` Gaussians, with harmonics of the unpruned scene's degree. */
+/* Allocates `count` Gaussians, with harmonics of the unpruned scene's degree. */
 static bool open_scene(const reconstruction *whole, uint32_t count, scene_file *scene)
 {
     *scene = (scene_file){.frame = whole->scene.frame, .count = count, .degree = whole->loaded.degree};
@@ -160,7 +160,7 @@ static bool open_scene(const reconstruction *whole, uint32_t count, scene_file *
     return scene->gaussians != NULL && (scene->degree == 0 || scene->harmonics_q12 != NULL);
 }
 
-/* The `count` best Gaussians of the unpruned scene, unchanged. */
+/* Copies the `count` best Gaussians of the unpruned scene, unchanged. */
 static int prune(rival_source *source, method_kind kind, uint32_t count, scene_file *scene)
 {
     const reconstruction *whole = &source->whole;
@@ -236,7 +236,7 @@ static int build_ours(rival_source *source, const reconstruction_options *option
 
 /* ---- our head on their points ----------------------------------------------------------------------------------- */
 
-/* The points that the `count` best Gaussians of the unpruned scene came from. */
+/* Finds the points that the `count` best Gaussians of the unpruned scene came from. */
 static int trace_chosen(const rival_source *source, method_kind kind, uint32_t count, traced_points *points)
 {
     reconstruction_options all = source->options;
@@ -283,7 +283,7 @@ static int build_by_head(rival_source *source, method_kind kind, const reconstru
 
 /* ---- fine-tuning ------------------------------------------------------------------------------------------------ */
 
-/* Fine-tuning moves colours of degree 0, without the harmonics of a scene from a file. */
+/* Fine-tunes colours of degree 0, without the harmonics of a scene from a file. */
 static int tune(const rival_source *source, uint32_t iterations, scene_file *scene)
 {
     scene->degree = 0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Scenes that the rivals make: the head's unpruned scene, pruned by a published score to an exact count; as it is,
- * fine-tuned on the context views, or as the points at which trim3r's head makes new Gaussians. Floats, on the host:
- * nothing here is covered by "same bits". */
+/* Scenes by the rivals: the head's unpruned scene, pruned by a published score to an exact count, then left unchanged,
+ * fine-tuned on the context views, or replaced by new Gaussians of trim3r's head at the same points. In floats on the
+ * host: the promise of identical bits does not apply. */
 #ifndef TRIM3R_TOOLS_RIVALS_RIVAL_H
 #define TRIM3R_TOOLS_RIVALS_RIVAL_H
 
@@ -11,20 +11,20 @@
 #include "study/rivals/methods.h"
 #include "study/rivals/splat_view.h"
 
-/* What the scenes of one context share; rival_build() keeps it in its method_source. All zero: nothing is open. */
+/* Shared by the scenes of one context; rival_build() keeps it in its method_source. All zero: nothing is open. */
 typedef struct rival_source {
     bool opened, built;
     const t3r_recording *recording;
     const char *path;
     reconstruction_options options; /* context and working size resolved once `opened` */
-    uint8_t *rgb[T3R_MAX_VIEWS];    /* the context views as the image stage gives them */
+    uint8_t *rgb[T3R_MAX_VIEWS];    /* the context views, output of the image stage */
     t3r_camera camera[T3R_MAX_VIEWS];
     reconstruction whole; /* the unpruned scene, or the scene of the file `points_of`; valid once `built` */
-    splat_model model;    /* the same */
+    splat_model model;    /* the same as parameters */
     splat_view views[T3R_MAX_VIEWS];
     uint32_t view_count;
     double project_seconds;
-    double *score[METHOD_KIND_COUNT]; /* NULL until asked for */
+    double *score[METHOD_KIND_COUNT]; /* NULL until computed */
     double score_seconds[METHOD_KIND_COUNT];
 } rival_source;
 

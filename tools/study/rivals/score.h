@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What published methods think a Gaussian is worth, from a scene and the context views that it was made of. One file a
+/* Scores of Gaussians by published methods, from a scene and the context views that it was made of. One file per
  * method, each from its paper's definition; none reads the pictures, only what the scene draws.
  *
- * `views` are open and projected with `model`. score[model->count]: the higher, the sooner it is kept; never NaN.
- * False without memory. */
+ * `views` are open and projected with `model`. score[model->count]: higher ones are kept first; never NaN. False if out
+ * of memory. */
 #ifndef TRIM3R_TOOLS_RIVALS_SCORE_H
 #define TRIM3R_TOOLS_RIVALS_SCORE_H
 
@@ -15,7 +15,7 @@
 
 /* LightGaussian's exponent of the volume, from its authors' code. */
 #define LIGHTGAUSSIAN_BETA 0.1
-/* How many Gaussians of a pixel EfficientGS calls dominant, from its authors' code. */
+/* Number of dominant Gaussians per pixel in EfficientGS, from its authors' code. */
 #define EFFICIENTGS_MOST 1u
 
 /* Computes the score of the rival `kind`; METHOD_TRIM3R, which ranks no Gaussians, gets score_random(). Only random

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* EAGLES: Efficient Accelerated 3D Gaussians with Lightweight EncodingS. Girish, Gupta, Shrivastava, ECCV 2024
  * (arXiv:2312.04564), "Influence pruning": the influence of a Gaussian is the sum of its blending weights alpha_i T_i
- * over all pixels of the training views; those of the least influence go. */
+ * over all pixels of the training views; Gaussians with the least influence are removed. */
 #include <string.h>
 
 #include "study/rivals/score.h"

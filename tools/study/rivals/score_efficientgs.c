@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* EfficientGS: Streamlining Gaussian Splatting for Large-Scale High-Resolution Scene Representation. Liu et al., 2024
  * (arXiv:2404.12777), "Gaussian pruning": a Gaussian is dominant for a ray when its blending weight is among the K
- * largest there; Gaussians that are dominant for too few rays are auxiliary and go. To meet a budget exactly the rays
- * are counted; of as many rays, the larger sum of weights stays. */
+ * largest there; Gaussians that are dominant for too few rays are removed. To meet a budget exactly, the score is the
+ * number of rays; ties are broken by the sum of weights. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +21,7 @@ typedef struct ranking {
     double *weights; /* per Gaussian, over all its pixels */
 } ranking;
 
-/* The earlier in the order of drawing stays before an equal. */
+/* Inserts a Gaussian by weight; of equal weights the one drawn first stays first. */
 static void enter(dominant *pixel, uint32_t gaussian, float weight)
 {
     for (uint32_t k = 0; k < EFFICIENTGS_MOST; k++) {

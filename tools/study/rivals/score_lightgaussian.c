@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* LightGaussian: Unbounded 3D Gaussian Compression with 15x Reduction and 200+ FPS. Fan et al., NeurIPS 2024
- * (arXiv:2311.17245), section 3.2, "global significance": the sum over all pixels of the training views of
- *     1(the Gaussian meets the pixel's ray) x opacity x gamma(volume),
- * gamma(V) = (V_norm)^beta, V_norm the volume over that at the ninth decile of all, held to 0..1. A ray is met where
- * the Gaussian takes part in the pixel. */
+ * (arXiv:2311.17245), section 3.2, "global significance": the sum over all pixels of the training views of 1(the
+ * Gaussian meets the pixel's ray) x opacity x gamma(volume), gamma(V) = (V_norm)^beta, V_norm the volume divided by
+ * the ninth decile of all volumes, clamped to 0..1. A Gaussian meets a ray if it contributes to the pixel. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,13 +23,13 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Up to a factor that cancels, an ellipsoid's volume is the product of its axes: here as a logarithm. */
+/* Returns the logarithm of an ellipsoid's volume, the product of its axes, up to a factor that cancels. */
 static double log_volume(const double *p)
 {
     return p[SPLAT_LOG_SCALE] + p[SPLAT_LOG_SCALE + 1] + p[SPLAT_LOG_SCALE + 2];
 }
 
-/* The ninth decile; NaN without memory. */
+/* Returns the ninth decile of the volumes; NaN if out of memory. */
 static double ninth_decile(const splat_model *model)
 {
     double *volumes = malloc(((size_t)model->count + 1) * sizeof *volumes);

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* PUP 3D-GS: Principled Uncertainty Pruning for 3D Gaussian Splatting. Hanson, Tu et al., CVPR 2025 (arXiv:2406.10219),
- * section 4: the sensitivity of the reconstruction error to a Gaussian is
- *     U_i = log |det sum over the training views of (grad I)(grad I)^T|,
- * grad I the derivatives of the rendered pixels, each channel one, with respect to the Gaussian's mean and the
- * logarithms of its scales: a 6 x 6 block each.
+ * section 4: the sensitivity of the reconstruction error to a Gaussian is U_i = log |det sum over the training views of
+ * (grad I)(grad I)^T|, grad I the derivatives of the rendered pixels, each channel one, with respect to the Gaussian's
+ * mean and the logarithms of its scales: a 6 x 6 block each.
  *
- * A pixel's channels depend on place and shape through alpha alone, alpha through the splat's five numbers (centre and
- * conic), and those through the projection on the six: so 5 x 5 sums over a view's pixels are taken first, exactly, and
- * then carried to the six by the Jacobian of the projection. The released code pools pixels into patches to save work;
- * here none is pooled. */
+ * A pixel's channels depend on position and shape only through alpha, alpha on the splat's five numbers (centre and
+ * conic), and these through the projection on the six. So 5 x 5 sums over a view's pixels are taken first, exactly, and
+ * the Jacobian of the projection converts them to 6 x 6. The released code pools pixels into patches to save work; this
+ * one does not. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,12 +24,12 @@ typedef struct sensitivity {
 
 typedef struct sweep {
     const splat_view *view;
-    const float *rgb; /* as rendered */
+    const float *rgb; /* the finished picture */
     float *blended;   /* up to and including the current splat */
     sensitivity *of;
 } sweep;
 
-/* |dC / d alpha|^2 over the channels (splat_differentiate.c) */
+/* Returns |dC / d alpha|^2 over the channels (splat_differentiate.c). */
 static double colour_change(const sweep *s, size_t pixel, const splat *drawn, float alpha, float before)
 {
     double sum = 0;
@@ -69,7 +68,7 @@ static void add_row(void *user, const splat_row *row)
     }
 }
 
-/* Row m: the derivatives of the splat's m-th number with respect to mean and log scales. */
+/* Computes the derivatives j[m] of the splat's m-th number with respect to mean and log scales. */
 static void jacobian(const splat_camera *camera, const double *parameters, double j[FLAT][FREE])
 {
     for (int m = 0; m < FLAT; m++) {
@@ -109,7 +108,7 @@ double score_pup_log_determinant(double matrix[FREE][FREE])
             unit[i][j] = matrix[i][j] / sqrt(matrix[i][i]) / sqrt(matrix[j][j]);
         }
     }
-    /* Gauss elimination without pivoting: all pivots of such a matrix are in 0..1 */
+    /* Gauss elimination needs no pivoting: all pivots of such a matrix are in 0..1 */
     for (int k = 0; k < FREE; k++) {
         double pivot = fmax(unit[k][k], LEAST_PIVOT);
         sum += log(pivot);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Random: the lower bound that every paper on pruning shows. */
+/* Random: the lower bound in every paper on pruning. */
 #include "study/rivals/score.h"
 
 /* splitmix64 of the seed and the index */

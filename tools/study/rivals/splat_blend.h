@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A splat over one row of a tile: the innermost step of rendering, walking and differentiating, in loops of a fixed
- * length over all columns, so that the compiler vectorizes them. */
+/* One splat over one row of a tile: the innermost step of rendering, walking and differentiating, in loops of a fixed
+ * length over all columns, which compilers vectorize. */
 #ifndef TRIM3R_TOOLS_RIVALS_SPLAT_BLEND_H
 #define TRIM3R_TOOLS_RIVALS_SPLAT_BLEND_H
 
@@ -42,7 +42,7 @@ static inline void splat_alphas(const splat *s, float least, float left, float d
     }
 }
 
-/* The rows of the tile that begins at pixel row `top` that the splat may reach. */
+/* Computes the rows of the tile starting at pixel row `top` that the splat may reach. */
 static inline void splat_rows(const splat *s, int32_t top, int32_t *first, int32_t *last)
 {
     *first = s->top > top ? s->top - top : 0;

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Derivatives of a measure of a drawn view.
  *
- * Front to back, as it is drawn: the colour C of a pixel is the sum of T_i alpha_i c_i, so that
- *     dC / d alpha_i = T_i c_i - (C - C_i) / (1 - alpha_i),
- * C_i what is blended up to and with i. The measure's derivative g at the pixel is known before, so that one number a
- * pixel, g . C_i, is carried along instead of three. */
+ * The walk goes front to back, like drawing: the colour C of a pixel is the sum of T_i alpha_i c_i, so dC / d alpha_i =
+ * T_i c_i - (C - C_i) / (1 - alpha_i), C_i being the colour blended up to and including i. The measure's derivative g
+ * at the pixel is known before, so one number per pixel, g . C_i, replaces three. */
 #include <stddef.h>
 #include <string.h>
 
@@ -17,7 +16,7 @@ typedef struct tile {
     float g[3][SPLAT_TILE][SPLAT_TILE];   /* derivatives of the measure; 0 beyond the picture */
 } tile;
 
-/* Sums over a splat's pixels in a tile, a column each. */
+/* Sums over a splat's pixels in a tile, one per column. */
 typedef struct sums {
     float q[SPLAT_TILE], qx[SPLAT_TILE], qy[SPLAT_TILE]; /* of d measure / d q, and of its products with dx, dy */
     float qxx[SPLAT_TILE], qxy[SPLAT_TILE], qyy[SPLAT_TILE];
@@ -52,7 +51,7 @@ static void add_row(const splat *s, float least, float left, float dy, int32_t y
         float w = T[i] * alpha[i];
         float own = s->colour[0] * t->g[0][y][i] + s->colour[1] * t->g[1][y][i] + s->colour[2] * t->g[2][y][i];
         behind[i] -= w * own;
-        /* at the cap, alpha is constant */
+        /* at the cap alpha is constant */
         float live = alpha[i] < SPLAT_ALPHA_MOST ? alpha[i] : 0.0f;
         float dq = -live * (T[i] * own - behind[i] / (1 - alpha[i]));
         out->q[i] += dq;

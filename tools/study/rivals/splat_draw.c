@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Drawing a view, and telling what draws it. */
+/* Draws a view, or reports the splats that draw it. */
 #include <stddef.h>
 
 #include "study/rivals/splat_blend.h"
@@ -66,8 +66,6 @@ void splat_view_draw(const splat_view *view, float *rgb, float *transmittance)
         put(view, &t, left, top, rgb, transmittance);
     }
 }
-
-/* ---- walking ------------------------------------------------------------------------------------------------- */
 
 typedef struct walk {
     void (*visit)(void *user, const splat_row *row);

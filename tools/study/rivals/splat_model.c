@@ -13,13 +13,13 @@
 
 static double clamped(double x, double low, double high)
 {
-    return !(x >= low) ? low : x > high ? high : x; /* NaN is low */
+    return !(x >= low) ? low : x > high ? high : x; /* NaN becomes low */
 }
 
 static void load(double p[SPLAT_PARAMETERS], const t3r_gaussian *g)
 {
     gaussian_shape shape = gaussian_shape_of(g);
-    /* half a step from 0 and 1, where the logit has no end */
+    /* half a step from 0 and 1, where the logit is infinite */
     double opacity = clamped(g->opacity_q15 / OPACITY_ONE, 0.5 / OPACITY_ONE, OPACITY_MOST / OPACITY_ONE);
     for (int i = 0; i < 3; i++) {
         p[SPLAT_POSITION + i] = ldexp(g->position_q20[i], -20);

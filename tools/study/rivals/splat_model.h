@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Gaussians as an optimiser sees them: free parameters in double, to and from the scene's integers.
+/* Gaussians as free parameters in double for an optimiser, converted from and to the scene's integers.
  *
- * The parametrisation is that of 3D Gaussian Splatting (Kerbl et al. 2023, section 5): logarithms of the scales, a
+ * The parameters are those of 3D Gaussian Splatting (Kerbl et al. 2023, section 5): logarithms of the scales, a
  * quaternion of any norm, the logit of the opacity. */
 #ifndef TRIM3R_TOOLS_RIVALS_SPLAT_MODEL_H
 #define TRIM3R_TOOLS_RIVALS_SPLAT_MODEL_H
@@ -26,12 +26,12 @@ typedef struct splat_model {
     double *parameters; /* count rows of SPLAT_PARAMETERS */
 } splat_model;
 
-/* False without memory; splat_model_free() in any case. */
+/* Returns false if out of memory; call splat_model_free() in any case. */
 bool splat_model_of(splat_model *model, const t3r_gaussian *gaussians, uint32_t count);
 void splat_model_free(splat_model *model);
 
-/* Stores the nearest Gaussian that the record can hold; view and confidence keep their values, and so does a shape
- * that no record can hold. */
+/* Stores the nearest representable Gaussian. View and confidence keep their values; so does the shape if the new one
+ * is not representable. */
 void splat_model_store(const double parameters[SPLAT_PARAMETERS], t3r_gaussian *gaussian);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Views: their memory, and which splats touch which tile in which order. */
+/* Views: their memory, and the lists of splats for each tile in depth order. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -96,7 +96,7 @@ static void visit_tiles(splat_view *view, uint32_t index, uint32_t *place, bool 
 bool splat_view_bin(splat_view *view)
 {
     uint32_t tiles = view->across * view->down, *sorted, drawn = sort(view, &sorted);
-    /* counts are stored two places further on, so that filling moves each start to the start of the next tile */
+    /* counts are stored two places later, so that filling moves each tile's start to its end, the next tile's start */
     memset(view->first, 0, ((size_t)tiles + 2) * sizeof *view->first);
     for (uint32_t n = 0; n < drawn; n++) {
         visit_tiles(view, sorted[n], view->first + 2, false);

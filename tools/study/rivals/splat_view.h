@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A differentiable rasterizer of 3-D Gaussians in floats, for the host: what the rivals score and fine-tune with.
+/* A differentiable rasterizer of 3-D Gaussians in floats, for the host; the rivals score and fine-tune with it.
  *
- * It draws what the runtime's raster draws, from the same definitions (EWA projection, 0.3 px^2 low-pass, alpha =
- * min(0.99, opacity exp(-q)), nothing below 1/255, pixels closed below a transmittance of 1e-4, order by camera z in
- * Q20, then index; black background), and knows the derivatives of its pictures. A view is opened once, projected for
- * every state of a model, and then drawn, walked or differentiated in tiles. */
+ * It draws the same pictures as the runtime's raster, from the same definitions (EWA projection, 0.3 px^2 low-pass,
+ * alpha = min(0.99, opacity exp(-q)), nothing below 1/255, pixels closed below a transmittance of 1e-4, order by camera
+ * z in Q20, then index; black background), and differentiates them. A view is opened once, projected for every state of
+ * a model, and then drawn, walked or differentiated in tiles. */
 #ifndef TRIM3R_TOOLS_RIVALS_SPLAT_VIEW_H
 #define TRIM3R_TOOLS_RIVALS_SPLAT_VIEW_H
 
@@ -17,10 +17,10 @@
 
 #define SPLAT_ALPHA_LEAST (1.0 / 255)
 #define SPLAT_ALPHA_MOST 0.99f
-#define SPLAT_CLOSED 1e-4f /* transmittance below which a pixel takes no more */
+#define SPLAT_CLOSED 1e-4f /* transmittance below which a pixel is finished */
 #define SPLAT_LOW_PASS 0.3 /* px^2 */
 
-/* A tile's width is a row that the compiler keeps in vectors. */
+/* Side of a tile: a row fits into vector registers. */
 enum { SPLAT_TILE = 8 };
 
 /* A projected Gaussian: q = (a dx^2 + 2 b dx dy + c dy^2) / 2 at dx, dy pixels from its centre. */
@@ -50,12 +50,12 @@ typedef struct splat_view {
     uint32_t *order; /* twice count: work of the sort */
 } splat_view;
 
-/* These are false without memory. splat_view_close() in any case. */
+/* Return false if out of memory; call splat_view_close() in any case. */
 bool splat_view_open(splat_view *view, const splat_camera *camera, uint32_t count);
 bool splat_view_project(splat_view *view, const splat_model *model);
 void splat_view_close(splat_view *view);
 
-/* rgb: width x height x 3, 0..1; transmittance: width x height, may be NULL. */
+/* Draws the view. rgb: width x height x 3, 0..1; transmittance: width x height, may be NULL. */
 void splat_view_draw(const splat_view *view, float *rgb, float *transmittance);
 
 /* A row of a tile that one splat touches: alpha, 0 where the splat has no effect, and the transmittance before the
@@ -69,15 +69,15 @@ typedef struct splat_row {
 /* Calls visit() for every row of every splat, front to back for each pixel. */
 void splat_view_walk(const splat_view *view, void (*visit)(void *user, const splat_row *row), void *user);
 
-/* Given the picture as drawn and the derivatives of a measure with respect to its values, adds the derivatives with
- * respect to every splat's numbers to gradients[count]. */
+/* Adds the derivatives of a measure with respect to every splat's numbers to gradients[count], given the drawn picture
+ * and the measure's derivatives with respect to its values. */
 void splat_view_differentiate(const splat_view *view, const float *rgb, const float *rgb_gradient,
                               splat_gradient *gradients);
 
-/* The chain rule through the projection and the parametrisation: adds to gradient[SPLAT_PARAMETERS]. */
+/* Applies the chain rule through the projection and the parametrisation; adds to gradient[SPLAT_PARAMETERS]. */
 void splat_chain(const splat_camera *camera, const double *parameters, const splat_gradient *g, double *gradient);
 
-/* ---- inside ------------------------------------------------------------------------------------------------- */
+/* ---- internal --------------------------------------------------------------------------------------------- */
 
 /* Projects one Gaussian; right < left if it is culled. */
 splat splat_project(const splat_camera *camera, const double *parameters, double alpha_least);

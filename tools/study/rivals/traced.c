@@ -6,7 +6,7 @@
 #include "cli/cli.h"
 #include "study/rivals/choose.h"
 
-/* The masks after a build that keeps its analysis. */
+/* Reads the masks after a build that keeps its analysis. */
 static int read_masks(traced_points *points, const reconstruction *r, const uint32_t *kept, uint32_t count)
 {
     const size_t pixels = (size_t)r->config.width * r->config.height;
@@ -24,7 +24,7 @@ static int read_masks(traced_points *points, const reconstruction *r, const uint
 int traced_points_make(traced_points *points, const t3r_recording *recording, const char *path,
                        const reconstruction_options *options, const uint32_t *kept, uint32_t count)
 {
-    /* masks depend on neither head nor refinement: the cheapest */
+    /* masks depend on neither head nor refinement: use the cheapest */
     reconstruction_options plain = *options;
     plain.head = "none";
     plain.hide_mask = false;

@@ -7,15 +7,15 @@
 
 #include "reconstruction/reconstruction.h"
 
-/* Importances of the allocation `given`, a plane a context view at the working size. */
+/* Importances for the allocation `given`: one plane per context view at the working size. */
 typedef struct traced_points {
     uint16_t *planes[T3R_MAX_VIEWS];
 } traced_points;
 
-/* Marks the points that a build by `options` retains at its budget as important (65535), all others as not (0). If
- * `kept` is not NULL, only its points stay important: `count` ascending indices into the scene of that build, whose
- * Gaussians are ordered by view, row and column, whichever head made or refined them. Returns an exit status of
- * cli.h, after a message; call traced_points_free() in either case. */
+/* Sets importance 65535 at the points that a build by `options` retains at its budget, 0 elsewhere. With `kept`, only
+ * at its points: `count` ascending indices into the scene of that build, whose Gaussians are ordered by view, row and
+ * column for every head, refined or not. Returns an exit status of cli.h, after a message; call traced_points_free()
+ * in either case. */
 int traced_points_make(traced_points *points, const t3r_recording *recording, const char *path,
                        const reconstruction_options *options, const uint32_t *kept, uint32_t count);
 void traced_points_free(traced_points *points);

@@ -56,9 +56,7 @@ uint32_t stress_capture_valid(const stress_capture *capture)
     return valid;
 }
 
-/* ---- from a recording ------------------------------------------------------------------------------------------- */
-
-/* Fixed point as doubles, exactly. */
+/* Converts a fixed-point camera to doubles, exactly. */
 static t3r_recorded_camera camera_of(const t3r_camera *camera, uint32_t width, uint32_t height)
 {
     t3r_recorded_camera c = {.width = width, .height = height};
@@ -112,8 +110,6 @@ int stress_capture_read(stress_capture *capture, const evaluation_case *what, co
     }
     return code;
 }
-
-/* ---- to a recording --------------------------------------------------------------------------------------------- */
 
 static bool write_frames(const stress_capture *capture, FILE *file, t3r_recorder *recorder)
 {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The frames of one case in memory, to be perturbed: the context views, then the target, as the image stage gives them
- * (RGB and Z16 of the working size, pinhole cameras). Recorded again, they give the scene that the recording itself
- * gives. */
+/* The frames of one case in memory, to be perturbed: the context views, then the target, from the image stage (RGB and
+ * Z16 of the working size, pinhole cameras). Recorded again, they give the same scene as the original recording. */
 #ifndef TRIM3R_TOOLS_STRESS_CAPTURE_H
 #define TRIM3R_TOOLS_STRESS_CAPTURE_H
 
@@ -25,19 +24,19 @@ typedef struct stress_capture {
     stress_view view[T3R_MAX_VIEWS + 1];
 } stress_capture;
 
-/* False without memory; stress_capture_free() is due in any case. Planes are zero, cameras all zero. */
+/* Returns false if out of memory; call stress_capture_free() in any case. Planes and cameras are zero. */
 bool stress_capture_open(stress_capture *capture, uint32_t width, uint32_t height, uint32_t views, double depth_unit);
-/* Reads the capture through the image stage. The working size comes from `settings`, else from the first context
+/* Reads the capture through the image stage. The working size comes from `settings`, otherwise from the first context
  * frame. Returns an exit status of cli.h; call stress_capture_free() in any case. */
 int stress_capture_read(stress_capture *capture, const evaluation_case *what, const reconstruction_options *settings);
-/* False without memory; stress_capture_free() is due in any case. */
+/* Returns false if out of memory; call stress_capture_free() in any case. */
 bool stress_capture_copy(stress_capture *copy, const stress_capture *capture);
 void stress_capture_free(stress_capture *capture);
 
-/* Context pixels with a depth. */
+/* Returns the number of context pixels with a depth. */
 uint32_t stress_capture_valid(const stress_capture *capture);
 
-/* Frame i is view i. *bytes (free()) must outlive the recording. NULL after a message. */
+/* Makes a recording in memory: frame i is view i. *bytes (free()) must outlive the recording. NULL after a message. */
 t3r_recording *stress_capture_recording(const stress_capture *capture, uint8_t **bytes);
 
 #endif

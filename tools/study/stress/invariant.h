@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Invariants of every scene, whatever the frames. */
+/* Invariants of every scene, for any frames. */
 #ifndef TRIM3R_TOOLS_STRESS_INVARIANT_H
 #define TRIM3R_TOOLS_STRESS_INVARIANT_H
 

@@ -21,7 +21,7 @@ typedef struct cell {
     double strength;
     stress_row *rows;
     uint8_t *renders;    /* of the scored pictures, one per row */
-    uint8_t *now, *last; /* of noisy captures: one per row, and one of all points */
+    uint8_t *now, *last; /* for flicker: one per row, and one of all points, of this and the previous capture */
     double change;       /* of all points, summed over pairs of captures */
     uint32_t changes;
     double all[2]; /* PSNR and SSIM of all points; NaN until measured */
@@ -40,8 +40,8 @@ static void set_status(stress_row *row, stress_status status, const char *reason
     }
 }
 
-/* Breaks an invariant if the arena suffices only for the unperturbed frames. Out of memory on the host ends the
- * test. */
+/* Counts a refusal as a broken invariant if the arena suffices only for the unperturbed frames. Returns an error if
+ * the host is out of memory. */
 static int refuse(const cell *it, stress_row *row, int code, const char *reason)
 {
     if (strcmp(reason, NO_MEMORY) == 0) {
@@ -51,7 +51,7 @@ static int refuse(const cell *it, stress_row *row, int code, const char *reason)
     return CLI_OK;
 }
 
-/* Mean over the mask and the channels. */
+/* Returns the mean over the mask and the channels. */
 static double mean_change(const uint8_t *a, const uint8_t *b, const uint8_t *mask, size_t pixels)
 {
     uint64_t sum = 0, count = 0;
@@ -64,8 +64,6 @@ static double mean_change(const uint8_t *a, const uint8_t *b, const uint8_t *mas
     return count == 0 ? NAN : (double)sum / (double)count;
 }
 
-/* ---- one scene -------------------------------------------------------------------------------------------------- */
-
 static void take_scores(stress_row *row, const evaluation_row *scores)
 {
     row->value[STRESS_PSNR] = scores->value[EVALUATION_PSNR];
@@ -77,7 +75,7 @@ static void take_scores(stress_row *row, const evaluation_row *scores)
     }
 }
 
-/* Builds, checks, and scores (capture 0) or only draws. */
+/* Builds and checks a row; scores it in capture 0, otherwise only draws it. */
 static int measure_row(const cell *it, stress_run *run, uint32_t keep, uint32_t index, uint32_t capture)
 {
     stress_row *row = &it->rows[index];
@@ -119,7 +117,7 @@ static int measure_row(const cell *it, stress_run *run, uint32_t keep, uint32_t 
     return code == CLI_OK ? CLI_OK : refuse(it, row, code, reason);
 }
 
-/* All points, as the rivals prune them; what is refused has no figures. */
+/* Measures all points, the rivals' input; a refusal leaves the figures empty. */
 static int measure_all_points(cell *it, stress_run *run, uint32_t capture)
 {
     reconstruction_options options = stress_run_options(run, it->c, it->contest, it->contest->keep_count);
@@ -141,8 +139,6 @@ static int measure_all_points(cell *it, stress_run *run, uint32_t capture)
     cli_keep_errors(NULL, 0);
     return code != CLI_OK && strcmp(reason, NO_MEMORY) == 0 ? code : CLI_OK;
 }
-
-/* ---- a capture -------------------------------------------------------------------------------------------------- */
 
 /* Adds the changes since the previous capture. */
 static void add_changes(cell *it, uint32_t capture)
@@ -190,8 +186,6 @@ static int measure_capture(cell *it, uint32_t capture)
     return code;
 }
 
-/* ---- a cell ----------------------------------------------------------------------------------------------------- */
-
 static void name_rows(const cell *it, uint32_t grade)
 {
     const stress_contest *contest = it->contest;
@@ -213,7 +207,7 @@ static void name_rows(const cell *it, uint32_t grade)
     }
 }
 
-/* Sums to means; the loss against all points; what was not measured has no figures. */
+/* Turns sums into means and computes losses against all points; unmeasured rows stay empty. */
 static void finish_rows(const cell *it)
 {
     for (uint32_t i = 0; i < stress_row_count(it->contest); i++) {
@@ -279,7 +273,7 @@ void stress_relate(stress_row *rows, const stress_row *unperturbed, uint32_t cou
         bool fewer = value[STRESS_GAUSSIANS] < base[STRESS_GAUSSIANS];
         if (ours && (value[STRESS_ARENA_BYTES] > base[STRESS_ARENA_BYTES] ||
                      (!fewer && value[STRESS_ARENA_BYTES] < base[STRESS_ARENA_BYTES]))) {
-            set_status(&rows[i], STRESS_BROKEN, "the arena is not what it was");
+            set_status(&rows[i], STRESS_BROKEN, "the arena's size has changed");
         }
     }
 }

@@ -5,9 +5,9 @@
 
 #include "study/stress/run.h"
 
-/* Fills `rows` (stress_row_count()), except values that need another cell, and `renders`, as many pictures. `p` may
- * be NULL. Losses are against all points of the same frames until stress_relate(). Returns an exit status of cli.h;
- * a refusal counts as a result. */
+/* Fills `rows` (stress_row_count()), except values that need another cell, and the same number of pictures in
+ * `renders`. `p` may be NULL. Losses are against all points of the same frames until stress_relate(). Returns an exit
+ * status of cli.h; a refusal counts as a result. */
 int stress_measure(stress_row *rows, uint8_t *renders, const stress_case *c, const stress_contest *contest,
                    const perturbation *p, uint32_t grade);
 

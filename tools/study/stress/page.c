@@ -41,7 +41,8 @@ static void *copy_of(const void *bytes, size_t count)
     return copy == NULL ? NULL : memcpy(copy, bytes, count);
 }
 
-/* 255 at the nearest measurement, less in inverse proportion; 0 where there is none. */
+/* Makes a grey picture of depth: 255 at the nearest measurement, falling in inverse proportion; 0 without measurement.
+ */
 static uint8_t *depth_picture(const stress_capture *capture, uint32_t view)
 {
     size_t pixels = (size_t)capture->width * capture->height;
@@ -97,8 +98,6 @@ bool stress_album_offer(stress_album *album, const stress_row *rows, const uint8
     return done;
 }
 
-/* ---- the page ---------------------------------------------------------------------------------------------------- */
-
 static int by_badness(const void *a, const void *b)
 {
     double x = badness(((const stress_picture *)a)->rows), y = badness(((const stress_picture *)b)->rows);
@@ -135,7 +134,7 @@ static void add_section(html_page *page, const stress_picture *picture, uint32_t
     snprintf(heading, sizeof heading, "%s %s (%s%s%s)", row->what, strength, row->scene,
              row->target[0] == '\0' ? "" : ": frame ", row->target);
     html_page_section(page, heading, picture->width, picture->height, picture->target);
-    html_page_strip(page, "What goes in, and the view to be met");
+    html_page_strip(page, "The input, and the target view");
     for (uint32_t v = 0; v < picture->views; v++) {
         snprintf(heading, sizeof heading, "context %c", (char)('a' + v));
         html_page_picture(page, heading, picture->width, picture->height, 3, picture->context[v], 0);
@@ -150,8 +149,6 @@ static void add_section(html_page *page, const stress_picture *picture, uint32_t
         add_renders(page, picture, picture->plain, true, count);
     }
 }
-
-/* ---- tables ------------------------------------------------------------------------------------------------------ */
 
 static void add_cells(html_page *page, const char *const *texts, uint32_t count)
 {
@@ -185,7 +182,7 @@ static void add_why(html_page *page, const stress_row *rows, uint32_t count)
     }
 }
 
-/* Writes what no picture shows: refused cells and broken invariants. */
+/* Writes the cells without a picture: refused ones and broken invariants. */
 static void add_unscored(html_page *page, const stress_row *rows, uint32_t count, uint32_t cell)
 {
     bool any = false;
@@ -202,7 +199,7 @@ static void add_unscored(html_page *page, const stress_row *rows, uint32_t count
     }
 }
 
-/* The columns of the table above the pictures. */
+/* Writes the table above the pictures. */
 static void add_table(html_page *page, const stress_row *rows, uint32_t count)
 {
     static const struct {

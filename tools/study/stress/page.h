@@ -12,7 +12,7 @@
 /* A measured cell with its pictures; for each perturbation the cell in which the first method lost most. */
 typedef struct stress_picture {
     stress_row *rows; /* stress_row_count() */
-    uint8_t *renders; /* as many as `rows` */
+    uint8_t *renders; /* one for each row */
     uint8_t *plain;   /* renders of the unperturbed cell; NULL for synthetic scenes */
     uint8_t *target;
     uint8_t *context[T3R_MAX_VIEWS]; /* perturbed */
@@ -25,12 +25,12 @@ typedef struct stress_album {
     uint32_t count;
 } stress_album;
 
-/* Keeps the cell if it is worse than the kept one of its perturbation. `plain`: renders of the unperturbed cell, or
+/* Keeps the cell if it is worse than the one kept for its perturbation. `plain`: renders of the unperturbed cell, or
  * NULL. False if out of memory. */
 bool stress_album_offer(stress_album *album, const stress_row *rows, const uint8_t *renders, const uint8_t *plain,
                         const stress_case *c, const stress_contest *contest, const perturbation *p);
-/* Writes the `worst` cells, the worst first, below the tables: what was refused or broke an invariant, and all rows.
- * Returns 0, or -1 if out of memory. */
+/* Writes the `worst` cells, the worst first, below the tables of all rows and of refused or broken ones. Returns 0, or
+ * -1 if out of memory. */
 int stress_album_write(stress_album *album, uint32_t worst, const stress_row *rows, uint32_t count,
                        const stress_contest *contest, FILE *out);
 void stress_album_free(stress_album *album);

@@ -8,8 +8,6 @@
 
 #define RADIANS 0.017453292519943295
 
-/* ---- pose ------------------------------------------------------------------------------------------------------- */
-
 static int by_size(const void *a, const void *b)
 {
     const uint16_t x = *(const uint16_t *)a, y = *(const uint16_t *)b;
@@ -48,7 +46,7 @@ static void direction(double d[3], uint32_t seed)
     }
 }
 
-/* q becomes r q */
+/* Replaces q by r q. */
 static void turn(double q[4], const double r[4])
 {
     const double p[4] = {q[0], q[1], q[2], q[3]};
@@ -61,7 +59,7 @@ static void turn(double q[4], const double r[4])
 bool perturb_pose(stress_capture *capture, double amount, uint32_t seed)
 {
     if (!(amount > 0)) {
-        return true; /* a turn by 0 could still round */
+        return true; /* even a turn by 0 could round */
     }
     double median = median_depth(capture);
     for (uint32_t v = 0; v < capture->views && median >= 0; v++) {
@@ -100,14 +98,12 @@ bool perturb_huge(stress_capture *capture, double exponent, uint32_t seed)
     return true;
 }
 
-/* ---- rolling shutter -------------------------------------------------------------------------------------------- */
-
 static double between(double a, double b, double share)
 {
     return a + (b - a) * share;
 }
 
-/* Bilinear, borders repeated. */
+/* Samples bilinearly, borders repeated. */
 static void sample_colour(const stress_capture *capture, const uint8_t *rgb, double x, double y, uint8_t out[3])
 {
     double right = capture->width - 1, bottom = capture->height - 1;
@@ -134,7 +130,7 @@ static uint16_t sample_depth(const stress_capture *capture, const uint16_t *dept
     return (uint16_t)(steps >= 65535 ? 65535 : floor(steps + 0.5));
 }
 
-/* Row y is seen by a camera that has turned by (y / (height - 1) - 1/2) `degrees` about its own y. */
+/* Samples row y as a camera sees it that has turned by (y / (height - 1) - 1/2) `degrees` about its own y. */
 static void roll(const stress_capture *capture, const stress_view *from, double degrees, uint8_t *rgb, uint16_t *depth)
 {
     const t3r_recorded_camera *c = &from->camera;
@@ -156,7 +152,7 @@ bool perturb_rolling(stress_capture *capture, double degrees, uint32_t seed)
 {
     (void)seed;
     if (!(degrees > 0)) {
-        return true; /* pixels would be sampled where they are, give or take a rounding */
+        return true; /* pixels would be sampled at their own places, up to rounding */
     }
     size_t pixels = (size_t)capture->width * capture->height;
     uint8_t *rgb = malloc(pixels * 3);

@@ -26,9 +26,7 @@ bool perturb_noise(stress_capture *capture, double levels, uint32_t seed)
     return true;
 }
 
-/* ---- blur ------------------------------------------------------------------------------------------------------- */
-
-/* `count` samples `step` apart, borders repeated. */
+/* Blurs `count` samples `step` apart, borders repeated. */
 static void blur_line(const double *weight, int reach, const double *from, double *to, int count, size_t step)
 {
     for (int i = 0; i < count; i++) {
@@ -88,9 +86,7 @@ bool perturb_blur(stress_capture *capture, double pixels, uint32_t seed)
     return done;
 }
 
-/* ---- gains ------------------------------------------------------------------------------------------------------ */
-
-/* stops[c] up in even views, down in odd ones */
+/* Applies stops[c], up in even views, down in odd ones. */
 static void gains(stress_capture *capture, const double stops[3])
 {
     size_t pixels = (size_t)capture->width * capture->height;

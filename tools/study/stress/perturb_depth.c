@@ -7,7 +7,7 @@
 #define LAST_STEP 65535
 #define MOST_DISCS 1000000u
 
-/* Converts a measured depth, which stays measured: at least one step. */
+/* Converts a measured depth to steps; it stays measured, so at least one step. */
 static uint16_t step_of(double x)
 {
     return (uint16_t)(x <= 1 ? 1 : x >= LAST_STEP ? LAST_STEP : floor(x + 0.5));
@@ -78,7 +78,7 @@ static size_t without(const stress_capture *capture, const uint16_t *depth)
     return count;
 }
 
-/* At least this percentage of the pixels with depth lose it; the last disc may take some more. */
+/* Removes depth in discs from at least this percentage of the pixels that have it; the last disc may exceed it. */
 bool perturb_blobs(stress_capture *capture, double percent, uint32_t seed)
 {
     size_t pixels = (size_t)capture->width * capture->height;

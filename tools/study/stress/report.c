@@ -91,7 +91,7 @@ static int finish(stress_report *report)
 int stress_report_close(stress_report *report, int code)
 {
     cli_progress_end();
-    const bool is_whole = code == CLI_OK; /* whatever the rows say */
+    const bool is_whole = code == CLI_OK; /* independent of the rows */
     if (code == CLI_OK) {
         code = finish(report);
     }

@@ -9,7 +9,7 @@
 #include "study/stress/page.h"
 
 typedef struct stress_outputs {
-    const char *csv, *page; /* paths; NULL = none */
+    const char *csv, *page; /* paths; NULL: none */
     bool json;
     uint32_t worst; /* cells on the page */
 } stress_outputs;
@@ -24,14 +24,14 @@ typedef struct stress_report {
     uint32_t row_count, row_total;
 } stress_report;
 
-/* These report on stderr and return an exit status of cli.h. Opening opens every output possible, so that a bad path
- * is reported before the work; call stress_report_close() in any case. */
+/* Opens every output that can be opened, so that a bad path is reported before the work. Like the next two, reports on
+ * stderr and returns an exit status of cli.h; call stress_report_close() in any case. */
 int stress_report_open(stress_report *report, const stress_outputs *to, const stress_contest *contest, uint32_t cells);
-/* The rows of a cell, with pictures as stress_album_offer() takes them. */
+/* Adds the rows of a cell, with pictures as in stress_album_offer(). */
 int stress_report_cell(stress_report *report, const stress_row *rows, const uint8_t *renders, const uint8_t *plain,
                        const stress_case *c, const perturbation *p);
-/* Tables, verdict, JSON and page when `code` is CLI_OK. `code`, or what went wrong here; CLI_BAD_INPUT where an
- * invariant is broken. */
+/* Writes tables, verdict, JSON and page when `code` is CLI_OK. Returns `code`, an error of its own, or CLI_BAD_INPUT
+ * if an invariant is broken. */
 int stress_report_close(stress_report *report, int code);
 
 #endif

@@ -11,27 +11,27 @@
 
 typedef enum stress_status {
     STRESS_MEASURED,
-    STRESS_REFUSED, /* an error with a reason, as expected where the frames are unusable */
+    STRESS_REFUSED, /* refused with a reason, as expected for unusable frames */
     STRESS_BROKEN   /* an invariant is broken; the reason names it */
 } stress_status;
 
-/* NaN = does not apply. */
+/* Values of a row; NaN: does not apply. */
 typedef enum stress_value {
-    STRESS_BUDGET,    /* the budget requested: the budget for the unperturbed frames */
+    STRESS_BUDGET,    /* requested budget, the one for the unperturbed frames */
     STRESS_GAUSSIANS, /* count used */
-    STRESS_PSNR,      /* of the target on the mask of the unperturbed frames, dB */
+    STRESS_PSNR,      /* of the target, on the mask of the unperturbed frames, dB */
     STRESS_SSIM,
-    STRESS_HOLES,         /* share of the mask with transmittance above 1/2 */
-    STRESS_PERCEPTUAL,    /* FLIP on the mask */
-    STRESS_PSNR_UNPRUNED, /* with all points of the same frames, dB */
-    STRESS_PSNR_LOST,     /* against the unperturbed row of the method, dB; of a synthetic scene against all points */
-    STRESS_SSIM_LOST,     /* likewise */
-    STRESS_FLICKER,       /* mean change on the mask between noisy captures of the still scene, 8-bit levels */
-    STRESS_FLICKER_UNPRUNED, /* the same of all points */
+    STRESS_HOLES,            /* share of the mask with transmittance above 1/2 */
+    STRESS_PERCEPTUAL,       /* FLIP on the mask */
+    STRESS_PSNR_UNPRUNED,    /* PSNR with all points of the same frames, dB */
+    STRESS_PSNR_LOST,        /* against the method's unperturbed row, dB; for a synthetic scene against all points */
+    STRESS_SSIM_LOST,        /* likewise */
+    STRESS_FLICKER,          /* mean change on the mask between noisy captures of the still scene, 8-bit levels */
+    STRESS_FLICKER_UNPRUNED, /* the same with all points */
     STRESS_MASK_CHANGED,     /* unperturbed rows: share of the retained pixels that the next capture does not retain */
     STRESS_MOTION,   /* unperturbed rows: median motion of the Gaussians retained in both captures, as a share of their
                 spacing */
-    STRESS_BUILD_MS, /* the least of the captures */
+    STRESS_BUILD_MS, /* least of the captures */
     STRESS_BUILD_RATIO, /* against the unperturbed row */
     STRESS_ARENA_BYTES,
     STRESS_VALUE_COUNT

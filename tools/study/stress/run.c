@@ -38,8 +38,7 @@ void stress_case_close(stress_case *c)
     evaluation_views_free(&c->views);
 }
 
-/* Applies the changes of capture `index`: those of the perturbation, with the same or a new draw, and a sensor's
- * noise. */
+/* Applies the changes of capture `index`: the perturbation, with the same or a new draw, and a sensor's noise. */
 static bool change(stress_capture *capture, const stress_contest *contest, const perturbation *p, double strength,
                    uint32_t index)
 {
@@ -58,7 +57,7 @@ int stress_run_open(stress_run *run, const stress_case *c, const stress_contest 
                     double strength, uint32_t capture)
 {
     *run = (stress_run){.views = c->views};
-    run->views.context_count = 0; /* context_psnr is not asked for */
+    run->views.context_count = 0; /* context_psnr is not needed */
     run->views.source = (method_source){0};
     if (!stress_capture_copy(&run->capture, &c->base) || !change(&run->capture, contest, p, strength, capture)) {
         return cli_error(CLI_BAD_INPUT, "out of memory");

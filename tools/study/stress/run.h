@@ -11,14 +11,14 @@
 
 #define STRESS_KEEPS_MOST 16u
 
-/* The contestants, and how often a still scene is captured. */
+/* The contestants, and the number of captures of a still scene. */
 typedef struct stress_contest {
     reconstruction_options settings;
     const method *methods[METHOD_COUNT];
     uint32_t method_count;
     double keep[STRESS_KEEPS_MOST];
     uint32_t keep_count;
-    uint32_t captures; /* noisy ones; 0 = no flicker, no stability */
+    uint32_t captures; /* noisy captures; 0: measure no flicker and no stability */
     uint32_t seed;
 } stress_contest;
 
@@ -31,7 +31,7 @@ static inline uint32_t stress_row_count(const stress_contest *contest)
 typedef struct stress_case {
     const char *name, *context, *target; /* names for the tables */
     stress_capture base;
-    evaluation_views views; /* of the unperturbed frames: target, masks */
+    evaluation_views views; /* target and masks, from the unperturbed frames */
     uint32_t budget[STRESS_KEEPS_MOST];
 } stress_case;
 
@@ -39,24 +39,24 @@ typedef struct stress_case {
 int stress_case_open(stress_case *c, const stress_contest *contest);
 void stress_case_close(stress_case *c);
 
-/* One capture of a case, perturbed, recorded anew, and ready to build from. */
+/* One capture of a case, perturbed, recorded again, and ready to build from. */
 typedef struct stress_run {
     stress_capture capture;
     uint8_t *bytes;
     t3r_recording *recording;
     evaluation_case what;
-    evaluation_views views; /* target and masks are the case's; source of its own */
+    evaluation_views views; /* target and masks of the case; its own source */
 } stress_run;
 
-/* Capture 0 is what is scored; later ones carry the noise of a still scene as well. `p` may be NULL. CLI_OK, or with a
- * message an exit status of cli.h; stress_run_close() is due in any case. */
+/* Opens a capture. Capture 0 is scored; later ones also carry the noise of a still scene. `p` may be NULL. Returns an
+ * exit status of cli.h, after a message; call stress_run_close() in any case. */
 int stress_run_open(stress_run *run, const stress_case *c, const stress_contest *contest, const perturbation *p,
                     double strength, uint32_t capture);
 void stress_run_close(stress_run *run);
-/* The settings of a build of the run at the budget of `keep` (an index; keep_count = all points). */
+/* Returns the settings of a build of the run at budget number `keep`; keep_count: all points. */
 reconstruction_options stress_run_options(const stress_run *run, const stress_case *c, const stress_contest *contest,
                                           uint32_t keep);
-/* Builds the run's scene by the options' method: *built, to be closed. An exit status of cli.h. */
+/* Builds the run's scene by the options' method; close *built. Returns an exit status of cli.h. */
 int stress_run_build(stress_run *run, const reconstruction_options *options, reconstruction *built,
                      reconstruction_account *account);
 

@@ -19,7 +19,7 @@ typedef struct stress_hit {
     double rgb[3]; /* 0..255 */
 } stress_hit;
 
-/* `pixel`: the size of a pixel one metre away, in metres; `strength`: the scene's own. */
+/* Traces a ray. `pixel`: the size of a pixel one metre away, in metres; `strength`: the scene's own. */
 typedef stress_hit stress_trace(double x, double y, double dx, double dy, double pixel, double strength);
 
 typedef struct stress_scene {
@@ -29,9 +29,9 @@ typedef struct stress_scene {
     stress_trace *trace;
 } stress_scene;
 
-/* Stable order; NULL past the last. */
+/* Returns scene number `index`, in a stable order; NULL past the last. */
 const stress_scene *stress_scene_at(uint32_t index);
-/* False without memory; stress_capture_free() is due in any case. */
+/* Draws the scene. False if out of memory; call stress_capture_free() in any case. */
 bool stress_scene_draw(stress_capture *capture, const stress_scene *scene, double strength, uint32_t width,
                        uint32_t height);
 

@@ -11,8 +11,6 @@
 #define LEAVES_FAR 2.4
 #define BACKDROP 3.0
 
-/* ---- colours ---------------------------------------------------------------------------------------------------- */
-
 /* [0, 1) of the whole-numbered corner (x, y) */
 static double corner(double x, double y, uint32_t seed)
 {
@@ -57,9 +55,7 @@ static stress_hit paper(double x, double y, double dx, double dy, double z)
     return hit;
 }
 
-/* ---- scenes ----------------------------------------------------------------------------------------------------- */
-
-/* Squares of `side` pixels on a plane two metres away that leans by one in five. */
+/* Draws squares of `side` pixels on a plane two metres away that leans by one in five. */
 stress_hit stress_plane(double x, double y, double dx, double dy, double pixel, double side)
 {
     stress_hit hit = {.depth = (2 + 0.2 * x) / (1 - 0.2 * dx)};
@@ -83,7 +79,7 @@ stress_hit stress_wall(double x, double y, double dx, double dy, double pixel, d
     return hit;
 }
 
-/* Upright bars 1.5 metres away, one width in four, before a papered wall. */
+/* Draws upright bars 1.5 metres away, covering a quarter of the width, before a papered wall. */
 stress_hit stress_bars(double x, double y, double dx, double dy, double pixel, double width)
 {
     double at_x = x + dx * 1.5, period = 4 * width * pixel * 1.5, bar = floor(at_x / period);
@@ -97,7 +93,7 @@ stress_hit stress_bars(double x, double y, double dx, double dy, double pixel, d
     return hit;
 }
 
-/* The leaf of a layer's cell that covers (x, y), in lengths of a leaf; one leaf a cell of 1.5 x 1.5. */
+/* Finds the leaf of a layer's cell that covers (x, y), in lengths of a leaf; one leaf per cell of 1.5 x 1.5. */
 static bool leaf(stress_hit *hit, double x, double y, double column, double row, uint32_t layer)
 {
     uint32_t seed = stress_random(stress_random(100 + layer, (uint32_t)(int32_t)column), (uint32_t)(int32_t)row);

@@ -13,7 +13,7 @@
 #include "study/rivals/rival.h"
 
 #define NOBODY UINT32_MAX
-/* Median of the difference of two normal numbers, in their deviation: 0.6745 sqrt(2) */
+/* Median of the absolute difference of two normal numbers, in their deviation: 0.6745 sqrt(2) */
 #define MEDIAN_DIFFERENCE 0.9539
 
 /* A scene indexed by the pixels of its Gaussians. */
@@ -32,8 +32,8 @@ static void snapshot_free(snapshot *s)
     *s = (snapshot){0};
 }
 
-/* Gaussians stand in the order of views and rows. kept: of all that the runtime retained the indices that stay, in
- * rising order; NULL = all. */
+/* Assigns pixels to Gaussians, which are in the order of views and rows. kept: ascending indices of the retained
+ * Gaussians to assign; NULL: all. */
 static void fill_owners(snapshot *s, const t3r_runtime *rt, const uint32_t *kept)
 {
     t3r_view views[T3R_MAX_VIEWS];
@@ -55,7 +55,7 @@ static void fill_owners(snapshot *s, const t3r_runtime *rt, const uint32_t *kept
     }
 }
 
-/* Pixels between retained ones. */
+/* Returns the mean distance between retained pixels, in pixels. */
 static double spacing_of(const stress_capture *capture, double gaussians)
 {
     return sqrt((double)capture->width * capture->height * capture->views / fmax(gaussians, 1));
@@ -132,7 +132,7 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Adds the share of a's pixels that b does not retain, and the median way of the others. False without memory. */
+/* Adds the share of a's pixels that b does not retain, and the median motion of the others. False if out of memory. */
 static bool compare(stress_row *row, const snapshot *a, const snapshot *b, size_t pixels)
 {
     uint32_t stay = 0;
@@ -203,7 +203,7 @@ static int add_capture(stress_row *rows, snapshot *last, const stress_case *c, c
             continue;
         }
         reconstruction_options options = stress_run_options(&run, c, contest, i / contest->method_count);
-        options.config.keep_analysis = true; /* the masks outlive the build */
+        options.config.keep_analysis = true; /* the masks must outlive the build */
         options.method = rows[i].method;
         snapshot now = {0};
         code = take(&now, &rows[i], c, &run, &options);

@@ -93,8 +93,6 @@ cJSON *stress_json(const stress_row *row)
     return object;
 }
 
-/* ---- means ------------------------------------------------------------------------------------------------------ */
-
 static bool same_cell(const stress_row *a, const stress_row *b)
 {
     return strcmp(a->what, b->what) == 0 && a->grade == b->grade;
@@ -123,9 +121,7 @@ double stress_mean(const stress_row *rows, uint32_t count, const stress_row *lik
     return summed == 0 ? NAN : sum / summed;
 }
 
-/* ---- terminal --------------------------------------------------------------------------------------------------- */
-
-/* What a line shows; the unperturbed line of a loss shows the reference value. */
+/* Columns of a line; the unperturbed line of a loss shows the reference value. */
 static const struct {
     const char *heading;
     stress_value value, unperturbed;

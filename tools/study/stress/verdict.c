@@ -10,8 +10,8 @@
 
 #define MIDDLE_GRADE 2u
 #define FLICKER_MOST 1.2 /* relative to all points: a goal, not a guarantee */
-#define LEVEL 0.01       /* dB: no difference */
-#define SLOWER_THAN 1.5  /* times the unperturbed build: worth a line */
+#define LEVEL 0.01       /* dB: below this, no difference */
+#define SLOWER_THAN 1.5  /* times the unperturbed build: slower ones get a line */
 
 uint32_t stress_broken(const stress_row *rows, uint32_t count)
 {
@@ -44,7 +44,7 @@ static void print_invariants(FILE *out, const stress_row *rows, uint32_t count)
     fprintf(
         out, "%u rows: %u measured, %u refused with a reason, %u with a broken invariant (budget, arena, range%s)\n",
         (unsigned)count, (unsigned)(count - refused - broken), (unsigned)refused, (unsigned)broken, ", still scene");
-    /* each reason once a perturbation and strength */
+    /* prints each reason once per perturbation and strength */
     for (uint32_t i = 0; i < count; i++) {
         bool reported = rows[i].status != STRESS_REFUSED;
         for (uint32_t earlier = 0; earlier < i && !reported; earlier++) {
@@ -97,7 +97,7 @@ static void print_stability(FILE *out, const stress_row *rows, uint32_t count, c
     }
 }
 
-/* Ours against all points of the same frames. */
+/* Prints our flicker relative to all points of the same frames. */
 static void print_flicker(FILE *out, const stress_row *rows, uint32_t count, double keep)
 {
     const stress_row *worst = NULL;
@@ -128,7 +128,7 @@ static void print_flicker(FILE *out, const stress_row *rows, uint32_t count, dou
 
 static const char *const judged[] = {"noise", "exposure", "depth-lattice", "depth-blobs", "depth-all", "pose"};
 
-/* The rival that loses least, and how much; NULL where there is none. */
+/* Returns the rival that loses least, and its loss; NULL if there is none. */
 static const method *least_loss(const stress_row *rows, uint32_t count, const stress_contest *contest, stress_row like,
                                 double *least)
 {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The curves of a run as a picture."""
+"""Draws the curves of a run."""
 import matplotlib
 import numpy as np
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Gaussian head as torch trains it: the layers of runtime/head/weights.h, in float or rounded as quant rounds."""
+"""The Gaussian head in torch: the layers of runtime/head/weights.h, in float or rounded like quant's."""
 import json
 import math
 import struct
@@ -21,7 +21,7 @@ def _conv(level, sources, inputs, outputs, kernel, stride=1):
 
 
 def _depthwise(level, sources, channels, kernel, stride=1):
-    """Without a nonlinearity: the convolution of kernel 1 behind it completes it."""
+    """Has no nonlinearity: the convolution of kernel 1 that follows completes it."""
     return dict(kind="depthwise", level=level, sources=sources, inputs=channels, outputs=channels, kernel=kernel, stride=stride,
                 phases=1, relu=False)  # fmt: skip
 
@@ -32,7 +32,7 @@ def _point(sources, inputs, outputs, phases=1, relu=True):
 
 
 def u_net(half, quarter, eighth, hidden):
-    """Three levels below the picture's own, and two layers at the retained points alone."""
+    """Three levels below the picture's own, and two layers at the retained points only."""
     return [
         _conv(1, [0], FEATURES, half, 4, 2),
         _conv(1, [1], half, half, 3),
@@ -50,7 +50,7 @@ def u_net(half, quarter, eighth, hidden):
 
 
 def small_u_net(channels, hidden):
-    """The same levels with a layer or two each, for microcontrollers."""
+    """The same levels with one or two layers each, for microcontrollers."""
     return [
         _depthwise(1, [0], FEATURES, 4, 2),
         _conv(1, [1], FEATURES, channels, 1),
@@ -68,7 +68,7 @@ HEADS = {"tiny": small_u_net(8, 8), "small": u_net(20, 28, 20, 20)}
 
 
 def multiply_accumulates(layers, kept=1.0):
-    """A pixel, with this share of the pixels retained."""
+    """Returns the multiply-accumulates per pixel, with this share of the pixels retained."""
     total = 0.0
     for layer in layers:
         area = layer["kernel"] ** 2 * layer["outputs"] * (1 if layer["kind"] == "depthwise" else layer["inputs"])
@@ -112,7 +112,7 @@ class Head(nn.Module):
             self.bias[-1][:] = torch.tensor(START)
 
     def _step(self, n):
-        """What one activation step of source n means, by channel."""
+        """Returns the size of one activation step of source n, by channel."""
         if n == 0:
             return torch.full((FEATURES,), FEATURE_STEP, device=self.range1.device)
         levels = 255 if self.layers[n - 1]["relu"] else 127
@@ -194,8 +194,9 @@ class Head(nn.Module):
 
 
 def widened(head, layers, seed=0):
-    """A head of the same graph with at least as many channels everywhere, which at first does what `head` does: added
-    channels start at random, what reads them at 0 (Chen et al. 2016, "Net2Net")."""
+    """Returns a head of the same graph with at least as many channels everywhere, which at first computes the same
+    as `head`: weights of added channels start at random, weights that read them at 0 (Chen et al. 2016,
+    "Net2Net")."""
     made = Head(layers, seed)
     width = [FEATURES] + [layer["outputs"] for layer in head.layers]
     wide = [FEATURES] + [layer["outputs"] for layer in layers]
@@ -224,7 +225,7 @@ def widened(head, layers, seed=0):
 
 
 def save_safetensors(head, path, name):
-    """The head for `trim3r quantize`: quant/README.md tells the tensors and the metadata."""
+    """Writes the head for `trim3r quantize`; quant/README.md describes the tensors and the metadata."""
     tensors = {}
     for n, _ in enumerate(head.layers, 1):
         tensors[f"layer{n}.weight"] = head.weight[n - 1]
@@ -245,7 +246,7 @@ def save_safetensors(head, path, name):
 
 
 def load_safetensors(path):
-    """The head a .safetensors file holds, and its name."""
+    """Returns the head in a .safetensors file, and its name."""
     with open(path, "rb") as file:
         raw = file.read()
     (size,) = struct.unpack("<Q", raw[:8])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""C behind the training: compiled when first asked for, into $TRIM3R_BUILD, else into ~/.cache/trim3r."""
+"""C code of the training: compiled on first use into $TRIM3R_BUILD, otherwise into ~/.cache/trim3r."""
 import ctypes
 import glob
 import hashlib
@@ -13,7 +13,7 @@ HEADS = os.path.join(HERE, "..", "..", "..", "quant", "heads")
 
 
 def build(name, sources, flags, headers=(), folder=None):
-    """The path of the shared library made of `sources`; compiled only where sources, flags or machine changed."""
+    """Returns the path of the shared library made of `sources`; compiles only if sources, flags or machine changed."""
     folder = folder or os.environ.get("TRIM3R_BUILD") or os.path.expanduser("~/.cache/trim3r")
     command = [os.environ.get("CC", "cc"), *flags, "-shared", "-fPIC"]
     digest = hashlib.sha256(" ".join(command + [os.uname().nodename]).encode())
@@ -50,7 +50,7 @@ INCLUDES = ["-I" + folder for folder in (RUNTIME, os.path.join(RUNTIME, "include
 
 
 def splatter(*more):
-    """splat.c: the differentiable splatter and the refinement. more: compiler flags."""
+    """Loads splat.c: the differentiable splatter and the refinement. more: compiler flags."""
     flags = ("-std=gnu11", "-O3", "-march=native", "-ffast-math", "-fno-finite-math-only", "-fopenmp", *INCLUDES, *more)
     library = ctypes.CDLL(build("splat", [os.path.join(HERE, "splat.c"), *rivals("splat_*")], flags, RIVAL_HEADERS))
     pointer, number = ctypes.c_void_p, ctypes.c_int32
@@ -61,7 +61,7 @@ def splatter(*more):
 
 
 def preparer():
-    """prepare.c, the runtime that it calls, and what rivals rank with."""
+    """Loads prepare.c, the runtime that it calls, and the rivals' ranking."""
     sources = [os.path.join(HERE, name) for name in ("prepare.c", "prepare_rival.c")] + rivals("choose", "score*", "splat_*")
     sources += here("quant", "heads", "small.c") + here("runtime", "**", "*.c")
     headers = RIVAL_HEADERS + here("runtime", "**", "*.h") + here("tools", "study", "train", "prepare_rival.h")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Imported first: ends with status 77, saying what is missing, where a package of the training is not there."""
+"""Import this first: it ends with status 77 and names the package if one of the training is missing."""
 import importlib.util
 import sys
 

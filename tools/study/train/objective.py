@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a step minimizes: pictures drawn from a head's splats, plain and refined, in their own and in a third view."""
+"""The loss of a step: pictures drawn from a head's splats, plain and refined, in their own and in a third view."""
 import numpy as np
 import torch
 
@@ -8,7 +8,7 @@ import perceptual
 import samples
 import splatting
 
-FLOOR = 1e-5  # of the MSE: 50 dB are enough
+FLOOR = 1e-5  # added to the MSE: errors below 50 dB count little
 REFINEMENTS = 2
 
 
@@ -17,7 +17,8 @@ def as_tensor(image):
 
 
 def neighbours(picture, counts):
-    """A splat a pixel of its own colour wherever `counts` is 0: what another view's splats show there. [n, 9]"""
+    """Returns a splat of the pixel's own colour wherever `counts` is 0, in place of another view's splats there. [n,
+    9]"""
     y, x = (torch.from_numpy(i) for i in np.nonzero(counts == 0))
     variance, none = torch.full((len(x),), 0.36), torch.zeros(len(x))
     centres = torch.stack((x, y), 1).float()
@@ -25,8 +26,8 @@ def neighbours(picture, counts):
 
 
 class Batch:
-    """Prepared pictures as the network and the splatter take them. `covered`, a flag a picture: another view covers
-    what has no depth here, so that splats must end where it begins."""
+    """Prepared pictures as inputs of the network and the splatter. `covered`, a flag per picture: another view
+    covers the area without depth, so that splats must end at its border."""
 
     def __init__(self, prepared, device, covered=None):
         self.prepared = prepared
@@ -46,13 +47,13 @@ class Batch:
             self.around.append(neighbours(self.pictures[b], self.counts[b] if flag else np.ones((1, 1), np.uint8)))
             if flag:
                 self.counts[b] = 1
-        # a splat reaches a pixel beyond its depth
+        # a splat reaches one pixel beyond its depth
         self.weight = torch.nn.functional.max_pool2d(torch.from_numpy(self.counts).float()[:, None], 3, 1, 1)
         b, y, x = self.index
         self.own_colour = self.pictures[b, :, y, x]
 
     def with_neighbours(self, splats):
-        """The splats of each picture followed by those around them, and where each picture's begin."""
+        """Appends the surrounding splats to those of each picture; returns all, and where each picture's begin."""
         parts, start = [], [0]
         for b, around in enumerate(self.around):
             parts += [splats[self.start[b] : self.start[b + 1]], around]
@@ -65,7 +66,7 @@ class Batch:
 
 
 def drawing_order(rng, start):
-    """Another order at every step: a head shall not lean on one."""
+    """Returns another order at every step, so that a head does not adapt to one."""
     return splatting.order_by(rng.random(start[-1]), start)
 
 
@@ -82,15 +83,15 @@ def decibels(mse):
 
 
 def planar_loss(head, batch, rng, term, device):
-    """Loss of plain and refined pictures in their own view; PSNR of both."""
+    """Returns the loss of plain and refined pictures in their own view, and the PSNR of both."""
     footprints = batch.footprints(head, device)
     splats, begins = batch.with_neighbours(splatting.planar_splats(*footprints, batch.pixel))
     order = drawing_order(rng, begins)
-    half = (len(batch.prepared) + 1) // 2  # the others are drawn as they are: refining costs as much as the rest
+    half = (len(batch.prepared) + 1) // 2  # the others are not refined: refining takes as long as everything else
     start, some = begins[: half + 1], slice(0, begins[half])
     first, pictures = splats[some], batch.pictures[:half]
-    # Without momentum, which overshoots an even error: corrections count as constants, so a head would be told the
-    # overshoot alone, and that is the wrong sign.
+    # Without momentum, which overshoots an even error: corrections count as constants, so a head would see only the
+    # overshoot, which has the wrong sign.
     corrected = splatting.refine(first, start, order[some], pictures, batch.counts[:half], REFINEMENTS, momentum=False)
     refined = first + (corrected - first).detach()
     loss, seen = 0, []
@@ -106,7 +107,7 @@ def planar_loss(head, batch, rng, term, device):
 
 
 def novel_loss(head, context, target, term, device):
-    """Loss of a third view of the two context views' splats, over what either shows of it."""
+    """Returns the loss of a third view drawn from the two context views' splats, over the surface that either shows."""
     splats, depths = [], []
     for prepared, view in context:
         batch = Batch([prepared], device)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Perceptual terms of the training loss: LPIPS where trunk weights are given, else a stand-in."""
+"""Perceptual terms of the training loss: LPIPS if trunk weights are given, otherwise a substitute."""
 import torch
 import torch.nn.functional as F
 from torch import nn
@@ -8,8 +8,8 @@ LAMBDA = 0.001  # GaussianTrim3R eq. 3
 
 
 class StandIn(nn.Module):
-    """Squared differences of gradients over four octaves, each octave by its own contrast: what blur and displaced
-    edges cost more than level errors do. About 1 between unlike pictures."""
+    """Squared differences of gradients over four octaves, each normalised by its contrast: blur and displaced edges
+    weigh more than level errors. About 1 between unlike pictures."""
 
     def forward(self, a, b):
         """a, b: [n, 3, h, w] in 0..1; [n]."""

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The runtime's own analysis, budget and head features, so that a head is trained on what it will see. */
+/* The runtime's own analysis, budget and head features, so that a head is trained on its actual inputs. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,8 +15,8 @@
 
 typedef struct prepare_settings {
     uint32_t gaussians, allocate, gamma_q8, clusters, cluster_batches, seed;
-    uint32_t rival; /* a method_kind: retains the points that it keeps of the scene that the shipped `small` makes of
-                       all points; METHOD_TRIM3R: by the allocation */
+    uint32_t rival; /* a method_kind: retains the points whose Gaussians the rival keeps of the scene that the shipped
+                       `small` makes of all points; METHOD_TRIM3R: retains by the allocation */
 } prepare_settings;
 
 /* Context views, one after the other. */
@@ -28,10 +28,10 @@ typedef struct prepare_views {
     const double *poses;      /* [count][7]: camera to world, unit quaternion w x y z, centre in metres */
 } prepare_views;
 
-/* The description of a retained point. Lengths are in metres, axes are those of the point's camera. */
+/* A retained point. Lengths are in metres, axes are those of the point's camera. */
 typedef struct prepared_point {
     float x, y;                       /* pixel */
-    float spacing;                    /* of retained points around it, pixels */
+    float spacing;                    /* mean distance of the retained points around it, pixels */
     float position[3];                /* on the surface */
     float tangent_u[3], tangent_v[3]; /* tangents of the surface, metres a pixel */
 } prepared_point;
@@ -98,8 +98,8 @@ static t3r_config config_of(const prepare_views *views, const prepare_settings *
     uint32_t gaussians = rival ? measured_points(views) : settings->gaussians;
     t3r_config config = t3r_default_config(views->width, views->height, views->count, gaussians);
     config.keep_analysis = 1;
-    config.exposure = 0; /* the training's pictures are as they were taken */
-    if (rival) {         /* as `trim3r eval` makes the scene that rivals rank */
+    config.exposure = 0; /* the training's pictures keep their exposure */
+    if (rival) {         /* the settings with which `trim3r eval` makes the scene that rivals rank */
         config.head = T3R_HEAD_LEARNED;
         return config;
     }
@@ -108,7 +108,7 @@ static t3r_config config_of(const prepare_views *views, const prepare_settings *
     config.clusters = settings->clusters;
     config.cluster_batches = settings->cluster_batches;
     config.seed = settings->seed;
-    config.refine = 0; /* the scene itself is not read */
+    config.refine = 0; /* the scene itself is not used */
     return config;
 }
 
@@ -188,9 +188,9 @@ static t3r_status analyse(preparation *p, const prepare_views *views, const prep
     return status == T3R_OK && settings->rival != METHOD_TRIM3R ? retain_for(p, views, settings) : status;
 }
 
-/* Takes pictures through the runtime together. Results, view after view: `features` [height][width][T3R_FEATURES];
- * `confidence` [height][width]; `points` of all views without gaps, in raster order, counts[views] of each. Returns
- * 0, or the runtime's negative t3r_status. */
+/* Prepares pictures together through the runtime. Results, view after view: `features` [height][width][T3R_FEATURES];
+ * `confidence` [height][width]; `points` of all views without gaps, in raster order, counts[views] of each. Returns 0,
+ * or the runtime's negative t3r_status. */
 int32_t prepare(const prepare_views *views, const prepare_settings *settings, int8_t *features, uint8_t *confidence,
                 prepared_point *points, uint32_t *counts)
 {

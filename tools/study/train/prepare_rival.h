@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which points a rival keeps, by the code that `trim3r eval` runs its +head methods with. */
+/* Chooses the points that a rival keeps, by the code of `trim3r eval`'s +head methods. */
 #ifndef TRIM3R_TRAIN_PREPARE_RIVAL_H
 #define TRIM3R_TRAIN_PREPARE_RIVAL_H
 

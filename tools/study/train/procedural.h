@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures made up by a generator, with their depth: training data without end and without a source to ask.
+/* Generated pictures with depth: unlimited training data without a licence to ask for.
  *
  * Dead leaves (Lee, Mumford & Huang 2001): objects with sizes by the power law r^-3 that hide each other, which gives
  * the spectrum, the edges and the gradient statistics of natural pictures. Rooms: boxes and round bodies with the same
  * materials, seen by posed cameras. Both end in the same camera: optics, exposure, tone curve, sensor noise.
  *
  * Everything follows from a 64-bit seed through integer arithmetic and IEEE single floats without contraction; machines
- * differ only by what their libm rounds otherwise. Colours are linear light, red green blue, 1 = white paper in the
+ * differ only where their libm rounds differently. Colours are linear light, red green blue, 1 = white paper in the
  * scene's full light. Pixel (0, 0) is the centre of the top-left pixel; cameras look along +z, x right, y down. */
 #ifndef TRIM3R_TRAIN_PROCEDURAL_H
 #define TRIM3R_TRAIN_PROCEDURAL_H
@@ -152,23 +152,24 @@ typedef struct {
     float offset[2];
 } material;
 
-/* The colours of a place: how often each family occurs, and its light */
+/* The palette of a place: how often each family of colours occurs, and its light */
 typedef struct {
     float weight[16];
     float light[3];
 } palette;
 
-/* false: no memory */
+/* Fills the atlas; false if out of memory */
 bool atlas_fill(atlas *shared, uint64_t seed);
 /* Returns a tile's value at (u, v) in turns of the tile, filtered for `footprint` turns a pixel */
 float tile_at(const atlas *shared, tile_kind tile, float u, float v, float footprint);
-/* The glyph's signed distance at (x, y) in 0..1, in glyph heights, positive inside */
+/* Returns the glyph's signed distance at (x, y) in 0..1, in glyph heights, positive inside */
 float glyph_at(const atlas *shared, uint32_t glyph, float x, float y);
 void palette_draw(palette *made, generator *g);
 void palette_colour(const palette *from, generator *g, float rgb[3]);
-/* `size`: the extent of the thing in u's unit; `texture`: 0 plain .. 1 busy */
+/* Draws a material. `size`: the object's extent in u's unit; `texture`: 0 plain .. 1 busy */
 void material_draw(material *made, const palette *from, generator *g, float size, float texture);
-/* The same for what fills the view: walls, floors, large things. Their colours are calm as people paint them. */
+/* Draws a material for surfaces that fill the view: walls, floors, large objects. Their colours are muted, like paint.
+ */
 void material_draw_calm(material *made, const palette *from, generator *g, float size, float texture);
 void material_at(const atlas *shared, const material *m, float u, float v, float footprint, float rgb[3]);
 
@@ -188,8 +189,8 @@ typedef struct {
 } camera_look;
 
 void look_draw(camera_look *made, generator *g);
-/* Gain that brings the picture's geometric mean to `key` of full scale, lowered by up to 0.7 stops where
- * over 2 % would clip */
+/* Returns the gain that brings the picture's geometric mean to `key` of full scale, lowered by up to 0.7 stops if over
+ * 2 % would clip */
 float look_exposure(const float *linear, int width, int height, float key);
 /* linear: [height][width][3], overwritten; scratch: as large; image: [height][width][3] */
 void develop(const camera_look *look, generator *noise, int width, int height, float *linear, float *scratch,
@@ -207,16 +208,16 @@ typedef struct {
 /* Finds each owner that a pixel sees; `owner` has SUBSAMPLES^2 entries a pixel. Returns their number */
 int pixel_owners(const uint16_t *owner, int width, int x, int y, seen found[SUBSAMPLES * SUBSAMPLES]);
 
-/* ---- what Python calls ------------------------------------------------------------------------------------------ */
+/* ---- the interface for Python ----------------------------------------------------------------------------------- */
 
-/* NULL without memory. Free with free(). */
+/* Returns an atlas, to be freed by free(); NULL if out of memory. */
 atlas *procedural_atlas(void);
-/* image: [height][width][3]; depth: [height][width] metres along the axis. 0, or -1 without memory or for a side
- * outside 16..2048. */
+/* Draws dead leaves. image: [height][width][3]; depth: [height][width] metres along the axis. Returns 0, or -1 if out
+ * of memory or for a side outside 16..2048. */
 int procedural_leaves(const atlas *shared, uint64_t seed, int width, int height, uint8_t *image, float *depth);
-/* images: [views][height][width][3]; depths: [views][height][width] metres; intrinsics: [views][4] fx fy cx cy pixels;
- * poses: [views][16] camera-to-world, row by row. Views lie along one hand-held path. 0, or -1 as above or for more
- * than 16 views. */
+/* Draws views of a room along one hand-held path. images: [views][height][width][3]; depths: [views][height][width]
+ * metres; intrinsics: [views][4] fx fy cx cy pixels; poses: [views][16] camera-to-world, row by row. Returns 0, or -1
+ * for the same reasons or for more than 16 views. */
 int procedural_room(const atlas *shared, uint64_t seed, int width, int height, int views, uint8_t *images,
                     float *depths, float *intrinsics, float *poses);
 

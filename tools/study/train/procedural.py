@@ -28,14 +28,14 @@ import native
 PARTS = ("material", "camera", "leaves", "furniture", "light", "poster", "view", "path", "room")
 SOURCES = tuple(f"procedural_{part}.c" for part in PARTS)
 HEADERS = ("procedural.h", "procedural_scene.h")
-# No contraction and no fast-math: -march=native must not change the pictures
+# no contraction and no fast-math: -march=native must not change the pictures
 FLAGS = ("-std=gnu11", "-O3", "-march=native", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math")
 
 _loaded = {}
 
 
 def build(folder=None, flags=FLAGS):
-    """The compiled generator's path in `folder`."""
+    """Compiles the generator; returns its path in `folder`."""
     sources, headers = ([os.path.join(native.HERE, name) for name in names] for names in (SOURCES, HEADERS))
     return native.build("procedural", sources, flags, headers, folder)
 
@@ -56,7 +56,7 @@ def _library(folder, flags):
 
 
 def _mix(*parts):
-    """64 bits from integers, the same everywhere."""
+    """Mixes integers to 64 bits, the same on all machines."""
     state = 0
     for part in parts:
         state = (state ^ (part & 0xFFFFFFFFFFFFFFFF)) * 0x9E3779B97F4A7C15 & 0xFFFFFFFFFFFFFFFF
@@ -78,7 +78,7 @@ class Procedural:
         return _mix(self.seed, kind, self.index - 1)
 
     def leaves(self, width, height):
-        """(uint8 [height, width, 3] RGB, float32 [height, width] metres along the axis, > 0 everywhere)"""
+        """Returns (uint8 [height, width, 3] RGB, float32 [height, width] metres along the axis, > 0 everywhere)."""
         image, depth = np.empty((height, width, 3), np.uint8), np.empty((height, width), np.float32)
         status = self._call.procedural_leaves(
             self._atlas, self._next(1), width, height, image.ctypes.data, depth.ctypes.data
@@ -88,11 +88,12 @@ class Procedural:
         return image, depth
 
     def room(self, width, height, views=3):
-        """`views` (1 to 16) of one room along a hand-held path: with three, the middle one lies between the others.
+        """Returns `views` (1 to 16) views of one room along a hand-held path; of three, the middle one lies between the
+        others.
 
-        A list of dictionaries: image uint8 [height, width, 3] RGB; depth float32 [height, width] metres along the axis;
-        intrinsics float32 [4] fx fy cx cy, pixels; pose float32 [4, 4] camera-to-world, axes x right, y down,
-        z forward, metres. Pixel (0, 0) is the centre of the top-left pixel. All views share one exposure."""
+        The result is a list of dictionaries: image uint8 [height, width, 3] RGB; depth float32 [height, width] metres
+        along the axis; intrinsics float32 [4] fx fy cx cy, pixels; pose float32 [4, 4] camera-to-world, axes x right, y
+        down, z forward, metres. Pixel (0, 0) is the centre of the top-left pixel. All views share one exposure."""
         images, depths = np.empty((views, height, width, 3), np.uint8), np.empty((views, height, width), np.float32)
         intrinsics, poses = np.empty((views, 4), np.float32), np.empty((views, 4, 4), np.float32)
         pointers = (a.ctypes.data for a in (images, depths, intrinsics, poses))
@@ -110,7 +111,7 @@ def _rng(rng):
 
 
 def _smooth(field, width):
-    """Box means of 2 width + 1 samples, twice each way, borders repeated."""
+    """Returns box means of 2 width + 1 samples, twice each way, borders repeated."""
     for axis in (0, 1, 0, 1):
         padded = np.pad(field, [(width + 1, width) if a == axis else (0, 0) for a in (0, 1)], mode="edge")
         sums = np.cumsum(padded, axis, dtype=np.float64)
@@ -127,7 +128,7 @@ def _blobs(rng, shape, share):
 
 
 def depth_edges(depth, ratio=0.03):
-    """Returns the pixels next to a jump of depth by more than `ratio` of it."""
+    """Returns the pixels next to a jump of depth by more than `ratio` of the depth."""
     edge = np.zeros(depth.shape, bool)
     for axis in (0, 1):
         near, far = (depth[1:], depth[:-1]) if axis == 0 else (depth[:, 1:], depth[:, :-1])
@@ -156,12 +157,13 @@ def depth_lattice(rng, shape):
 
 
 def degrade_depth(rng, depth, holes=True, noise=True):
-    """What a depth sensor might have measured: float32 metres, 0 where it measured nothing. `depth` is left alone.
+    """Returns `depth` as a depth sensor might have measured it: float32 metres, 0 without a measurement. `depth` is
+    unchanged.
 
     rng: a numpy Generator, or a seed for one. Noise: a deviation of 0.05 to 0.5 % of a metre at 1 m, growing with the
-    square of depth, smooth over a few pixels; then steps that grow likewise (disparity is counted) or of a
-    millimetre. Holes, each on some pictures only: the lattice of a coarser sensor projected into the camera, borders
-    without overlap, patches (gloss, black), depth edges, and what lies beyond the sensor's range."""
+    square of depth, smooth over a few pixels; then rounding to steps that grow likewise (of disparity) or of a
+    millimetre. Holes, each kind on some pictures only: the lattice of a coarser sensor projected into the camera,
+    borders without overlap, patches (gloss, black), depth edges, and depths beyond the sensor's range."""
     rng, made = _rng(rng), np.array(depth, np.float32)
     shape = made.shape
     edges = depth_edges(made)
@@ -225,7 +227,7 @@ def expose(rng, image):
 
 
 def _depth_picture(depth):
-    """Near is light; 0 is dark blue."""
+    """Returns a picture of depth: near is light, 0 is dark blue."""
     seen = depth > 0
     near = np.where(seen, 1 / np.maximum(depth, 1e-6), 0)
     grey = (255 * near / max(float(near.max()), 1e-9)).astype(np.uint8)
@@ -233,8 +235,8 @@ def _depth_picture(depth):
 
 
 def contact_sheet(seed, rooms=False, size=256, columns=6, rows=4):
-    """Returns a sheet. Leaves: a picture a cell. Rooms: rows of three views, the middle one's depth, that depth
-    degraded, and the middle view at another exposure."""
+    """Returns a contact sheet. Leaves: one picture per cell. Rooms: rows of three views, the middle one's depth,
+    that depth degraded, and the middle view at another exposure."""
     source, rng, cells = Procedural(seed), np.random.default_rng(seed), []
     while len(cells) < rows * columns:
         if rooms:

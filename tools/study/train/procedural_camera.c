@@ -21,7 +21,7 @@ void look_draw(camera_look *made, generator *g)
 
 float look_exposure(const float *linear, int width, int height, float key)
 {
-    /* Lightness in half stops from 2^-12: no logarithm a pixel */
+    /* Lightness in half stops from 2^-12, without a logarithm per pixel */
     uint32_t bins[64] = {0}, count = (uint32_t)(width * height), above = 0;
     double sum = 0.0;
     for (uint32_t i = 0; i < count; i++) {
@@ -109,7 +109,7 @@ void blur_planes(float *data, float *scratch, int width, int height, int channel
         small_blur(data, scratch, width, height, channels, sigma);
         return;
     }
-    /* a mean of n samples has the variance (n^2 - 1) / 12; two of them in each direction make a tent */
+    /* a mean of n samples has the variance (n^2 - 1) / 12; two in each direction make a tent */
     int r = floori(0.5f * sqrtf(6.0f * sigma * sigma + 1.0f));
     int row = width * channels;
     float sums[3 * 2048 + 2048];
@@ -195,7 +195,7 @@ void develop(const camera_look *look, generator *noise, int width, int height, f
         }
     }
     if (look->sharpen > 0.0f) {
-        float *soft = scratch; /* the unsharp mask is a 3 x 3 binomial: one more buffer is not needed */
+        float *soft = scratch; /* the unsharp mask is a 3 x 3 binomial, so no further buffer is needed */
         memcpy(soft, linear, (size_t)count * 3 * sizeof *soft);
         for (int y = 1; y + 1 < height; y++) {
             for (int i = 3; i < 3 * (width - 1); i++) {

@@ -41,7 +41,7 @@ static body *new_body(room *r, generator *g, body_kind kind, vec centre, vec hal
     return b;
 }
 
-/* Small things on a level rectangle at height y, turned by yaw about `middle` */
+/* Places small objects on a level rectangle at height y, turned by yaw about `middle` */
 static void clutter(room *r, generator *g, vec middle, float half_x, float half_z, float yaw, int count)
 {
     float c = cosf(yaw), s = sinf(yaw);
@@ -100,7 +100,7 @@ static void chair(room *r, generator *g, vec foot, float yaw)
     }
 }
 
-/* Boards between two sides, with rows of books and things on them; its back stands at the wall */
+/* Builds boards between two sides, with rows of books and objects; the back is at the wall */
 static void shelf(room *r, generator *g, vec foot, float yaw)
 {
     float half_x = draw_in(g, 0.3f, 0.6f), half_z = draw_in(g, 0.13f, 0.2f), high = draw_in(g, 0.8f, 2.0f);

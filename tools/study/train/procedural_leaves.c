@@ -20,7 +20,7 @@ typedef enum {
 
 enum { MAX_LEAVES = 20000, MAX_GROUPS = 8, GROUP_MATERIALS = 10, MAX_SIDES = 7, MAX_LAYERS = 3 };
 
-/* s and t run from -1 to 1 over the leaf's box, turned by (ca, sa); 1/z = w + wx dx + wy dy, a plane in space */
+/* A leaf: s and t run from -1 to 1 over its box, turned by (ca, sa); 1/z = w + wx dx + wy dy, a plane in space */
 typedef struct {
     shape_kind shape;
     float x, y, ca, sa, half_s, half_t;
@@ -30,7 +30,7 @@ typedef struct {
     int sides, material;
     uint32_t glyph;
     float gain, shade_s, shade_t; /* lightness = gain (1 + shade_s s + shade_t t) */
-    float round, shine;           /* strength of shading as a bulging body, glossiness */
+    float round, shine;           /* strength of shading as a rounded body, glossiness */
     float offset[2];
 } leaf;
 
@@ -38,7 +38,7 @@ typedef struct {
 typedef struct {
     float x, y, spread_x, spread_y; /* centre and extent, pixels */
     float low, high;                /* sizes */
-    float near, far;                /* ratio of the leaves' 1/z to that of their background */
+    float near, far;                /* ratio of the leaves' 1/z to their background's */
     float shapes[SHAPE_COUNT];
     float upright; /* share of leaves parallel to the picture's axes */
     float stretch; /* largest aspect ratio */
@@ -222,7 +222,7 @@ static void mark_leaf(painting *p, int index)
     }
 }
 
-/* ---- what a place holds ----------------------------------------------------------------------------------------- */
+/* ---- contents of a place ---------------------------------------------------------------------------------------- */
 
 static void group_draw(const painting *p, group *made, generator *g, float fine)
 {
@@ -292,7 +292,7 @@ static void add_surface(painting *p, generator *g, float texture)
     l->offset[0] = draw_in(g, -1000.0f, 1000.0f);
 }
 
-/* Adds what is on a leaf or printed on it: in its box, on its plane, mostly along its axes */
+/* Adds parts on a leaf: in its box, on its plane, mostly along its axes */
 static void add_parts(painting *p, generator *g, const leaf *on, int first, int count, int parts)
 {
     float size = minf(on->half_s, on->half_t);
@@ -461,9 +461,9 @@ static void shade_pixel(painting *p, int x, int y)
     }
 }
 
-/* Composes from far to near. The farthest layer is stretched into the area that hides it; a nearer layer has only
- * its visible part, so that beside a blurred edge of the nearest layer the farthest may shine through the middle
- * one. The edge is still soft. */
+/* Composes from far to near. The farthest layer is extended into its hidden area; a nearer layer has only its visible
+ * part, so that beside a blurred edge of the nearest layer the farthest may show through the middle one. The edge is
+ * still soft. */
 static void compose(painting *p, float *linear)
 {
     int count = p->width * p->height;
@@ -556,7 +556,7 @@ int procedural_leaves(const atlas *shared, uint64_t seed, int width, int height,
             shade_pixel(&p, x, y);
         }
     }
-    /* the layers are spent once composed: the first holds the picture, the second the camera's scratch */
+    /* the layers are no longer needed: the first holds the picture, the second the camera's scratch */
     float *linear = p.scratch, *rest = p.layer[0];
     if (p.layers > 1) {
         linear = calloc((size_t)width * height * 3, sizeof *linear);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "procedural_scene.h"
 
-/* Whether something other than the room and `except` is between at and at + along */
+/* Whether another object than the room and `except` is between at and at + along */
 static bool blocked(const room *r, vec at, vec along, int except)
 {
     float scale = 1.0f / dot(along, along);
@@ -158,7 +158,8 @@ void store_light(room *r)
     }
 }
 
-/* Round bodies: the body's share of each lamp, without shadows on itself but its own */
+/* Computes light on round bodies: each lamp's share that reaches the body; of its own shadow only the side turned away
+ */
 void open_light(const room *r, const body *b, vec at, vec normal, float rgb[3])
 {
     for (int c = 0; c < 3; c++) {
@@ -172,7 +173,7 @@ void open_light(const room *r, const body *b, vec at, vec normal, float rgb[3])
     }
 }
 
-/* s and t in -1..1 over the face */
+/* Interpolates stored light at s and t in -1..1 over the face */
 void stored_light(const room *r, const body *b, int face, float s, float t, float rgb[3])
 {
     int columns = b->columns[face], rows = b->rows[face];

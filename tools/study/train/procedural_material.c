@@ -49,7 +49,7 @@ static bool add_octaves(float *plane, generator *g, float keep)
     return true;
 }
 
-/* Grey discs, ellipses and lenses on a torus, later ones hidden by earlier ones */
+/* Draws grey discs, ellipses and lenses on a torus, later ones over earlier ones */
 static void fill_leaves(float *plane, generator *g, float low, float high)
 {
     enum { EMPTY = 1000 };
@@ -100,7 +100,7 @@ static void store_tile(int16_t *tile, float *plane)
         for (int i = 0; i < side * side; i++) {
             out[i] = (int16_t)floori(plane[i] * 4096.0f + 0.5f);
         }
-        for (int y = 0; y < side / 2; y++) { /* in place: writes stay before the reads */
+        for (int y = 0; y < side / 2; y++) { /* in place: writes stay behind the reads */
             for (int x = 0; x < side / 2; x++) {
                 const float *from = plane + 2 * y * side + 2 * x;
                 plane[y * (side / 2) + x] = 0.25f * (from[0] + from[1] + from[side] + from[side + 1]);
@@ -132,8 +132,8 @@ float tile_at(const atlas *shared, tile_kind tile, float u, float v, float footp
 
 /* ---- glyphs ----------------------------------------------------------------------------------------------------- */
 
-/* Draws two to five strokes between the knots of a 3 x 4 lattice: letters of no script, but with the density and
- * joints of letters */
+/* Draws two to five strokes between the knots of a 3 x 4 lattice, with the density and joints of letters but of no
+ * script */
 static void fill_glyph(int8_t *glyph, generator *g)
 {
     float x[6], y[6];
@@ -327,7 +327,7 @@ void material_draw(material *made, const palette *from, generator *g, float size
 void material_draw_calm(material *made, const palette *from, generator *g, float size, float texture)
 {
     material_draw(made, from, g, size, texture);
-    float keep = draw_chance(g, 0.2f) ? 0.9f : draw_in(g, 0.1f, 0.7f);   /* share of the saturation that stays */
+    float keep = draw_chance(g, 0.2f) ? 0.9f : draw_in(g, 0.1f, 0.7f);   /* remaining share of the saturation */
     float lift = draw_chance(g, 0.35f) ? 0.0f : draw_in(g, 0.05f, 0.6f); /* lighter, as most walls are */
     for (int i = 0; i < 3; i++) {
         float *rgb = made->colour[i], grey = 0.25f * rgb[0] + 0.6f * rgb[1] + 0.15f * rgb[2];
@@ -359,7 +359,7 @@ static float smooth_step(float x)
     return x * x * (3.0f - 2.0f * x);
 }
 
-/* Share of the first colour; *tint varies a cell's lightness around 1 */
+/* Returns the share of the first colour; *tint varies a cell's lightness around 1 */
 static float pattern_at(const atlas *shared, const material *m, float u, float v, float footprint, float *tint)
 {
     float x = (m->ca * u + m->sa * v) / m->period, y = (m->ca * v - m->sa * u) / m->period;

@@ -70,7 +70,7 @@ void path_draw(const room *r, generator *g, int width, int height, int views, vi
             return;
         }
     }
-    /* every place above was taken: the room's middle under the ceiling, where little stands */
+    /* every other place was occupied: take the room's middle under the ceiling, where little stands */
     for (int i = 0; i < views; i++) {
         made[i].at = (vec){0.05f * (float)i, 0.35f - r->size.y, 0.0f};
         look_at(&made[i], (vec){0.3f * r->size.x, -1.0f, 0.5f * r->size.z}, 0.0f);

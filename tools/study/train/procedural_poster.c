@@ -35,7 +35,7 @@ bool poster_draw(poster *made, const atlas *shared, uint64_t seed)
     return good;
 }
 
-/* u and v in 0..1, footprint in poster widths */
+/* Samples the poster; u and v in 0..1, footprint in poster widths */
 void poster_at(const poster *p, float u, float v, float footprint, float rgb[3])
 {
     int side = POSTER_SIDE;

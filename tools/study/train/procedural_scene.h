@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A made-up room: its objects and the steps that render them, each in a file; procedural_room.c calls them in turn. */
+/* A generated room: its objects and the steps that render them, each in a file; procedural_room.c calls them in turn.
+ */
 #ifndef T3R_PROCEDURAL_SCENE_H
 #define T3R_PROCEDURAL_SCENE_H
 
@@ -26,7 +27,7 @@ typedef struct {
 
 typedef enum { BODY_BOX, BODY_ELLIPSOID, BODY_CYLINDER } body_kind;
 
-/* Faces of a box: -x +x -y +y -z +z; of a cylinder: 0 = mantle, 2 and 3 = ends; of an ellipsoid: 0 */
+/* A body. Faces of a box: -x +x -y +y -z +z; of a cylinder: 0 = mantle, 2 and 3 = ends; of an ellipsoid: 0 */
 typedef struct {
     body_kind kind;
     vec centre, half;
@@ -60,7 +61,7 @@ typedef struct {
     palette colours;
     float ambient[3];
     vec size; /* full extents; size.y = height */
-    /* bodies whose shadows the stored light can resolve: neither lamps nor things of a few centimetres */
+    /* bodies whose shadows the stored light can resolve: neither lamps nor objects of a few centimetres */
     float caster_x[MAX_BODIES], caster_y[MAX_BODIES], caster_z[MAX_BODIES], caster_reach2[MAX_BODIES];
     int casters[MAX_BODIES], caster_count;
     float (*luxels)[3];
@@ -118,7 +119,7 @@ static inline float safe_inverse(float x)
     return 1.0f / (fabsf(x) < 1e-9f ? (x < 0.0f ? -1e-9f : 1e-9f) : x);
 }
 
-/* First hit of at + t along, t > 1e-4, in the body's frame; INFINITY where there is none. *face: the one hit. */
+/* Returns the first hit of at + t along, t > 1e-4, in the body's frame, or INFINITY; sets *face. */
 static inline float hit_box(const body *b, vec at, vec along, int *face)
 {
     float ix = safe_inverse(along.x), iy = safe_inverse(along.y), iz = safe_inverse(along.z);
@@ -172,12 +173,12 @@ static inline float hit(const body *b, vec at, vec along, int *face)
 
 /* ---- parts ------------------------------------------------------------------------------------------------------ */
 
-/* Materials, tables, chairs, shelves, what hangs on walls, lamps; the room's own walls are body 0. */
+/* Places materials, tables, chairs, shelves, wall objects and lamps; the room's own walls are body 0. */
 void furnish(room *r, generator *g);
 
-/* Diffuse light, [3] linear: the light from lamps and sky at a place, with the shadows of `casters`. store_light()
- * stores it on a grid over the faces of boxes, stored_light() reads it at s, t in 0..1 of a face, open_light()
- * computes it for round bodies. */
+/* Diffuse light, [3] linear, from lamps and sky at a place, with the shadows of `casters`. store_light() stores it on
+ * a grid over the faces of boxes, stored_light() reads it at s, t of a face, open_light() computes it for round
+ * bodies. */
 void face_frame(const body *b, int face, vec *middle, vec *along, vec *across, vec *normal);
 void store_light(room *r);
 void open_light(const room *r, const body *b, vec at, vec normal, float rgb[3]);
@@ -192,7 +193,7 @@ void poster_at(const poster *p, float u, float v, float footprint, float rgb[3])
 void see_room(const room *r, const viewpoint *v, int width, int height, float *near, uint16_t *owner, float *linear,
               float *depth);
 
-/* `views` places on a walk through the room. */
+/* Makes `views` viewpoints along a walk through the room. */
 void path_draw(const room *r, generator *g, int width, int height, int views, viewpoint *made);
 
 #endif

@@ -16,7 +16,7 @@ static void screen_box(const body *b, const viewpoint *v, int columns, int rows,
     box[0] = box[1] = 0;
     box[2] = columns;
     box[3] = rows;
-    /* beside the picture's four sides with all of its sphere? */
+    /* is the whole sphere outside one of the picture's four sides? */
     vec middle = sub(b->centre, v->at);
     float mx = v->fx * dot(middle, v->x), my = v->fy * dot(middle, v->y), mz = dot(middle, v->z);
     float right = (float)columns / SUBSAMPLES - 0.5f - v->cx, low = (float)rows / SUBSAMPLES - 0.5f - v->cy;
@@ -134,7 +134,7 @@ static void shade_hit(const room *r, const viewpoint *v, int owner, float x, flo
     } else {
         int ignored;
         z = hit_round(b, at, along, &ignored);
-        if (!(z < 1e6f)) { /* the mean of the rays that hit the body misses it by a hair, at its limb */
+        if (!(z < 1e6f)) { /* at the limb, the mean of the rays that hit the body may miss it */
             z = -dot(at, along) / dot(along, along);
         }
         p = add(at, times(along, z));

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a head is trained on: crops of pictures with depth, and pairs of posed views with a third to be predicted.
+"""Training data of a head: crops of pictures with depth, and pairs of posed views with a third to be predicted.
 
-Pictures are made up without end (procedural.py) and read from whatever folders the user names: images, or posed folders
-with a transforms.json (instant-ngp; depth as NeRFCapture writes it). Every draw follows from its own generator, so a
-run can stop and go on, and processes can share the work."""
+Pictures are generated without limit (procedural.py) and read from the user's folders: images, or posed folders with a
+transforms.json (instant-ngp; depth as NeRFCapture writes it). Each draw depends only on its own generator, so a run can
+stop and resume, and processes can share the work."""
 import ctypes
 import glob
 import json
@@ -17,9 +17,9 @@ import native
 from procedural import Procedural, degrade_depth, expose
 
 ALLOCATIONS = {"density": 1, "paper": 2, "pixel": 3, "uniform": 4, "random": 5}
-MASKS = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs")  # method.h's kinds, in its order
+MASKS = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs")  # kinds of rivals/kinds.h, in order
 KINDS = ("all", "recorded", "rooms", "pictures")  # of scenes
-PLANE = 2000  # mm: a picture without depth is a wall two metres away
+PLANE = 2000  # mm: the depth of pictures without depth, a wall two metres away
 TRIPLET = (0, 2, 1)  # context, context, target
 
 
@@ -43,7 +43,7 @@ _library = None
 
 @dataclass
 class Prepared:
-    """One view as the runtime prepared it: image uint8 [h, w, 3]; features int8 [h, w, 9]; confidence uint8 [h, w];
+    """One view prepared by the runtime: image uint8 [h, w, 3]; features int8 [h, w, 9]; confidence uint8 [h, w];
     points: POINT [n], raster order."""
 
     image: np.ndarray
@@ -53,7 +53,7 @@ class Prepared:
 
 
 def _quaternion(rotation):
-    """w x y z of a rotation matrix: the eigenvector of Bar-Itzhack 2000, method 3's symmetric matrix."""
+    """Returns w x y z of a rotation matrix: the eigenvector of the symmetric matrix of Bar-Itzhack 2000, method 3."""
     (a, b, c), (d, e, f), (g, h, i) = np.asarray(rotation, np.float64)
     symmetric = [[a + e + i, h - f, c - g, d - b], [h - f, a - e - i, b + d, c + g],
                  [c - g, b + d, e - a - i, f + h], [d - b, c + g, f + h, i - a - e]]  # fmt: skip
@@ -62,15 +62,16 @@ def _quaternion(rotation):
 
 
 def prepare(image, depth, intrinsics, kept, **budget):
-    """One picture as the only context view; the same as prepare_views()."""
+    """Prepares one picture as the only context view; see prepare_views()."""
     return prepare_views([image], [depth], [intrinsics], None, kept, **budget)[0]
 
 
 def prepare_views(images, depths, intrinsics, poses, kept, allocation="density", gamma=0.7, clusters=300, seed=1,
                   mask="trim3r"):  # fmt: skip
-    """Analysis, budget and features of context views by the runtime, together. depths: uint16 [h, w] each, mm; poses:
-    camera to world [4, 4] each, None: of a single view; kept: share of the points with depth; mask: whose choice of
-    points, `trim3r` the allocation's, or a rival's among the Gaussians that the shipped `small` makes of all points."""
+    """Analyses context views together by the runtime, with budget and features. depths: uint16 [h, w] each, mm;
+    poses: camera to world [4, 4] each, None for a single view; kept: share of the points with depth; mask:
+    chooses the points: `trim3r` by the allocation, a rival by its score of the Gaussians that the shipped `small`
+    makes of all points."""
     global _library
     _library = _library or native.preparer()
     rgb, depth = np.ascontiguousarray(np.stack(images)), np.ascontiguousarray(np.stack(depths), np.uint16)
@@ -99,7 +100,7 @@ def millimetres(depth):
 
 
 def square(image):
-    """The largest centred square."""
+    """Crops the largest centred square."""
     height, width = image.shape[:2]
     side = min(height, width)
     top, left = (height - side) // 2, (width - side) // 2
@@ -144,7 +145,7 @@ def _read_posed(folder, frame, unit, side):
 
 
 class Folder:
-    """Images of a folder, and the triplets of posed views with depth where it tells any."""
+    """Images of a folder, and the triplets of posed views with depth if it has any."""
 
     def __init__(self, path):
         self.path, self.images, self.triplets, self._posed = path, [], [], {}
@@ -183,9 +184,9 @@ class Folder:
 
 
 class Samples:
-    """Draws of training data. made_up: share of pictures that procedural.py makes. kind: of KINDS, `all` or one kind of
-    scenes alone: views and pictures of the folders; made-up rooms; made-up pictures, which have no third view. mask: of
-    MASKS, whose choice of points a head is trained for."""
+    """Draws training data. made_up: share of pictures from procedural.py. kind: of KINDS, `all` or one kind of
+    scene: views and pictures of the folders; generated rooms; generated pictures, which have no third view. mask:
+    of MASKS, whose choice of points a head is trained for."""
 
     def __init__(self, folders, crop, made_up, build_folder=None, kind="all", mask="trim3r"):
         self.folders, self.crop, self.build_folder = [Folder(f) for f in folders], crop, build_folder
@@ -238,7 +239,7 @@ class Samples:
         return Procedural(int(rng.integers(1 << 62)), build_folder=self.build_folder)
 
     def _picture(self, rng):
-        """A made-up picture and its depth, to be cropped; None where none is needed."""
+        """Returns a generated picture and its depth, to be cropped; None if none is needed."""
         source = self._procedural(rng)
         if self.kind == "rooms":
             (view,) = source.room(256, 256, 1)
@@ -246,8 +247,8 @@ class Samples:
         return source.leaves(256, 256) if self.made_up > 0 else None
 
     def crops(self, rng, count):
-        """`count` pictures, prepared, each with a budget of its own; of a rival's mask at least about half of them context
-        views that it ranked together, both where there is room."""
+        """Returns `count` prepared pictures, each with its own budget. For a rival's mask about half or more of them
+        are context views that it ranked together; the last pair may be cut to fit."""
         picture, made = self._picture(rng), []
         while len(made) < count:
             if self.mask != "trim3r" and self.kind != "pictures" and rng.random() < 0.5:
@@ -270,8 +271,8 @@ class Samples:
         return [Posed(*(room[i][k] for k in ("image", "depth", "intrinsics", "pose"))) for i in TRIPLET]
 
     def triplet(self, rng):
-        """Two prepared context views and the target: [(Prepared, Posed), (Prepared, Posed)], Posed. Our allocations
-        are drawn a view on its own; a rival ranks both together, and keeps points of both."""
+        """Returns two prepared context views and the target: [(Prepared, Posed), (Prepared, Posed)], Posed. Our
+        allocations treat each view alone; a rival ranks both together and keeps points of both."""
         while True:
             made, posed = self._prepared_triplet(rng)
             if min(len(prepared.points) for prepared in made) > 0:
@@ -295,7 +296,7 @@ class Samples:
 
 
 def seen_by(target, source, tolerance=0.03):
-    """Pixels of `target` whose surface `source` shows too, by both depths: bool [s, s]."""
+    """Returns the pixels of `target` whose surface `source` shows, too, by both depths: bool [s, s]."""
     side = target.depth.shape[0]
     v, u = np.mgrid[0:side, 0:side]
     fx, fy, cx, cy = target.intrinsics

@@ -14,7 +14,7 @@
 #include "study/rivals/splat_view.h"
 
 #define PARAMETERS 9
-#ifndef ALPHA_LEAST /* a test sets it lower: the cut has no derivative */
+#ifndef ALPHA_LEAST /* a test lowers it: the cut has no derivative */
 #define ALPHA_LEAST SPLAT_ALPHA_LEAST
 #endif
 
@@ -109,9 +109,8 @@ int splat_backward(int32_t pictures, uint32_t width, uint32_t height, const int3
 
 /* --- refinement -------------------------------------------------------------------------------------------------- */
 
-/* What runtime/refine/refine.c does in integers (runtime/SPEC.md, "Refinement"), but for roundings, for the six
- * equations, which are solved exactly here, and for a splat's own axes: in one view any factor of its covariance will
- * do. */
+/* Refines like runtime/refine/refine.c (runtime/SPEC.md, "Refinement"), but in floats: nothing is rounded, the six
+ * equations are solved exactly, and a splat's own axes are any factor of its covariance, which suffices in one view. */
 #define UNKNOWNS 6
 #define MOMENTS 15
 #define DILATION ((float)SPLAT_LOW_PASS)
@@ -123,7 +122,7 @@ int splat_backward(int32_t pictures, uint32_t width, uint32_t height, const int3
 #define ASKED_MOST 2.0f
 #define RELATIVE_DAMPING 0.1875f
 #define DAMPING (64.0f / 65025.0f)
-#define MOMENTUM 0.1875f /* of the pass before */
+#define MOMENTUM 0.1875f /* of the previous pass */
 #define OPACITY_STEP_MOST 0.5f
 #define SHIFT_MOST 0.5f
 #define SHAPE_MOST 0.1f
@@ -293,8 +292,8 @@ static float held(float x, float most)
     return x > most ? most : x < -most ? -most : x == x ? x : 0;
 }
 
-/* A pass's changes of one splat: of red, green, blue; of log opacity, place along its two axes, log scale and shear;
- * and the share of the Gauss-Newton step that it took. */
+/* A pass's changes of one splat: red, green, blue; log opacity, shift along its two axes, log scale and shear; and the
+ * share of the Gauss-Newton step that was taken. */
 #define CHANGES (3 + UNKNOWNS + 1)
 #define SHARE (3 + UNKNOWNS)
 
@@ -316,7 +315,7 @@ static float share_of(const float wanted[UNKNOWNS], const float squares[UNKNOWNS
     return fminf(fmaxf(share, fmaxf(last / 4, SHARE_LEAST)), fminf(2 * last, SHARE_MOST));
 }
 
-/* `change` comes with what the pass before changed, 0 in the first, and leaves with what this one does. */
+/* Corrects a splat. `change`: the changes of the previous pass, 0 in the first; on return this pass's. */
 static void correct(const sums *z, float *change, float *s)
 {
     float before[CHANGES];
@@ -353,9 +352,9 @@ static void correct(const sums *z, float *change, float *s)
     s[4] = xx / det;
 }
 
-/* One pass of refinement: `rgb` is what splat_forward() drew of `splats`, which are corrected in place
- * towards `wanted`; `counts`, [pictures][height][width], is 0 where a pixel has no say; `changes`, [splats][CHANGES],
- * goes from pass to pass, 0 before the first; NULL: every pass is a first one. */
+/* Runs one pass of refinement: `rgb` is the output of splat_forward() for `splats`, which are corrected in place
+ * towards `wanted`; `counts`, [pictures][height][width], is 0 for ignored pixels; `changes`, [splats][CHANGES], is
+ * passed from pass to pass, 0 before the first; NULL: every pass is a first one. */
 int splat_refine(int32_t pictures, uint32_t width, uint32_t height, const int32_t *start, float *splats,
                  const int32_t *order, const float *rgb, const float *wanted, const uint8_t *counts, float *changes)
 {

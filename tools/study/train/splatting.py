@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Splats of an image plane as torch sees them: footprints out of a head's outputs, drawn with derivatives, refined."""
+"""Splats of an image plane in torch: footprints from a head's outputs, drawn with derivatives, refined."""
 import numpy as np
 import torch
 
@@ -68,7 +68,7 @@ def refine(splats, start, order, pictures, counts, passes, momentum=True):
 
 
 def order_by(key, start):
-    """Front to back by `key` within each picture."""
+    """Orders by `key` within each picture, front to back."""
     order = np.empty(len(key), np.int32)
     for a, b in zip(start[:-1], start[1:]):
         order[a:b] = np.argsort(key[a:b], kind="stable")
@@ -108,7 +108,7 @@ def footprints(outputs, spacing, own_colour):
 
 
 def narrowed(factor, least=VARIANCE_LEAST):
-    """The lower factor of the footprint less the rasterizer's dilation, as runtime/head/head_lift.c stores it."""
+    """Returns the lower factor of the footprint minus the rasterizer's dilation, like runtime/head/head_lift.c."""
     l11, l21, l22 = factor.unbind(1)
     xx = torch.clamp(l11 * l11 - DILATION, min=least)
     yy = torch.clamp(l21 * l21 + l22 * l22 - DILATION, min=least)
@@ -119,14 +119,14 @@ def narrowed(factor, least=VARIANCE_LEAST):
 
 
 def pack(mean, xx, xy, yy, opacity, colour):
-    """Splats [n, 9] from centres [n, 2] and covariances, dilation included."""
+    """Packs splats [n, 9] from centres [n, 2] and covariances, dilation included."""
     determinant = xx * yy - xy * xy
     conic = torch.stack((yy / determinant, -xy / determinant, xx / determinant), 1)
     return torch.cat((mean, conic, opacity[:, None], colour), 1)
 
 
 def planar_splats(offset, factor, opacity, colour, pixel, least=VARIANCE_LEAST):
-    """Footprints about `pixel` [n, 2] as their own view draws them."""
+    """Returns the footprints about `pixel` [n, 2] as splats of their own view."""
     a, b, c = narrowed(factor, least).unbind(1)
     return pack(pixel + offset, a * a + DILATION, a * b, b * b + c * c + DILATION, opacity, colour)
 

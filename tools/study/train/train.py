@@ -14,7 +14,7 @@ their surfaces and drawn in a third view as well. The loss of a picture is log(M
 over pictures is minus the mean PSNR, but for the perceptual term (GaussianTrim3R eq. 3). The last share of the steps
 runs with weights and activations rounded as `trim3r quantize` will round them.
 
-OUT gets checkpoint.pt (run the same command again to go on), log.csv, curves.png and NAME.safetensors. The same command
+OUT gets checkpoint.pt (the same command again continues), log.csv, curves.png and NAME.safetensors. The same command
 and seed give the same head on the same machine with as many processes."""
 import argparse
 import csv
@@ -91,11 +91,8 @@ def options_of(arguments):
     return options
 
 
-# --- the run ----------------------------------------------------------------------------------------------------------
-
-
 def means(rows):
-    """Of each column, over the rows that have a number there."""
+    """Returns each column's mean over the rows that have a number there."""
     columns = ([v for v in column if math.isfinite(v)] for column in zip(*rows))
     return [sum(c) / len(c) if c else math.nan for c in columns]
 
@@ -162,7 +159,7 @@ class Run:
             state = {"identity": self._identity(), "head": self.head.state_dict(), "step": self.step, "rows": self.rows,
                      "optimizer": self.optimizer.state_dict(), "seconds": self.seconds}  # fmt: skip
             torch.save(state, self.checkpoint + ".new")
-            os.replace(self.checkpoint + ".new", self.checkpoint)  # a run cut off here keeps the checkpoint before
+            os.replace(self.checkpoint + ".new", self.checkpoint)  # a run killed here keeps the previous checkpoint
             with open(os.path.join(self.options.out, "log.csv"), "w", newline="", encoding="utf-8") as file:
                 csv.writer(file).writerows([COLUMNS, *self.rows])
             curves.draw_curves(self.rows, os.path.join(self.options.out, "curves.png"))
@@ -212,7 +209,7 @@ class Run:
         for g in gradients:
             g.copy_((flat[at : at + g.numel()] / self.world).reshape(g.shape))
             at += g.numel()
-        for n in range(1, len(self.head.layers) + 1):  # ranges followed alike
+        for n in range(1, len(self.head.layers) + 1):  # all processes take the largest range seen by any
             seen = getattr(self.head, f"range{n}")
             most = seen.cpu()
             distributed.all_reduce(most, distributed.ReduceOp.MAX)
@@ -250,7 +247,8 @@ class Run:
 
 
 def held_out_error(run, count=16):
-    """Geometric mean over made-up pictures that no step draws of the squared error in their own view, unrefined."""
+    """Returns the geometric mean of the squared error over generated pictures that no step draws, in their own view,
+    unrefined."""
     rng, total = np.random.default_rng([run.options.seed, 1 << 40]), 0.0
     with torch.no_grad():
         for _ in range(count // 4):
@@ -266,7 +264,7 @@ def held_out_error(run, count=16):
 
 
 def launch(options, arguments):
-    """Processes that share the steps, as torchrun would start them; the first failure ends all."""
+    """Runs processes that share the steps, as torchrun would start them; the first failure ends all."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]

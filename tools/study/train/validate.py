@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What a head reaches in float, on single pictures.
+"""Scores of a head in float, on single pictures.
 
     tools/study/train/validate.py small.safetensors IMAGE...
     tools/study/train/validate.py small.safetensors --keep 10,5 --refine 0,2,4 IMAGE...
 
-The protocol of `trim3r eval --planar --size 256x256`, whose integers it stands beside: each picture as one view on a
+Like `trim3r eval --planar --size 256x256`, for comparison with its integers: each picture as one view on a
 plane, pruned by the runtime, then adapted, refined and drawn in float32. PSNR in dB over all pixels, means over the
 pictures."""
 import argparse
@@ -34,7 +34,8 @@ def picture_of(path):
 
 
 def planar_psnr(head, picture, kept, passes):
-    """[len(passes)] dB of one picture [SIDE, SIDE, 3] with a share `kept` of its pixels after so many passes."""
+    """Returns [len(passes)] dB of one picture [SIDE, SIDE, 3] with a share `kept` of its pixels, after each number
+    of passes."""
     depth = np.full((SIDE, SIDE), samples.PLANE, np.uint16)
     camera = (SIDE, SIDE, (SIDE - 1) / 2, (SIDE - 1) / 2)
     batch = objective.Batch([samples.prepare(picture, depth, camera, kept)], "cpu")

@@ -51,10 +51,9 @@ static const struct argp_option options[] = {
     {"against", OPTION_TO(bench_options, against), "BINARY", OPTION_READS,
      "another trim3r, to run its bench and this one's in --runs turns: how many times as fast each stage is", 0},
     {"calibrate", OPTION_TO(bench_options, calibrate), NULL, 0,
-     "measure instead what a unit of each kind of work takes on this machine, for trim3r plan --machine", 0},
+     "measure instead the time of a unit of each kind of work on this machine, for trim3r plan --machine", 0},
     {"output", 'o', "MACHINE.json", OPTION_WRITES(FILE_OTHER), "file that --calibrate writes", 0},
-    {"profile", OPTION_TO(bench_options, profile), NULL, 0,
-     "print for each whole build the time of each of its stages, too", 0},
+    {"profile", OPTION_TO(bench_options, profile), NULL, 0, "print also the time of each stage of a whole build", 0},
     {"json", OPTION_TO(bench_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
@@ -99,41 +98,40 @@ static const struct argp_child children[] = {{.argp = &processor_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,
-    .doc =
-        "Time the stages on two 256x256 views of the built-in room (131,072 points): the median of interleaved runs, "
-        "with the least and the most beside, and the median for each pixel, point or pair; processor time of one "
-        "thread, or with more of them elapsed time."
-        "\vExamples:\n"
-        "  trim3r bench\n"
-        "  trim3r bench --head tiny\n"
-        "  trim3r bench --depth stereo\n"
-        "  trim3r bench --json --runs 21\n"
-        "  trim3r bench --stages build_small_ms --profile\n"
-        "  trim3r bench --points cloud.f32 --stages kmeans_ms --json\n"
-        "  trim3r bench --against ../older/trim3r --runs 15\n"
-        "  trim3r bench --calibrate -o machine.json\n\n"
-        "kmeans_msd: mean over the points of the squared distance, summed over the six numbers, to the centre of the "
-        "SuperCluster each belongs to; K = 300, seed 1. The room's points are xyz over the median depth and rgb over "
-        "255; a file's (little-endian, any scale) are clustered and judged as they are. head_gmac_per_s: 10^9 "
-        "multiply-accumulates of a head's layers a second of the whole head stage, every point kept. network_ms: the "
-        "layers of --head alone, over both views, 13,107 points kept. refine_ms: one "
-        "refinement pass over both views, 13,107 Gaussians. stereo_ms: depth of both views from their colours, holes "
-        "filled, with the four paths that --depth stereo takes; stereo_8_paths_ms: with eight. build_analytic_ms, "
-        "build_unrefined_ms and build_small_ms have it in them with --depth stereo; the second is the first without "
-        "refinement. A blended pair is a pixel and a splat that is drawn "
-        "there, "
-        "whole groups of eight columns. machine_gmac_per_s: 10^9 multiply-adds of 8-bit numbers a second, by the "
-        "widest "
-        "instruction that --cpu-mask leaves, all in registers. machine_copy_gb_per_s: 10^9 bytes a second, read and "
-        "written, of 64 MiB that are copied.\n\n"
-        "--against: the programs take turns, and each turn gives a ratio of times. Its median comes with the least and "
-        "the most. Above 1, this program is the faster one. Stages that one of them lacks are named.",
+    .doc = "Time the stages on two 256x256 views of the built-in room (131,072 points): the median of interleaved "
+           "runs, with the least and the most, and the median for each pixel, point or pair; processor time of one "
+           "thread, or with more of them elapsed time.\v"
+           "Examples:\n"
+           "  trim3r bench\n"
+           "  trim3r bench --head tiny\n"
+           "  trim3r bench --depth stereo\n"
+           "  trim3r bench --json --runs 21\n"
+           "  trim3r bench --stages build_small_ms --profile\n"
+           "  trim3r bench --points cloud.f32 --stages kmeans_ms --json\n"
+           "  trim3r bench --against ../older/trim3r --runs 15\n"
+           "  trim3r bench --calibrate -o machine.json\n"
+           "\n"
+           "kmeans_msd: mean over the points of the squared distance, summed over the six numbers, to the centre of "
+           "the SuperCluster each belongs to; K = 300, seed 1. The room's points are xyz over the median depth and rgb "
+           "over 255; a file's (little-endian, any scale) are clustered and judged as they are. head_gmac_per_s: 10^9 "
+           "multiply-accumulates of a head's layers per second of the whole head stage, with every point kept. "
+           "network_ms: the layers of --head alone, over both views, 13,107 points kept. refine_ms: one refinement "
+           "pass over both views, 13,107 Gaussians. stereo_ms: depth of both views from their colours, holes filled, "
+           "with the four paths that --depth stereo takes; stereo_8_paths_ms: with eight. build_analytic_ms, "
+           "build_unrefined_ms and build_small_ms include it with --depth stereo; the second is the first without "
+           "there, "
+           "machine_gmac_per_s: 10^9 multiply-adds of 8-bit numbers a second, by the widest instruction that "
+           "widest "
+           "MiB that are copied.\n"
+           "\n"
+           "--against: the programs take turns, and each turn gives a ratio of times. Its median comes with the least "
+           "and the most. Above 1, this program is the faster one. Stages that one of them lacks are named.",
     .children = children,
 };
 
 /* ---- the rows -------------------------------------------------------------------------------------------------- */
 
-/* Which rows are timed, of a comma-separated list of keys; NULL: all. */
+/* Chooses the rows to time from a comma-separated list of keys; NULL: all. */
 static int choose_stages(const char *list, bool chosen[BENCH_STAGES_MOST])
 {
     for (int s = 0; s < BENCH_STAGES_MOST; s++) {
@@ -153,10 +151,10 @@ static int choose_stages(const char *list, bool chosen[BENCH_STAGES_MOST])
     return CLI_OK;
 }
 
-/* A row, once it is timed. */
+/* A timed row. */
 typedef struct row {
     const bench_stage *stage; /* NULL: it is not chosen */
-    double items;             /* that a run handles; 0 = they are not counted */
+    double items;             /* items per run; 0 = not counted */
     double seconds[MAX_RUNS];
     spread taken;        /* of them */
     stage_times profile; /* the least of each stage; all 0 where none is wanted */
@@ -184,7 +182,7 @@ static double seconds_of(clockid_t clock)
     return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
 }
 
-/* One more build, by stages, where that is wanted. */
+/* Times one more build by stages, if requested. */
 static bool profile_row(bench_work *w, const bench_options *o, row *r)
 {
     stage_times times;
@@ -198,8 +196,7 @@ static bool profile_row(bench_work *w, const bench_options *o, row *r)
     return good;
 }
 
-/* Round after round through all rows, so that a slow moment of the machine hits each alike; the first is not counted.
- */
+/* Times all rows in rounds, so that a slow moment of the machine affects each alike; the first round is not counted. */
 static int time_rows(bench_work *w, const bench_options *o, row rows[BENCH_STAGES_MOST])
 {
     clockid_t clock = o->settings.processor.threads > 1 ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID;
@@ -229,7 +226,7 @@ static int time_rows(bench_work *w, const bench_options *o, row rows[BENCH_STAGE
     return CLI_OK;
 }
 
-/* ---- what is printed --------------------------------------------------------------------------------------------- */
+/* ---- output ------------------------------------------------------------------------------------------------------ */
 
 typedef struct figures {
     double median, least, most; /* in the row's unit */
@@ -269,7 +266,7 @@ static void print_profiles(const row rows[BENCH_STAGES_MOST])
     }
 }
 
-/* "build_small_stages_ms" for the row build_small_ms. */
+/* Adds "build_small_stages_ms" for the row build_small_ms. */
 static void add_profiles(cJSON *root, const row rows[BENCH_STAGES_MOST])
 {
     for (int s = 0; s < BENCH_STAGES_MOST; s++) {
@@ -370,7 +367,7 @@ static int run_alone(const bench_options *o, const bool chosen[BENCH_STAGES_MOST
     return code;
 }
 
-/* Both get the options that are not the default. */
+/* Passes the options that are not the default to both. */
 static int run_against(const bench_options *o, const bool chosen[BENCH_STAGES_MOST])
 {
     char points[PATH_BYTES], head[PATH_BYTES], depth[32], threads[32], mask[64];
@@ -400,7 +397,7 @@ static int run_against(const bench_options *o, const bool chosen[BENCH_STAGES_MO
     return bench_against(&contest);
 }
 
-/* Prices of this machine, into a file. */
+/* Writes this machine's prices to a file. */
 static int run_calibration(const bench_options *o)
 {
     machine m = {.threads = o->settings.processor.threads};

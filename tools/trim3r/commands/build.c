@@ -33,12 +33,12 @@ static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
     {"output", 'o', "SCENE.ply", OPTION_WRITES(FILE_SCENE), "scene to write (needed, or --colmap)", 0},
     {"colmap", OPTION_TO(build_options, colmap), "DIR", OPTION_WRITES(FILE_OTHER) | OPTION_FOLDER,
-     "folder, new or empty, to write the start of an outside optimiser into: the context views, and the means and "
-     "colours of the Gaussians, as a COLMAP model in text",
+     "folder, new or empty, for the start of another optimiser: the context views, and the means and colours of the "
+     "Gaussians, as a COLMAP model in text",
      0},
     {"prune", OPTION_TO(build_options, settings.points_of), "SCENE.ply", OPTION_READS,
-     "scene, made elsewhere, to prune instead of building one: the recording gives its views, --context names those it "
-     "was made of; percents are of its Gaussians",
+     "scene, made elsewhere, to prune instead of building one: the recording gives its views, --context names the "
+     "ones that it was made of; percents are of its Gaussians",
      0},
     {"local", KEY_LOCAL, NULL, 0,
      "write positions from the first context camera's centre instead of the world's origin", 0},
@@ -47,7 +47,7 @@ static const struct argp_option options[] = {
      "viewers that want it (not turned; .spz and .glb as for -y)",
      0},
     {"comments", KEY_COMMENTS, NULL, 0,
-     "name bits epoch, scene frame and head in header comments (some readers choke on them)", 0},
+     "name bits epoch, scene frame and head in header comments (some readers fail on them)", 0},
     {"profile", OPTION_TO(build_options, profile), NULL, 0,
      "print the time of each stage: processor time of one thread, or with more of them elapsed time", 0},
     {"json", OPTION_TO(build_options, json), NULL, 0, "print one JSON object on stdout", 0},
@@ -116,16 +116,16 @@ const struct argp build_argp = {
            "them. The recording's own depth is ignored.\n"
            "\n"
            "--poses estimate: the first context view keeps its recorded pose, or is the origin. Each other view is "
-           "joined to the best of those before it. With depth in both views, lengths are those of the depth; from "
-           "colour alone, the first two cameras are 1 apart, unless some depth gives their distance. Frames too "
+           "joined to the best earlier one. With depth in both views, lengths come from the depth; from colour "
+           "alone, the first two cameras are 1 apart, unless some depth gives their distance. Frames too unlike, a "
            "unlike, a camera that only turned, and features on one plane are refused. `trim3r import --poses estimate` "
-           "keeps the poses in the recording.\n"
+           "the poses in the recording.\n"
            "\n"
            "--colmap: DIR/images/ holds the context views at the working size, undistorted. DIR/sparse/0/ holds "
-           "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir DIR) "
-           "look for them. InstantSplat's place for N views is DIR/sparse_N/0/. A point is observed in the view that "
-           "it came from. With --head none --refine 0 the points are the retained pixels themselves, otherwise they "
-           "are where the head and refinement put them.",
+           "cameras.txt, images.txt and points3D.txt, where 3D Gaussian Splatting (-s DIR) and gsplat (--data_dir "
+           "DIR) look for them. InstantSplat's place for N views is DIR/sparse_N/0/. A point is observed in the "
+           "view that it came from. With --head none --refine 0 the points are the retained pixels themselves, "
+           "otherwise they are where the head and refinement put them.",
     .children = children,
 };
 
@@ -142,7 +142,7 @@ static bool refines(const build_options *o)
     return o->settings.config.refine > 0 && o->settings.method->refines;
 }
 
-/* Frames that stereo could match with no other. */
+/* Adds the frames that stereo could match with no other. */
 static void add_unmatched(cJSON *root, const build_options *o, const reconstruction_account *account,
                           const reconstruction *r)
 {
@@ -215,13 +215,13 @@ static void print_json(const build_options *o, const reconstruction_account *acc
         cJSON_AddItemToArray(origin, cJSON_CreateNumber((double)r->scene.frame.origin_q32[i] / 4294967296.0));
     }
     cJSON_AddNumberToObject(root, "exponent", r->scene.frame.exponent);
-    if (o->settings.method == &method_trim3r) { /* floats promise no bits */
+    if (o->settings.method == &method_trim3r) { /* floats have no promise of identical bits */
         json_add_hash(root, "hash", reconstruction_hash(r));
     }
     json_print(root);
 }
 
-/* "head small crc 1a2b3c4d"; "pruned" of a scene made elsewhere */
+/* Writes "head small crc 1a2b3c4d"; "pruned" for a scene made elsewhere. */
 static void note_head(const reconstruction_account *account, char *text, size_t bytes)
 {
     int length = snprintf(text, bytes, account->head[0] != '\0' ? "head %s" : "pruned%s", account->head);
@@ -249,7 +249,7 @@ static int write_all(const build_options *o, const t3r_recording *recording, con
     return o->colmap != NULL ? colmap_start_write(&start, folder, o->colmap) : CLI_OK;
 }
 
-/* What the context views cost to draw: of the one whose tiles list most. */
+/* Computes the drawing cost of the context view whose tiles list most. */
 static int account_for_lists(const build_options *o, const t3r_recording *recording, const t3r_scene *scene,
                              const reconstruction_account *account, tile_lists *most)
 {
@@ -309,7 +309,7 @@ static void print_text(const build_options *o, const reconstruction_account *acc
     }
 }
 
-/* Spells out the default, the first two frames. */
+/* Makes the default explicit: the first two frames. */
 static void name_context(reconstruction_options *settings, const t3r_recording *recording)
 {
     if (settings->context_count == 0) {

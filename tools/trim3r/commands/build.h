@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The options and the work of `trim3r build`, for any method. */
+/* Options and work of `trim3r build`, for any method. */
 #ifndef TRIM3R_TOOLS_COMMANDS_BUILD_H
 #define TRIM3R_TOOLS_COMMANDS_BUILD_H
 
@@ -16,10 +16,10 @@ typedef struct build_options {
     reconstruction_options settings;
 } build_options;
 
-/* Before build_argp, which takes build_options *. The method is trim3r. */
+/* Sets defaults for build_argp, which parses into build_options *. The method is trim3r. */
 void build_defaults(build_options *options);
 extern const struct argp build_argp;
-/* An exit status of cli.h. */
+/* Builds; returns an exit status of cli.h. */
 int build_run(build_options *options);
 
 #endif

@@ -18,14 +18,12 @@
 #include "cli/options/file_options.h"
 
 #define ERROR_BYTES 512
-#define MOST_MOTIONS 3000u           /* frames that an offset is estimated from */
-#define RANGE_NS INT64_C(1000000000) /* of offsets about the one to be expected */
-
-/* ---- stopping ---- */
+#define MOST_MOTIONS 3000u           /* frames for estimating an offset */
+#define RANGE_NS INT64_C(1000000000) /* search range about the expected offset */
 
 static volatile sig_atomic_t stop;
 
-/* A second signal ends the process. */
+/* Handles signals; a second one ends the process. */
 static void on_signal(int signal_number)
 {
     if (stop != 0) {
@@ -42,8 +40,6 @@ static void watch_signals(void)
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
 }
-
-/* ---- --list ---- */
 
 static void say_device(void *user, const char *line)
 {
@@ -69,9 +65,7 @@ static int list(void)
     return CLI_OK;
 }
 
-/* ---- poses ---- */
-
-/* How the picture moves from frame to frame; *count motions in a heap array. */
+/* Measures the picture's motion from frame to frame; *count motions in a heap array. */
 static clock_motion *motions_of(const capture_options *o, uint32_t *count, char *error)
 {
     t3r_capture *capture = t3r_capture_open(o->source, &o->settings, error, ERROR_BYTES);
@@ -122,7 +116,7 @@ static int estimate_offset(const capture_options *o, const trajectory *poses, cl
     if (motions == NULL) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    if (stop != 0) { /* of a part of the frames an offset would pass for that of all */
+    if (stop != 0) { /* an offset from a part of the frames would pass for the whole */
         free(motions);
         return CLI_OK;
     }
@@ -142,8 +136,6 @@ static int estimate_offset(const capture_options *o, const trajectory *poses, cl
     free(motions);
     return status == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
-
-/* ---- the run ---- */
 
 static int run(const capture_options *o, const trajectory *poses, const clock_offset *offset)
 {

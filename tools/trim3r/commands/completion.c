@@ -11,7 +11,7 @@
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 
-/* Of completion.bash and its like (tools/CMakeLists.txt). */
+/* Contents of completion.bash and the like (tools/CMakeLists.txt). */
 extern const char completion_bash[], completion_zsh[], completion_fish[];
 
 static const struct {

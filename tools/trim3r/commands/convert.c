@@ -67,9 +67,9 @@ static const struct argp argp = {
     .options = argp_options,
     .parser = parse_option,
     .args_doc = "SCENE",
-    .doc = "Turn a scene file into another format."
-           "\vThe scene's first bytes say what is read, the ending of -o what is written. Harmonics are kept up to the "
-           "degree that the format holds.\n"
+    .doc = "Turn a scene file into another format.\v"
+           "The scene's first bytes determine the format to read, the "
+           "ending of -o the one to write. Harmonics are kept up to the degree that the format holds.\n"
            "\n"
            "Examples:\n"
            "  trim3r convert scene.ply -o scene.spz\n"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r diff: what differs between two scenes, or two views. Exit status 0 = equal, 1 = different. */
+/* trim3r diff: compares two scenes or two views. Exit status 0 = equal, 1 = different. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
@@ -65,8 +65,6 @@ static const struct argp argp = {
            "Exit status: 0 equal, 1 different or unreadable, 2 bad usage.",
     .children = children,
 };
-
-/* ---- scenes ---------------------------------------------------------------------------------------------------- */
 
 typedef struct scene_difference {
     uint32_t different; /* Gaussians that are not the same */
@@ -160,8 +158,6 @@ static int diff_scenes(const diff_options *o)
     scene_file_free(&scene[1]);
     return equal ? CLI_OK : CLI_BAD_INPUT;
 }
-
-/* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
 typedef struct picture_difference {
     uint64_t different; /* samples */

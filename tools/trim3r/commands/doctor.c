@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r doctor: what this machine and this build have, and whether they give the right bits. */
+/* trim3r doctor: checks this machine and this build, and whether they give the right bits. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
@@ -66,20 +66,22 @@ static const struct argp_child children[] = {{.argp = &processor_argp}, {0}};
 static const struct argp argp = {
     .options = option_table,
     .parser = parse,
-    .doc = "List what this machine and this build have, and check that they give the bits that every machine gives."
-           "\vExamples:\n"
+    .doc = "List the features of this machine and this build, and check that they give the same bits as every "
+           "machine.\v"
+           "Examples:\n"
            "  trim3r doctor\n"
            "  trim3r doctor --cpu-mask none --json\n"
-           "  trim3r doctor --threads all\n\n"
+           "  trim3r doctor --threads all\n"
+           "\n"
            "The self-check builds a small scene of the built-in room and draws it, with the threads and vector "
-           "extensions given. Its hash is the same on every machine; exit status 1 where it is another. Then a second "
-           "build in plain C on one thread shows whether those are the cause.\n\n"
-           "Cameras are listed by the names that the system has for them. None is opened.",
+           "extensions given. Its hash is the same on every machine; otherwise the exit status is 1, and a second "
+           "build in plain C on one thread shows whether those are the cause.\n"
+           "\n"
+           "Cameras are listed by the system's names. None is opened.",
     .children = children,
 };
 
-/* ---- what there is ------------------------------------------------------------------------------------------------
- */
+/* ---- features -------------------------------------------------------------------------------------------------- */
 
 typedef struct camera_list {
     char name[CAMERAS_MOST][CAMERA_BYTES]; /* "/dev/video0: its name" */
@@ -93,7 +95,7 @@ static int compare_names(const void *a, const void *b)
     return x != y ? (x > y) - (x < y) : strcmp(a, b);
 }
 
-/* The devices of V4L2, by what the kernel lists; nothing is opened but that list. */
+/* Lists V4L2 devices from the kernel's list; opens nothing else. */
 static void find_cameras(camera_list *list)
 {
     list->count = 0;
@@ -121,7 +123,7 @@ static void find_cameras(camera_list *list)
     qsort(list->name, list->count, sizeof list->name[0], compare_names);
 }
 
-/* Bytes of memory; 0 where the system does not name them. */
+/* Returns bytes of memory; 0 if the system does not report them. */
 static int64_t memory_bytes(int name)
 {
     const long pages = sysconf(name), page = sysconf(_SC_PAGESIZE);
@@ -153,8 +155,7 @@ static void look_around(machine *m, const options *o)
     m->poses = pose_module_load(m->no_poses, sizeof m->no_poses);
 }
 
-/* ---- what is printed -----------------------------------------------------------------------------------------------
- */
+/* ---- output ---------------------------------------------------------------------------------------------------- */
 
 static void print_json(const machine *m, const options *o)
 {
@@ -213,7 +214,7 @@ static void print_text(const machine *m, const options *o)
     printf("%-12s %s, %s\n", "self-check", text, m->hash == o->expected ? "as on every machine" : "wrong");
 }
 
-/* Exit status 1 with the cause, as far as it can be told. */
+/* Returns exit status 1 with the cause, if known. */
 static int verdict(const machine *m, const options *o)
 {
     char found[HASH_TEXT_BYTES], expected[HASH_TEXT_BYTES];

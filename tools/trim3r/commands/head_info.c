@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r head-info: what a head consists of. */
+/* trim3r head-info: describes a head. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
@@ -32,7 +32,7 @@ typedef struct head_summary {
     bool is_float;
     bool has_range[T3R_MAX_LAYERS];        /* of a float head */
     size_t work_bytes[T3R_MAX_LAYERS + 1]; /* rows held of the features and of each layer */
-    size_t work_total;                     /* the columns under a kernel included */
+    size_t work_total;                     /* including the columns under a kernel */
 } head_summary;
 
 enum { KEY_SIZE = 0x100 };
@@ -68,20 +68,20 @@ static const struct argp parser = {
     .options = argp_options,
     .parser = parse_option,
     .args_doc = "FILE.t3w\nFILE.safetensors",
-    .doc =
-        "Show a head's layers: what they read, their channels, multiply-accumulates a pixel with all points kept, "
-        "bytes and work bytes; every field of the file is checked.\v"
-        "Sources: 0 are the features, n is layer n. Bytes: weights, biases, multipliers and shifts; of a float head, "
-        "what they will be with 8-bit weights and activations. Work bytes: the rows of a layer's output that must be "
-        "in memory at once when a view goes through row by row.\n"
-        "\n"
-        "Examples:\n"
-        "  trim3r head-info small.t3w\n"
-        "  trim3r head-info small.safetensors --size 96x96\n"
-        "  trim3r head-info small.t3w --json",
+    .doc = "Show a head's layers: their sources, their channels, multiply-accumulates a pixel with all points kept, "
+           "bytes and work bytes; every field of the file is checked.\v"
+           "Sources: 0 are the features, n is layer n. "
+           "Bytes: weights, biases, multipliers and shifts; of a float head, what they will be with 8-bit weights and "
+           "activations. Work bytes: the rows of a layer's output that must be in memory at once when a view goes "
+           "through row by row.\n"
+           "\n"
+           "Examples:\n"
+           "  trim3r head-info small.t3w\n"
+           "  trim3r head-info small.safetensors --size 96x96\n"
+           "  trim3r head-info small.t3w --json",
 };
 
-/* The work that the runtime itself lays out for a file, checked or an outline. */
+/* Measures the work that the runtime lays out for a file, checked or an outline. */
 static void measure_work(head_summary *head, const uint8_t *file, uint32_t width, uint32_t height)
 {
     t3r_network network;

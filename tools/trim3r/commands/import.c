@@ -41,7 +41,7 @@ typedef struct options {
     recording_options stored;
 } options;
 
-/* What is written: the folder's frames with what is made of them. */
+/* The data to write: the folder's frames and derived data. */
 typedef struct material {
     posed_folder folder;
     pointmap_source pointmaps;
@@ -199,7 +199,7 @@ static const struct argp parser = {
         "  trim3r import broken.mcap -o whole.mcap",
 };
 
-/* The folder's own name: what the recording says it was made from. */
+/* Returns the folder's own name, the recording's source. */
 static char *source_name(const char *directory, const char *kind)
 {
     char *full = realpath(directory, NULL);
@@ -342,13 +342,13 @@ static void print_text(const options *o, const material *m, const totals *t)
     }
 }
 
-/* Whether options that only pointmaps heed are given: the one to name, else NULL. */
+/* Returns a given option that only pointmaps use, or NULL. */
 static const char *pointmap_option(const pointmap_options *o)
 {
     return o->confidence_least != -HUGE_VAL ? "--min-confidence" : o->depth_unit != 0 ? "--depth-unit" : NULL;
 }
 
-/* The folder's lists, then what options make of them: pointmaps, poses. */
+/* Reads the folder's lists, then applies the options: pointmaps, poses. */
 static int prepare(const options *o, material *m, char *error)
 {
     bool estimate = o->poses != POSES_GIVEN;
@@ -381,13 +381,13 @@ static int prepare(const options *o, material *m, char *error)
     }
     if (o->pointmaps.depth_unit != 0 && !(depth && o->pointmaps.depth_unit == m->folder.depth_unit)) {
         return t3r_reason(error, ERROR_BYTES,
-                          "%s: --depth-unit is for pointmaps and for depth whose unit the folder does not tell",
+                          "%s: --depth-unit is for pointmaps and for depth whose unit the folder does not give",
                           o->directory);
     }
     return 0;
 }
 
-/* Poses, where they are to be estimated, and the recording: 0, IMPORT_UNREADABLE, or -1. */
+/* Estimates poses if requested, and writes the recording: 0, IMPORT_UNREADABLE, or -1. */
 static int make(const options *o, material *m, totals *t, char *error)
 {
     char reason[ERROR_BYTES - 300];
@@ -408,7 +408,7 @@ static int make(const options *o, material *m, totals *t, char *error)
     return write_recording(o, m, t, error);
 }
 
-/* The same without pictures that cannot be read, where there are such. Pointmaps go with all pictures. */
+/* Does the same without unreadable pictures, if there are any. Pointmaps need all pictures. */
 static int make_of_what_can_be_read(const options *o, material *m, totals *t, char *error)
 {
     char reason[ERROR_BYTES - 300];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r info: what a recording or scenes hold. */
+/* trim3r info: describes a recording or scenes. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
@@ -60,7 +60,7 @@ static void check_options(struct argp_state *state, const options *o)
         argp_error(state, "--svg and --view belong to scenes");
     }
     if (o->scene_count > 0 && o->has_view != (o->recording != NULL)) {
-        argp_error(state, "beside scenes REC.mcap and --view belong together");
+        argp_error(state, "with scenes, REC.mcap and --view belong together");
     }
 }
 
@@ -88,7 +88,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 
 static const struct argp_option argp_options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
-    {"view", KEY_VIEW, "N", 0, "frame of REC.mcap in whose pixels the scales are shown, too", 0},
+    {"view", KEY_VIEW, "N", 0, "frame of REC.mcap whose pixels are a second unit of the scales", 0},
     {"svg", OPTION_TO(options, svg), "FILE", OPTION_WRITES(FILE_SVG),
      "picture to write: histograms of the scenes' scales", 0},
     {"json", OPTION_TO(options, json), NULL, 0, "print one JSON object on stdout", 0},
@@ -100,13 +100,13 @@ static const struct argp parser = {
     .options = argp_options,
     .parser = parse_option,
     .args_doc = "REC.mcap\nSCENE.ply... [REC.mcap --view N]",
-    .doc = "Show what a recording holds: frames, streams, clock, pairing, triplets. Or what scenes hold: Gaussians, "
-           "bounds, "
-           "and how wide the Gaussians are.\v"
-           "The scale of a Gaussian is the root of the product of its two largest standard deviations, in world units. "
-           "With --view also in pixels of that frame, at the median depth of the first scene's Gaussians within its "
-           "picture. JSON: scale_edges are a quarter of an octave apart, scale_counts the Gaussians between them; what "
-           "lies beyond is in the first and the last.\n\n"
+    .doc = "Show the contents of a recording: frames, streams, clock, pairing, triplets. Or of scenes: Gaussians, "
+           "bounds, and the widths of the Gaussians.\v"
+           "The scale of a Gaussian is the root of the product of its two "
+           "largest standard deviations, in world units. With --view also in pixels of that frame, at the median "
+           "depth of the first scene's Gaussians within its picture. JSON: scale_edges are a quarter of an octave "
+           "apart, scale_counts the Gaussians between them; the first and the last include everything beyond.\n"
+           "\n"
            "Examples:\n"
            "  trim3r info room.mcap\n"
            "  trim3r info --json room.mcap\n"
@@ -119,7 +119,7 @@ static const char *distortion_name(t3r_distortion distortion)
     return distortion == T3R_DISTORTION_NONE ? "none" : distortion == T3R_DISTORTION_RADTAN ? "radtan" : "fisheye";
 }
 
-/* Of compressed images the first is decoded, as a sample. */
+/* Returns the number of frames to read: of compressed images only the first is decoded, as a sample. */
 static uint32_t frames_to_see(const t3r_recording *recording)
 {
     uint32_t count = t3r_recording_frame_count(recording);

@@ -26,7 +26,7 @@
 #include "reconstruction/reconstruction_error.h"
 
 typedef struct plan_options {
-    t3r_config config; /* but for the head; a render_width of 0 is the working size */
+    t3r_config config; /* without the head; a render_width of 0 is the working size */
     uint64_t within;   /* bytes of the arena; 0 = as many as it takes */
     uint64_t ram;      /* bytes of RAM; 0 = the settings are given */
     double keep;       /* the budget as percent of the points; 0 = as a count */
@@ -67,7 +67,7 @@ static const struct argp_option options[] = {
      "bytes of an arena, for the largest budget that it can hold, at most --gaussians (all points of the views)", 0},
     {"ram", KEY_RAM, "BYTES[K|M|G]", 0,
      "bytes of a device's RAM, as 256K or 4M: print the best settings for it, and what takes it", 0},
-    {"preset", KEY_PRESET, "fast|balanced|best", 0, "head and refinement that build has for so much work", 0},
+    {"preset", KEY_PRESET, "fast|balanced|best", 0, "head and refinement of build for an amount of work", 0},
     {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
     {"keep-analysis", KEY_KEEP_ANALYSIS, NULL, 0, "keep the analysis after the build, so that the budget can change",
      0},
@@ -273,7 +273,7 @@ static int write_svg(const char *path, const t3r_plan_info *plan)
     return whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
-/* To what an arena of so many bytes can hold. */
+/* Lowers the budget to what an arena of `bytes` can hold. */
 static int lower_budget(t3r_config *config, uint64_t bytes)
 {
     if (config->gaussians == 0) {
@@ -291,7 +291,7 @@ static int lower_budget(t3r_config *config, uint64_t bytes)
                      plan.min_bytes);
 }
 
-/* The arena of one configuration, and the work in it. */
+/* Prints the arena of one configuration and its work. */
 static int print_plan(const plan_options *o, const t3r_config *config, const chosen_head *head)
 {
     t3r_plan_info plan;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r render: a scene file seen from somewhere. */
+/* trim3r render: draws a scene file from a viewpoint. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
@@ -239,7 +239,7 @@ static int choose_viewpoints(const render_options *o, viewpoint_list *views)
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
-/* "dir/view.png" with index 7 of several: "dir/view_0007.png" */
+/* Writes "dir/view_0007.png" for "dir/view.png" with index 7 of several. */
 static int numbered_path(const char *path, uint32_t index, uint32_t count, char out[MAX_PATH_BYTES])
 {
     const char *slash = strrchr(path, '/');

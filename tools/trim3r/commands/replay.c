@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r replay: the hash of every stage, against an earlier run's. */
+/* trim3r replay: hashes every stage and compares with an earlier run. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
@@ -53,7 +53,7 @@ static const struct argp_option options[] = {
      "expected final hash, or the JSON of an earlier run; exit status 1 when it differs", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout, fit for --expect", 0},
     {"slide", OPTION_TO(replay_options, slides), NULL, 0,
-     "build a scene at every frame, of it and the one before; print the time of each and the hash of all", 0},
+     "build a scene at every frame, of it and the previous one; print the time of each and the hash of all", 0},
     {NULL, 0, NULL, 0, "A map that follows the camera:", 5},
     {"stream", OPTION_TO(replay_options, streams), NULL, 0,
      "take all frames in turn: keyframes go into one map of at most --gaussians; the frames between them are drawn and "
@@ -67,7 +67,7 @@ static const struct argp_option options[] = {
      "folder to write the held-back frames that have a depth and their views into: frame_<frame>.png, mask_, live_, "
      "final_",
      0},
-    {"output", 'o', "MAP.ply", OPTION_WRITES(FILE_SCENE), "scene to write: the map as it is in the end", 0},
+    {"output", 'o', "MAP.ply", OPTION_WRITES(FILE_SCENE), "scene to write: the final map", 0},
     {0},
 };
 
@@ -158,7 +158,7 @@ static const struct argp argp = {
 
 /* ---- the run ---------------------------------------------------------------------------------------------------- */
 
-/* The first place that differs, as text; "" when none does. */
+/* Writes the first place that differs as text; "" if none does. */
 static void find_difference(const expectation *e, const reconstruction *r, const replayed_view *view, char *text,
                             size_t text_bytes)
 {

@@ -101,22 +101,22 @@ static const struct argp argp = {
     .options = options,
     .parser = parse,
     .args_doc = "REC.mcap|SCENE.ply [REC.mcap|SCENE.ply]",
-    .doc = "Show a scene or a recording in a browser, by the runtime itself as WebAssembly."
-           "\vExamples:\n"
+    .doc = "Show a scene or a recording in a browser, by the runtime itself as WebAssembly.\v"
+           "Examples:\n"
            "  trim3r view room.mcap --context 0,2 -o view.html\n"
            "  trim3r view room.mcap --context 0,2 --keep 5% --head tiny\n"
            "  trim3r view scene.ply -o view.html\n"
-           "  trim3r view scene.ply room.mcap --context 0,2 --port 8080\n\n"
+           "  trim3r view scene.ply room.mcap --context 0,2 --port 8080\n"
+           "\n"
            "The page builds scenes of a recording itself: a slider changes the budget, and mask, SuperClusters, "
-           "texture and "
-           "error are drawn over the frames. The first scene is built here as well, and the page compares the hashes. "
-           "A scene file is drawn as it is; with a recording beside, the page does both.\n\n"
+           "texture and error are drawn over the frames. The first scene is built here as well, and the page "
+           "compares the hashes. A scene file is drawn as it is; with a recording as well, the page does both.\n"
+           "\n"
            "With -o the page is one file that fetches nothing. Without, it is served on 127.0.0.1 until Ctrl-C.",
     .children = children,
 };
 
-/* ---- what the page is given -----------------------------------------------------------------------------------------
- */
+/* ---- the page's data ------------------------------------------------------------------------------------------- */
 
 static int add_frames(viewpoints *v, const view_options *o, const t3r_recording *recording, const reconstruction *r)
 {
@@ -137,7 +137,7 @@ static int add_frames(viewpoints *v, const view_options *o, const t3r_recording 
     return code;
 }
 
-/* Builds here what the page builds first, so that it can compare. */
+/* Builds what the page builds first, so that the page can compare. */
 static int prepare_recording(const view_options *o, reconstruction *r, viewpoints *v, viewer_page *page)
 {
     char error[ERROR_BYTES] = "";
@@ -170,8 +170,7 @@ static void prepare_scene(const scene_file *scene, viewpoints *v, viewer_page *p
     viewpoints_add_before(v, scene, WIDTH, HEIGHT);
 }
 
-/* ---- where the page goes
- * ---------------------------------------------------------------------------------------------- */
+/* ---- output ---------------------------------------------------------------------------------------------------- */
 
 static void tell(const view_options *o, const viewer_page *page, const char *key, const char *where, uint64_t bytes)
 {
@@ -212,7 +211,7 @@ static int write_file(const view_options *o, const viewer_page *page)
     return CLI_OK;
 }
 
-/* The page in memory, on the heap; NULL when memory is out. */
+/* Returns the page in heap memory; NULL if out of memory. */
 static char *page_text(const viewer_page *page, size_t *bytes)
 {
     char *text = NULL;

@@ -81,8 +81,6 @@ function load({ frames }) {
            psnr: frames.map(psnr) };
 }
 
-/* ---- drawing ----------------------------------------------------------------------------------------------------- */
-
 const fixed = (value, bits) => Math.round(value * 2 ** bits);
 const fixed64 = (value) => BigInt(Math.round(value * 4294967296));
 

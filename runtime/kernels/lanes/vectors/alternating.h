@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The halves of numbers of 64 bits, and tables of pairs, where lanes alternate (even_odd.h) and no mask registers join
+/* Halves of 64-bit numbers, and tables of pairs, for lanes that alternate (even_odd.h) without mask registers to join
  * them. */
 #ifndef T3R_KERNELS_LANES_ALTERNATING_H
 #define T3R_KERNELS_LANES_ALTERNATING_H
 
-/* Even lanes of one, odd ones of the other. */
+/* Joins even lanes of one and odd lanes of the other. */
 static inline T3R_LANES_TARGET lanes alternating(lanes even, lanes odd);
 
-/* The low and the high halves of 64 bits. */
+/* Return the low and the high halves of 64 bits. */
 static inline T3R_LANES_TARGET lanes low_of(wide x)
 {
     return alternating(x.even, OF_LANES(slli_epi64)(x.odd, 32));
@@ -18,16 +18,16 @@ static inline T3R_LANES_TARGET lanes high_of(wide x)
     return alternating(odd_of(x.even), x.odd);
 }
 
-/* Two neighbours in the table. */
+/* Loads two neighbours in the table. */
 static inline T3R_LANES_TARGET quad pair_at(const uint32_t *table, const uint32_t *index)
 {
     return load_half_quad(&table[*index]);
 }
 
-/* A vector of parts of 128 bits. */
+/* Joins parts of 128 bits to a vector. */
 static inline T3R_LANES_TARGET lanes joined(const quad x[LANES / 4]);
 
-/* Pairs of every other entry. */
+/* Loads pairs for every other entry. */
 static inline T3R_LANES_TARGET lanes pairs_at(const uint32_t *table, const uint32_t *index)
 {
     quad x[LANES / 4];
@@ -37,7 +37,7 @@ static inline T3R_LANES_TARGET lanes pairs_at(const uint32_t *table, const uint3
     return joined(x);
 }
 
-/* Entries 0..127 of a table of 129, and those after them. Loads one by one take no more time than a gather. */
+/* Looks up entries 0..127 of a table of 129, and the next ones. Single loads take no more time than a gather. */
 static inline T3R_LANES_TARGET void look_up(const uint32_t *table, lanes index, lanes *entry, lanes *next)
 {
     uint32_t at[LANES];

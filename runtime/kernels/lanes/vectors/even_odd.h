@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Numbers of 64 bits in the place of two lanes: where instructions multiply even lanes. Comes behind operations.h. */
+/* 64-bit numbers in the place of two lanes, for instructions that multiply even lanes. Included after operations.h. */
 #ifndef T3R_KERNELS_LANES_EVEN_ODD_H
 #define T3R_KERNELS_LANES_EVEN_ODD_H
 
@@ -13,13 +13,13 @@ static inline T3R_LANES_TARGET lanes odd_of(lanes x)
     return OF_LANES(srli_epi64)(x, 32);
 }
 
-/* A lane in the low half of its 64 bits; the high one is of no use. */
+/* Puts each lane in the low half of its 64 bits; the high half is unused. */
 static inline T3R_LANES_TARGET wide spread(lanes x)
 {
     return (wide){x, odd_of(x)};
 }
 
-/* A lane in the high half of its 64 bits, above 0. */
+/* Puts each lane in the high half of its 64 bits, above 0. */
 static inline T3R_LANES_TARGET wide lifted(lanes x)
 {
     return (wide){OF_LANES(slli_epi64)(x, 32), without(ALL_64(UINT32_MAX), x)};
@@ -55,7 +55,7 @@ static inline T3R_LANES_TARGET wide all_wide(int64_t x)
     return (wide){ALL_64(x), ALL_64(x)};
 }
 
-/* Unsigned shifts: of the result only what bits had is right. */
+/* Shifts as unsigned: only the bits that were there are valid. */
 static inline T3R_LANES_TARGET wide right(wide x, uint8_t shift)
 {
     return (wide){OF_LANES(srli_epi64)(x.even, shift), OF_LANES(srli_epi64)(x.odd, shift)};

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Sixteen unsigned bits a lane, in plain C: eight lanes where the target has vectors, one where it has none.
+/* Lanes of 16 unsigned bits in plain C: eight where the target has vectors, otherwise one.
  *
- * Each step is a loop of its own over all lanes, so that a compiler sees 16 bits go in and come out and takes one
- * vector instruction. In one loop over all steps GCC widens products of products to 32 bits. */
+ * Each step is a separate loop over all lanes with 16-bit inputs and outputs, which compilers turn into one vector
+ * instruction. In one loop over all steps GCC widens products of products to 32 bits. */
 #ifndef T3R_KERNEL_LANES_H
 #define T3R_KERNEL_LANES_H
 
@@ -16,8 +16,8 @@
 #define T3R_C_LANES 1
 #endif
 
-/* GCC makes vectors of a loop over an array, as long as it does not unroll it first. Clang unrolls it, or leaves lanes
- * in memory; it makes vectors of a vector. */
+/* GCC vectorizes a loop over an array if it does not unroll it first. Clang unrolls it, or leaves lanes in memory, but
+ * vectorizes a vector type. */
 #if defined(__clang__) && T3R_C_LANES > 1
 #define T3R_LANES_ARE_VECTOR
 typedef uint16_t t3r_lanes_row __attribute__((vector_size(2 * T3R_C_LANES)));
@@ -62,7 +62,7 @@ static inline t3r_lanes t3r_lanes_of(uint16_t x)
 
 static inline t3r_lanes t3r_lanes_mul_q16(t3r_lanes a, t3r_lanes b)
 {
-#ifdef T3R_LANES_ARE_VECTOR /* t3r_mul_q16 of each lane: in a loop clang multiplies in 32 bits */
+#ifdef T3R_LANES_ARE_VECTOR /* t3r_mul_q16() of each lane: in a loop clang multiplies in 32 bits */
     const t3r_lanes_wide product =
         __builtin_convertvector(a.x, t3r_lanes_wide) * __builtin_convertvector(b.x, t3r_lanes_wide);
     a.x = __builtin_convertvector(product >> 16, t3r_lanes_row);
@@ -115,7 +115,7 @@ static inline t3r_lanes t3r_lanes_or(t3r_lanes a, t3r_lanes b)
     return a;
 }
 
-/* x, or 0 where `of` is below `least`. */
+/* Returns x, or 0 where `of` is below `least`. */
 static inline t3r_lanes t3r_lanes_where_at_least(t3r_lanes x, t3r_lanes of, uint16_t least)
 {
     T3R_EACH_LANE

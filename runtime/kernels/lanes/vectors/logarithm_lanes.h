@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Logarithms by the table of core/fixed_tables.h. Comes behind a header of lanes. */
+/* Logarithms by the table of core/fixed_tables.h. Included after a header of lanes. */
 #ifndef T3R_KERNELS_LANES_LOGARITHM_LANES_H
 #define T3R_KERNELS_LANES_LOGARITHM_LANES_H
 
 #include "core/fixed_tables.h"
 
-/* Between an entry of the table and the next. */
+/* Interpolates between an entry of the table and the next. */
 static inline T3R_LANES_TARGET lanes interpolated(const uint32_t *table, lanes index, lanes fraction_q16)
 {
     lanes entry, next;
@@ -14,7 +14,7 @@ static inline T3R_LANES_TARGET lanes interpolated(const uint32_t *table, lanes i
     return add(entry, OF_LANES(srli_epi32)(add(multiply(step, fraction_q16), all(0x8000)), 16));
 }
 
-/* The logarithm's fraction, Q16, of a number whose bit 30 is the highest. */
+/* Returns the logarithm's fraction, Q16, of numbers whose highest bit is bit 30. */
 static inline T3R_LANES_TARGET lanes log_fraction_q16(lanes normal)
 {
     const lanes index = both(OF_LANES(srli_epi32)(normal, 23), all(127));
@@ -23,7 +23,7 @@ static inline T3R_LANES_TARGET lanes log_fraction_q16(lanes normal)
     return OF_LANES(srli_epi32)(add(log_q20, all(8)), 4);
 }
 
-/* t3r_log2_q16(), x in 2^(31 - 2 first_step)..2^31 - 1 */
+/* Returns t3r_log2_q16(), x in 2^(31 - 2 first_step)..2^31 - 1. */
 static inline T3R_LANES_TARGET lanes log_q16(lanes x, int first_step)
 {
     lanes by;

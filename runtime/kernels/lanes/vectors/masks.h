@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What instruction sets without mask registers share: a mask has all bits of a lane, or none. Comes behind
+/* Shared by instruction sets without mask registers: a mask has all bits of a lane, or none. Included after
  * operations.h. */
 #ifndef T3R_KERNELS_LANES_MASKS_H
 #define T3R_KERNELS_LANES_MASKS_H
 
-/* All bits where a is greater, or equal; else none. */
+/* Return all bits set where a is greater, or equal. */
 static inline T3R_LANES_TARGET lanes greater(lanes a, lanes b)
 {
     return OF_LANES(cmpgt_epi32)(a, b);
@@ -15,13 +15,13 @@ static inline T3R_LANES_TARGET lanes equal(lanes a, lanes b)
     return OF_LANES(cmpeq_epi32)(a, b);
 }
 
-/* a >= b, of unsigned numbers */
+/* Returns a >= b for unsigned numbers. */
 static inline T3R_LANES_TARGET lanes at_least(lanes a, lanes b)
 {
     return equal(OF_LANES(max_epu32)(a, b), a);
 }
 
-/* b where the mask has all bits, else a */
+/* Returns b where the mask has all bits, else a. */
 static inline T3R_LANES_TARGET lanes chosen(lanes mask, lanes b, lanes a)
 {
     return OF_LANES(blendv_epi8)(a, b, mask);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the headers of lanes share: they name the type, the target and how its instructions begin. */
+/* Shared by the headers of lanes, which name the type, the target and the prefix of its instructions. */
 #ifndef T3R_KERNELS_LANES_OPERATIONS_H
 #define T3R_KERNELS_LANES_OPERATIONS_H
 
@@ -28,7 +28,7 @@ static inline T3R_LANES_TARGET lanes different(lanes a, lanes b)
     return OF_ALL_BITS(xor)(a, b);
 }
 
-/* Bits of b that a has not. */
+/* Returns the bits of b that are not in a. */
 static inline T3R_LANES_TARGET lanes without(lanes a, lanes b)
 {
     return OF_ALL_BITS(andnot)(a, b);
@@ -49,7 +49,7 @@ static inline T3R_LANES_TARGET lanes subtract(lanes a, lanes b)
     return OF_LANES(sub_epi32)(a, b);
 }
 
-/* Modulo 2^32. */
+/* Multiplies modulo 2^32. */
 static inline T3R_LANES_TARGET lanes multiply(lanes a, lanes b)
 {
     return OF_LANES(mullo_epi32)(a, b);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Eight pixels of a row of a tile in a vector: blending and scattering. Comes behind a header of four lanes. */
+/* Eight pixels of a tile's row in a vector, for blending and scattering. Included after a header of four lanes. */
 #ifndef T3R_KERNELS_LANES_PIXELS_OF_EIGHT_H
 #define T3R_KERNELS_LANES_PIXELS_OF_EIGHT_H
 
@@ -9,7 +9,7 @@
 #define PIXELS 8
 #define PIXELS_USUAL T3R_ONE_ROW
 
-/* Where they lie: pixels_avx2.h has more. */
+/* Shapes of a vector's pixels (pixels_avx2.h); here always one row. */
 typedef enum shape { T3R_ONE_ROW, T3R_TWO_ROWS, T3R_WHOLE_ROW } shape;
 
 static inline T3R_LANES_TARGET lanes load_pixels(const void *from, shape which)
@@ -24,7 +24,7 @@ static inline T3R_LANES_TARGET void store_pixels(uint16_t *at, shape which, lane
     store(at, x);
 }
 
-/* What was kept of the pixels. */
+/* Loads the kept weights and alphas of the pixels. */
 static inline T3R_LANES_TARGET void load_kept(const t3r_blended_row *row, const t3r_blended_row *high, shape which,
                                               lanes *weights, lanes *alphas)
 {

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Words of LANES records, a vector a word, read and written. Comes behind a header of lanes. */
+/* Reads and writes words of LANES records, one vector per word. Included after a header of lanes. */
 #ifndef T3R_KERNELS_LANES_RECORDS_H
 #define T3R_KERNELS_LANES_RECORDS_H
 
 #include <stddef.h>
 
-/* Four words each, which lie a record a quarter: to a vector a word, or back. */
+/* Transposes 4 x 4 words in each 128 bits. */
 static inline T3R_LANES_TARGET void transpose(lanes v[4])
 {
     const lanes a = OF_LANES(unpacklo_epi32)(v[0], v[1]), b = OF_LANES(unpackhi_epi32)(v[0], v[1]);
@@ -16,7 +16,7 @@ static inline T3R_LANES_TARGET void transpose(lanes v[4])
     v[3] = OF_LANES(unpackhi_epi64)(b, d);
 }
 
-/* Words 0..3 at from[0], from[1]... */
+/* Reads words 0..3 at from[0], from[1]... */
 static inline T3R_LANES_TARGET void read_four(const uint8_t *const from[LANES], size_t at, lanes word[4])
 {
     T3R_LANES_UNROLL for (int i = 0; i < 4; i++)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Shifts of each lane by its own count, where instructions have them: counts beyond the bits give 0, or the sign. */
+/* Shifts of each lane by its own count, for instruction sets that have them: counts beyond the bits give 0, or the
+ * sign. */
 #ifndef T3R_KERNELS_LANES_SHIFTS_H
 #define T3R_KERNELS_LANES_SHIFTS_H
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pixels of a tile by one number, row by row. */
+/* Addresses a tile's pixels by one number, row by row. */
 #ifndef T3R_KERNELS_LANES_TILE_PLANES_H
 #define T3R_KERNELS_LANES_TILE_PLANES_H
 
 #include "inline.h"
 #include "kernels/blend.h"
 
-/* Where pixel `place` of a plane lies, and those after it. */
+/* Returns the address of pixel `place` of a plane. */
 T3R_LANES_INLINE void *plane_at(void *plane, uint32_t place)
 {
     return (uint16_t *)plane + place;

@@ -27,7 +27,7 @@ static inline T3R_AVX2 lanes one_of(square s, lanes right, lanes below)
     return where(below, where(right, s.d, s.c), where(right, s.b, s.a));
 }
 
-/* Disparities may be T3R_NO_DISPARITY: then what is between means nothing. */
+/* Interpolates. The result is unused if a disparity is T3R_NO_DISPARITY. */
 static inline T3R_AVX2 lanes between(square s, lanes fx, lanes fy)
 {
     const ulanes upper = (ulanes)(s.a * 256 + fx * (s.b - s.a)), lower = (ulanes)(s.c * 256 + fx * (s.d - s.c));
@@ -39,7 +39,7 @@ static inline T3R_AVX2 lanes words_from(const uint16_t *plane, lanes at)
     return (lanes)_mm256_i32gather_epi32((const int *)(const void *)plane, (__m256i)at, 2);
 }
 
-/* size reciprocal / 2^shift, its lower 32 bits */
+/* Returns size reciprocal / 2^shift, its lower 32 bits. */
 static inline T3R_AVX2 ulanes times_reciprocal(ulanes size, const t3r_divisor *by)
 {
     const __m256i reciprocal = _mm256_set1_epi32((int)by->reciprocal);
@@ -49,7 +49,7 @@ static inline T3R_AVX2 ulanes times_reciprocal(ulanes size, const t3r_divisor *b
     return (ulanes)_mm256_blend_epi32(even, _mm256_slli_epi64(odd, 32), 0xaa);
 }
 
-/* t3r_divide_q24() with a limit of 4, of numbers above -2^31 */
+/* Returns t3r_divide_q24() with a limit of 4, of numbers above -2^31. */
 static inline T3R_AVX2 lanes divide_q24(const t3r_divisor *by, lanes x)
 {
     const lanes sign = x >> 31, limited = (lanes)((ulanes)((x ^ sign) - sign) >> 2) >= (int32_t)by->d;
@@ -99,8 +99,8 @@ static inline T3R_AVX2 void eight(const t3r_disparity_plane *plane, const int32_
 T3R_AVX2 void t3r_disparity_at_avx2(const t3r_disparity_plane *given, const t3r_ray_places *places, uint32_t count,
                                     t3r_disparities *out)
 {
-    const t3r_disparity_plane plane = *given; /* a copy: writing vectors changes none of what it holds */
-    /* farther columns are held, so that differences from the first stay within 32 bits */
+    const t3r_disparity_plane plane = *given; /* a copy, which vector writes cannot change */
+    /* columns further out are clamped, so that differences from the first stay within 32 bits */
     const int64_t from = (int64_t)plane.begin_q16 - 2 * 65536,
                   to = plane.begin_q16 + ((int64_t)plane.width + 1) * 65536;
     const int32_t columns[2] = {(int32_t)T3R_MAX(from, INT32_MIN), (int32_t)T3R_MIN(to, INT32_MAX)};

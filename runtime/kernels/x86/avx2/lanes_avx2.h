@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Eight numbers of 32 bits, and of 64 where a product has them: in vectors of AVX2. */
+/* Eight lanes of 32 bits, or 64 for products, in vectors of AVX2. */
 #ifndef T3R_KERNELS_X86_LANES_AVX2_H
 #define T3R_KERNELS_X86_LANES_AVX2_H
 
@@ -29,7 +29,7 @@ static inline T3R_AVX2 lanes alternating(lanes even, lanes odd)
     return _mm256_blend_epi32(even, odd, 0xaa);
 }
 
-/* One of two vectors of 128 bits. */
+/* Joins two vectors of 128 bits. */
 static inline T3R_AVX2 lanes joined(const quad x[LANES / 4])
 {
     return _mm256_inserti128_si256(_mm256_castsi128_si256(x[0]), x[1], 1);
@@ -40,19 +40,19 @@ static inline T3R_AVX2 quad part(lanes x, int i)
     return i == 0 ? _mm256_castsi256_si128(x) : _mm256_extracti128_si256(x, 1);
 }
 
-/* The same 128 bits throughout. */
+/* Repeats 128 bits. */
 static inline T3R_AVX2 lanes repeated(quad x)
 {
     return _mm256_broadcastsi128_si256(x);
 }
 
-/* a bit of each lane's sign */
+/* Returns one bit per lane, its sign. */
 static inline T3R_AVX2 uint32_t signs_of(lanes x)
 {
     return (uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(x));
 }
 
-/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: how far, below twice the first step. */
+/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: the shift, below twice the first step. */
 static inline T3R_AVX2 lanes normal_of(lanes x, int first_step, lanes *by)
 {
     *by = all(0);
@@ -64,19 +64,19 @@ static inline T3R_AVX2 lanes normal_of(lanes x, int first_step, lanes *by)
     return x;
 }
 
-/* The first 32 bits in all lanes. */
+/* Repeats the first 32 bits in all lanes. */
 static inline T3R_AVX2 lanes first_of(quad x)
 {
     return _mm256_broadcastd_epi32(x);
 }
 
-/* Pairs of signed numbers of 8 bits: widened to 16. */
+/* Loads pairs of signed 8-bit numbers, widened to 16. */
 static inline T3R_AVX2 lanes load_8(const uint8_t *from)
 {
     return _mm256_cvtepi8_epi16(_mm_loadu_si128((const __m128i_u *)(const void *)from));
 }
 
-/* Numbers of 16 bits, and back: these are below 2^16. */
+/* Load and store 16-bit numbers; stored ones are below 2^16. */
 static inline T3R_AVX2 lanes load_16(const uint16_t *from)
 {
     return _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)(const void *)from));

@@ -6,7 +6,7 @@
 
 #include "places_avx2.h"
 
-/* A row's pixel x and the next one, and what is between them. */
+/* A row's pixel x and the next one, and the weight between them. */
 typedef struct row_part {
     lanes here, next, between_q8;
 } row_part;
@@ -41,7 +41,7 @@ static inline T3R_AVX2 void eight(const t3r_luma_picture *picture, const t3r_ray
 T3R_AVX2 void t3r_luma_at_avx2(const t3r_luma_picture *given, const t3r_ray_places *places, uint32_t count,
                                uint8_t *out)
 {
-    const t3r_luma_picture picture = *given; /* a copy: writing bytes changes none of what it holds */
+    const t3r_luma_picture picture = *given; /* a copy, which byte writes cannot change */
     const uint32_t whole = count & ~7u;
     for (uint32_t i = 0; i < whole; i += 8) {
         eight(&picture, places, i, out + i);

@@ -59,7 +59,7 @@ static inline TARGET uint8_t first_of(bytes x)
     return (uint8_t)_mm_cvtsi128_si32(_mm256_castsi256_si128((__m256i)x));
 }
 
-/* Sixteen of them. */
+/* Sums sixteen of them. */
 static inline TARGET void sum_half(int16_t *sums, const bytes values[T3R_PATH_LINKS], uint32_t paths, bool upper,
                                    bool add)
 {
@@ -81,15 +81,11 @@ static inline TARGET void sum(int16_t *sums, const bytes values[T3R_PATH_LINKS],
     }
 }
 
-/* ---- census ---- */
-
 static inline TARGET bytes look_up(const uint8_t table[16], bytes x)
 {
     const __m256i both = _mm256_broadcastsi128_si256(_mm_loadu_si128((const __m128i *)table));
     return (bytes)_mm256_shuffle_epi8(both, (__m256i)x);
 }
-
-/* ---- winners ---- */
 
 static inline TARGET words load_words(const int16_t *from, uint32_t count)
 {
@@ -122,7 +118,7 @@ static inline TARGET uint32_t first_equal(words x, int16_t value)
     return mask == 0 ? WORDS : (uint32_t)__builtin_ctz(mask) / 2;
 }
 
-/* A function of its own for each number of disparities keeps everything in registers. */
+/* A separate function for each number of disparities keeps everything in registers. */
 #define FOLLOW(count)                                                                                                  \
     static TARGET void down_##count(const t3r_path_row *row)                                                           \
     {                                                                                                                  \
@@ -171,7 +167,7 @@ TARGET void t3r_path_row_avx2(const t3r_path_row *row)
     switch (row->disparities) {
         COUNTS(FOLLOWED)
     default:
-        t3r_path_row_c(row); /* a first look's alone */
+        t3r_path_row_c(row); /* only the coarse pass has other numbers */
     }
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Sixteen pixels of a tile in a vector, eight in each half: blending and scattering. */
+/* Sixteen pixels of a tile in a vector, eight in each half, for blending and scattering. */
 #ifndef T3R_KERNELS_X86_PIXELS_AVX2_H
 #define T3R_KERNELS_X86_PIXELS_AVX2_H
 
@@ -10,9 +10,9 @@
 #define PIXELS 16
 #define PIXELS_USUAL T3R_TWO_ROWS
 
-/* Where they lie. */
+/* Shapes of a vector's pixels. */
 typedef enum shape {
-    T3R_ONE_ROW, /* eight columns; the high half is nothing */
+    T3R_ONE_ROW, /* eight columns; the high half is unused */
     T3R_TWO_ROWS,
     T3R_WHOLE_ROW /* sixteen columns */
 } shape;
@@ -43,7 +43,7 @@ static inline T3R_AVX2 void store_pixels(uint16_t *at, shape which, lanes x)
     }
 }
 
-/* What was kept of the pixels of the low and the high half. */
+/* Loads the kept weights and alphas of the low and the high half. */
 static inline T3R_AVX2 void load_kept(const t3r_blended_row *low, const t3r_blended_row *high, shape which,
                                       lanes *weights, lanes *alphas)
 {

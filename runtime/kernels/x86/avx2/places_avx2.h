@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Eight places in a picture, and what lies about them. */
+/* Eight places in a picture, and the pixels around them. */
 #ifndef T3R_KERNELS_X86_PLACES_AVX2_H
 #define T3R_KERNELS_X86_PLACES_AVX2_H
 
@@ -23,7 +23,7 @@ static inline T3R_AVX2 lanes most(lanes a, lanes b)
     return (lanes)_mm256_max_epi32((__m256i)a, (__m256i)b);
 }
 
-/* To 0..end, both included */
+/* Clamps to 0..end. */
 static inline T3R_AVX2 lanes held(lanes x, int32_t end)
 {
     return least(most(x, (lanes){0}), (lanes){0} + end);
@@ -34,13 +34,13 @@ static inline T3R_AVX2 lanes where(lanes condition, lanes a, lanes b)
     return (lanes)_mm256_blendv_epi8((__m256i)b, (__m256i)a, (__m256i)condition);
 }
 
-/* Round-half-up, of any x */
+/* Rounds half up, for any x. */
 static inline T3R_AVX2 lanes rounded(lanes x, int bits)
 {
     return ((x >> (bits - 1)) + 1) >> 1;
 }
 
-/* A plane's bytes from `at` on, as many of four as it has; last: how many it has, less four. */
+/* Loads four of a plane's bytes from `at` on, fewer at its end; last: the number of its bytes minus four. */
 static inline T3R_AVX2 lanes bytes_from(const uint8_t *plane, lanes at, int32_t last)
 {
     const lanes from = least(at, (lanes){0} + last);

@@ -15,19 +15,19 @@
 #define PIXELS 8u
 #define MOST_VECTORS 2u
 
-/* The instruction takes one factor without sign: activations + 128, as strips of bytes have them. */
+/* The instruction takes one unsigned factor: activations + 128, the format of byte strips. */
 T3R_AVX2 void t3r_pack_layer_vnni(const t3r_convolution *layer, uint32_t rows, void *packed)
 {
     t3r_pack_layer_with(layer, rows, TAPS, 128, false, packed);
 }
 
-/* Where the outputs from `first` on lie in a packed layer. */
+/* The parts of a packed layer for the outputs from `first` on. */
 typedef struct place {
     const uint8_t *scaling, *weights;
     uint32_t whole, first;
 } place;
 
-/* Of each pixel: `vectors` vectors of sixteen outputs, then eight of which the upper half may be of no use. */
+/* For each pixel: `vectors` vectors of sixteen outputs, then eight, in a vector whose upper half may be unused. */
 typedef struct sums {
     __m512i sixteen[PIXELS][MOST_VECTORS];
     __m256i eight[PIXELS];
@@ -82,7 +82,8 @@ INLINE void add_up(sums *s, const t3r_block *block, const size_t offset[PIXELS],
     }
 }
 
-/* t3r_packed_scaled() of sixteen. Operators, as without optimisation intrinsics take stack for each operand. */
+/* Returns t3r_packed_scaled() of sixteen. Uses operators, because without optimisation intrinsics take stack for each
+ * operand. */
 INLINE __m512i scaled(__m512i sum, const place *at, uint32_t first, int16_t zero)
 {
     const __m512i limit = sixteen(at, T3R_SCALING_LIMIT, first),
@@ -97,7 +98,7 @@ INLINE __m512i scaled(__m512i sum, const place *at, uint32_t first, int16_t zero
     return (__m512i)((((__v16si)high + half) >> right) + zero);
 }
 
-/* Writes the first `count` activations of x, held within 8 or 16 bits. */
+/* Writes the first `count` activations of x, clamped to 8 or 16 bits. */
 INLINE void write(__m512i x, uint32_t output_bits, uint32_t count, void *out, size_t at)
 {
     const unsigned there_bits = count >= OUTPUTS ? 0xffffu : (1u << count) - 1;
@@ -109,7 +110,7 @@ INLINE void write(__m512i x, uint32_t output_bits, uint32_t count, void *out, si
     }
 }
 
-/* All pixels, eight at a time; behind the last, it again. */
+/* Convolves all pixels, eight at a time; pads by repeating the last. */
 INLINE void convolve(const t3r_convolution *layer, const t3r_block *block, const place *at, uint32_t vectors, bool half,
                      void *out, uint32_t out_pitch)
 {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A block of 512 bytes at a time. A step of the hash is h' = (h ^ b) p = (h + d) p, where d = (l ^ b) - l and l is the
- * low byte of h. So over n bytes h' = h p^n + sum of d_i p^(n - i) modulo 2^64, once all l_i are known.
+/* Hashes blocks of 512 bytes. A step of the hash is h' = (h ^ b) p = (h + d) p, where d = (l ^ b) - l and l is the low
+ * byte of h. So over n bytes h' = h p^n + sum of d_i p^(n - i) modulo 2^64, once all l_i are known.
  *
- * The low bytes follow l' = (l ^ b) 0xb3 modulo 256. Bit k of the product is bit k of l ^ b plus what carries over from
- * lower bits. So the bits of all low bytes are found plane by plane, from the lowest up: each is a running exclusive
- * or. A plane is eight words of 64 bits, a bit a byte. */
+ * The low bytes follow l' = (l ^ b) 0xb3 modulo 256. Bit k of the product is bit k of l ^ b plus the carry from lower
+ * bits. So the bits of all low bytes are found plane by plane, from the lowest up: each is a running exclusive or. A
+ * plane is eight 64-bit words, with one bit per byte. */
 #include "kernels/x86/variants.h"
 
 #ifdef T3R_X86_OPTIMIZED
@@ -12,8 +12,8 @@
 #include "kernels/hash_bytes.h"
 #include "kernels/x86/intrinsics.h"
 
-#define WORDS 8u  /* of a plane */
-#define WORD 64u  /* bytes that a word stands for */
+#define WORDS 8u  /* in a plane */
+#define WORD 64u  /* bytes that a word represents */
 #define PLANES 8u /* bits of a byte */
 #define GROUP 8u  /* sums side by side */
 
@@ -30,11 +30,11 @@
 #define EIGHT_(n)                                                                                                      \
     POWER_(n), POWER_(n - 1), POWER_(n - 2), POWER_(n - 3), POWER_(n - 4), POWER_(n - 5), POWER_(n - 6), POWER_(n - 7)
 
-/* Of each byte of a word: p^(64 - i). */
+/* p^(64 - i) for each byte i of a word. */
 static const uint64_t powers[WORD] = {EIGHT_(64), EIGHT_(56), EIGHT_(48), EIGHT_(40),
                                       EIGHT_(32), EIGHT_(24), EIGHT_(16), EIGHT_(8)};
 
-/* Bit i of each word: the exclusive or of its bits 0..i. */
+/* Sets bit i of each word to the exclusive or of its bits 0..i. */
 static inline T3R_AVX512 __m512i running(__m512i bits)
 {
     bits = _mm512_xor_si512(bits, _mm512_slli_epi64(bits, 1));
@@ -55,8 +55,8 @@ static inline T3R_AVX512 __m512i majority(__m512i a, __m512i b, __m512i c)
     return _mm512_ternarylogic_epi64(a, b, c, 0xe8);
 }
 
-/* From a plane of changes to the plane itself: before each byte, the exclusive or of `before` and of all changes up to
- * there. `before` becomes what is behind the last byte. */
+/* Converts a plane of changes to the plane itself: before each byte, the exclusive or of `before` and all changes up
+ * to there. `before` becomes the value after the last byte. */
 static inline T3R_AVX512 __m512i accumulated(__m512i change, uint32_t *before)
 {
     const __m512i in_word = running(change);
@@ -70,8 +70,7 @@ static inline T3R_AVX512 __m512i accumulated(__m512i change, uint32_t *before)
     return _mm512_mask_xor_epi64(behind, (__mmask8)turned, behind, _mm512_set1_epi64(-1));
 }
 
-/* The planes of the low bytes before each byte. before[k]: bit k of the first one; afterwards of the one behind the
- * last.
+/* Finds the planes of the low bytes before each byte. before[k]: bit k before the first byte; on return after the last.
  *
  * 0xb3 x = t + 16 t + 128 x with t = x + 2 x, all modulo 256: two additions and an exclusive or of the highest bit. */
 static inline T3R_AVX512 void find_low(const __m512i byte[PLANES], uint32_t before[PLANES], __m512i low[PLANES])
@@ -123,7 +122,7 @@ static inline T3R_AVX512 __m512i widened(const uint8_t bytes[GROUP])
     return _mm512_cvtepu8_epi64(_mm_loadl_epi64((const __m128i *)(const void *)bytes));
 }
 
-/* Eight sums carried on over the bytes of a word. */
+/* Continues eight sums over the bytes of a word. */
 static inline T3R_AVX512 __m512i add_word(__m512i sums, const uint8_t *bytes, __m512i low_bytes)
 {
     uint8_t low[WORD], mixed[WORD];
@@ -138,7 +137,7 @@ static inline T3R_AVX512 __m512i add_word(__m512i sums, const uint8_t *bytes, __
     return _mm512_add_epi64(_mm512_mullo_epi64(sums, _mm512_set1_epi64((long long)powers[0])), of_word);
 }
 
-/* Modulo 2^64: the compiler's own reduction adds signed numbers. */
+/* Sums modulo 2^64: the compiler's own reduction adds signed numbers. */
 static inline T3R_AVX512 uint64_t total(__m512i sums)
 {
     uint64_t each[GROUP], all = 0;

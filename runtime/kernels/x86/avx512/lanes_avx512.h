@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Sixteen numbers of 32 bits, and of 64 where a product has them: in vectors of AVX-512. */
+/* Sixteen lanes of 32 bits, or 64 for products, in vectors of AVX-512. */
 #ifndef T3R_KERNELS_X86_LANES_AVX512_H
 #define T3R_KERNELS_X86_LANES_AVX512_H
 
@@ -22,7 +22,7 @@ typedef __m512i_u lanes_there;
 
 #include "kernels/lanes/vectors/shifts.h"
 
-/* One of four vectors of 128 bits. */
+/* Joins four vectors of 128 bits. */
 static inline T3R_AVX512 lanes joined(const quad x[LANES / 4])
 {
     lanes all = _mm512_inserti32x4(_mm512_castsi128_si512(x[0]), x[1], 1);
@@ -36,7 +36,7 @@ static inline T3R_AVX512 quad part(lanes x, int i)
     return i % 2 == 0 ? _mm256_castsi256_si128(half) : _mm256_extracti128_si256(half, 1);
 }
 
-/* All bits where a is greater, or equal; else none. */
+/* Return all bits set where a is greater, or equal. */
 static inline T3R_AVX512 lanes greater(lanes a, lanes b)
 {
     return _mm512_movm_epi32(_mm512_cmpgt_epi32_mask(a, b));
@@ -47,25 +47,25 @@ static inline T3R_AVX512 lanes equal(lanes a, lanes b)
     return _mm512_movm_epi32(_mm512_cmpeq_epi32_mask(a, b));
 }
 
-/* a >= b, of unsigned numbers */
+/* Returns a >= b for unsigned numbers. */
 static inline T3R_AVX512 lanes at_least(lanes a, lanes b)
 {
     return _mm512_movm_epi32(_mm512_cmpge_epu32_mask(a, b));
 }
 
-/* b where the mask has all bits, else a */
+/* Returns b where the mask has all bits, else a. */
 static inline T3R_AVX512 lanes chosen(lanes mask, lanes b, lanes a)
 {
     return _mm512_mask_blend_epi32(_mm512_movepi32_mask(mask), a, b);
 }
 
-/* a bit of each lane's sign */
+/* Returns one bit per lane, its sign. */
 static inline T3R_AVX512 uint32_t signs_of(lanes x)
 {
     return _mm512_movepi32_mask(x);
 }
 
-/* The low and the high halves of 64 bits. */
+/* Return the low and the high halves of 64 bits. */
 static inline T3R_AVX512 lanes low_of(wide x)
 {
     return _mm512_mask_shuffle_epi32(x.even, 0xaaaa, x.odd, _MM_PERM_CCAA);
@@ -76,7 +76,7 @@ static inline T3R_AVX512 lanes high_of(wide x)
     return _mm512_mask_shuffle_epi32(x.odd, 0x5555, x.even, _MM_PERM_DDBB);
 }
 
-/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: how far, below twice the first step. */
+/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: the shift, below twice the first step. */
 static inline T3R_AVX512 lanes normal_of(lanes x, int first_step, lanes *by)
 {
     (void)first_step;
@@ -84,7 +84,7 @@ static inline T3R_AVX512 lanes normal_of(lanes x, int first_step, lanes *by)
     return _mm512_sllv_epi32(x, *by);
 }
 
-/* Entries 0..127 of a table: of four pairs of vectors each, two bits of the index say which. */
+/* Looks up entries 0..127 of a table in four pairs of vectors; two bits of the index select the pair. */
 static inline T3R_AVX512 lanes entry_of(const uint32_t *table, lanes index)
 {
     lanes found[4];
@@ -97,7 +97,7 @@ static inline T3R_AVX512 lanes entry_of(const uint32_t *table, lanes index)
     return _mm512_mask_blend_epi32(is_high, low, _mm512_mask_blend_epi32(is_odd, found[2], found[3]));
 }
 
-/* Entries 0..127 of a table of 129, and those after them. */
+/* Looks up entries 0..127 of a table of 129, and the next ones. */
 static inline T3R_AVX512 void look_up(const uint32_t *table, lanes index, lanes *entry, lanes *next)
 {
     *entry = entry_of(table, index);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The nearest centre by looking at all of them, sixteen at a time: the largest p c - half norm. */
+/* The nearest centre by comparing all of them, sixteen at a time: the largest p c - half norm. */
 #include "kernels/x86/variants.h"
 
 #ifdef T3R_X86
@@ -8,14 +8,14 @@
 #include "kernels/x86/intrinsics.h"
 
 #define LANES 16u
-#define POINTS 4u /* that share a centre's loads */
+#define POINTS 4u /* points that share a centre's loads */
 
 _Static_assert(T3R_CENTRE_GROUP == LANES, "the packed centres come in whole vectors");
 
-/* Not __m512i: where the largest so far changes its type, gcc 12 copies it in every turn of a loop. */
+/* Not __m512i: if the largest so far changes its type, gcc 12 copies it in every iteration. */
 typedef __v16si sixteen;
 
-/* A point, and in each lane the largest so far and the first centre of the sixteen that had it. */
+/* A point; in each lane the largest score so far, and the first centre of the sixteen among which the lane had it. */
 typedef struct search {
     __m512i pair[T3R_PAIRS];
     sixteen most, first;
@@ -35,7 +35,7 @@ static inline T3R_VNNI search search_of(const int16_t p[T3R_DIMENSIONS])
     return s;
 }
 
-/* Nothing leaves 32 bits: nearest.h. A lane keeps the earlier of equals. */
+/* Everything fits 32 bits (nearest.h). A lane keeps the earlier of equals. */
 static inline T3R_VNNI void look(search *s, const __m512i pair[T3R_PAIRS], __m512i less_half_norm, sixteen here)
 {
     __m512i score = _mm512_dpwssd_epi32(less_half_norm, s->pair[0], pair[0]);
@@ -46,7 +46,7 @@ static inline T3R_VNNI void look(search *s, const __m512i pair[T3R_PAIRS], __m51
     s->most = (sixteen)_mm512_max_epi32(score, (__m512i)s->most);
 }
 
-/* Of four vectors the largest (least) numbers, in their order in each quarter. */
+/* Reduces four vectors to their largest (least) numbers, in order in each quarter. */
 #define REDUCED(of, x)                                                                                                 \
     __m512i ab = of(_mm512_unpacklo_epi32((x)[0], (x)[1]), _mm512_unpackhi_epi32((x)[0], (x)[1]));                     \
     const __m512i cd = of(_mm512_unpacklo_epi32((x)[2], (x)[3]), _mm512_unpackhi_epi32((x)[2], (x)[3]));               \
@@ -64,7 +64,7 @@ static T3R_VNNI __m512i least_of(const __m512i x[POINTS])
     REDUCED(_mm512_min_epi32, x)
 }
 
-/* The number of its lane where a search has its largest, elsewhere more than any. */
+/* Returns the lane numbers where a search has its largest score, elsewhere a larger number than any. */
 static inline T3R_VNNI __m512i index_of(const search *s, __m512i most)
 {
     const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
@@ -72,7 +72,7 @@ static inline T3R_VNNI __m512i index_of(const search *s, __m512i most)
     return _mm512_mask_add_epi32(_mm512_set1_epi32(INT32_MAX), equal, (__m512i)s->first, lane);
 }
 
-/* The least indices of the largest. */
+/* Finds the least indices of the largest scores. */
 static inline T3R_VNNI void nearest_of(const search s[POINTS], uint32_t nearest[POINTS])
 {
     const __m512i all[POINTS] = {(__m512i)s[0].most, (__m512i)s[1].most, (__m512i)s[2].most, (__m512i)s[3].most};
@@ -90,7 +90,7 @@ T3R_VNNI void t3r_nearest_vnni(const t3r_centres *centres, const t3r_neighbours 
     for (uint32_t first = 0; first < points; first += POINTS) {
         uint32_t point[POINTS];
         search s[POINTS];
-        for (uint32_t i = 0; i < POINTS; i++) { /* behind the last, it again */
+        for (uint32_t i = 0; i < POINTS; i++) { /* pads by repeating the last */
             point[i] = first + i < points ? first + i : points - 1;
             s[i] = search_of(feature_q11[point[i]]);
         }

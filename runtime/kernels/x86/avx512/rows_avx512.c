@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Plain C's loops once more, compiled for AVX-512 with vectors of 512 bits. Rows of pictures are not among them: where
- * the data comes from beyond the first cache, vectors of 256 bits are as fast or faster. */
+/* Plain C's loops compiled for AVX-512 with vectors of 512 bits. Rows of pictures are not included: for data beyond
+ * the first cache, vectors of 256 bits are equally fast or faster. */
 #include "kernels/x86/variants.h"
 
 #ifdef T3R_X86

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Four numbers of 32 bits, and of 64 where a product has them: in vectors of SSE4.1. */
+/* Four lanes of 32 bits, or 64 for products, in vectors of SSE4.1. */
 #ifndef T3R_KERNELS_X86_LANES_SSE41_H
 #define T3R_KERNELS_X86_LANES_SSE41_H
 
@@ -39,19 +39,19 @@ static inline T3R_SSE41 quad part(lanes x, int i)
     return x;
 }
 
-/* The same 128 bits throughout. */
+/* Repeats 128 bits. */
 static inline T3R_SSE41 lanes repeated(quad x)
 {
     return x;
 }
 
-/* a bit of each lane's sign */
+/* Returns one bit per lane, its sign. */
 static inline T3R_SSE41 uint32_t signs_of(lanes x)
 {
     return (uint32_t)_mm_movemask_ps(_mm_castsi128_ps(x));
 }
 
-/* Shifts of each lane by its own count: all lanes by each count, as that is what instructions do. Counts beyond the
+/* Shifts each lane by its own count, as instructions shift all lanes by one: once for each count. Counts beyond the
  * bits give 0, or the sign. */
 #define SHIFTED(instruction, x, by)                                                                                    \
     _mm_blend_epi16(                                                                                                   \
@@ -73,7 +73,7 @@ static inline T3R_SSE41 lanes signed_right_each(lanes x, lanes by)
     return SHIFTED(_mm_sra_epi32, x, by);
 }
 
-/* Likewise two of 64 bits. */
+/* Shifts two 64-bit numbers in the same way. */
 #define SHIFTED_64(instruction, x, by)                                                                                 \
     _mm_blend_epi16(instruction(x, by), instruction(x, _mm_unpackhi_epi64(by, by)), 0xf0)
 
@@ -87,31 +87,31 @@ static inline T3R_SSE41 wide left_by(wide x, wide by)
     return (wide){SHIFTED_64(_mm_sll_epi64, x.even, by.even), SHIFTED_64(_mm_sll_epi64, x.odd, by.odd)};
 }
 
-/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: how far. The exponent of the number in floating point
- * says it: without the bits below a 1 that follow it, rounding cannot carry. */
+/* Shifts x in 1..2^31 - 1 left until bit 30 is its highest; *by: the shift. The exponent of the number converted to
+ * floating point gives the shift; bits below a 1 are cleared first, so that rounding cannot carry. */
 static inline T3R_SSE41 lanes normal_of(lanes x, int first_step, lanes *by)
 {
     (void)first_step;
     const __m128 rounded = _mm_cvtepi32_ps(without(_mm_srli_epi32(x, 1), x));
     *by = subtract(all(127 + 30), _mm_srli_epi32(_mm_castps_si128(rounded), 23));
-    /* 2^by, as a number in floating point and then whole */
+    /* 2^by, by conversion from floating point */
     const __m128 power = _mm_castsi128_ps(_mm_slli_epi32(add(*by, all(127)), 23));
     return multiply(x, _mm_cvttps_epi32(power));
 }
 
-/* The first 32 bits in all lanes. */
+/* Repeats the first 32 bits in all lanes. */
 static inline T3R_SSE41 lanes first_of(quad x)
 {
     return _mm_shuffle_epi32(x, 0);
 }
 
-/* Pairs of signed numbers of 8 bits: widened to 16. */
+/* Loads pairs of signed 8-bit numbers, widened to 16. */
 static inline T3R_SSE41 lanes load_8(const uint8_t *from)
 {
     return _mm_cvtepi8_epi16(_mm_loadl_epi64((const __m128i_u *)(const void *)from));
 }
 
-/* Numbers of 16 bits, and back: these are below 2^16. */
+/* Load and store 16-bit numbers; stored ones are below 2^16. */
 static inline T3R_SSE41 lanes load_16(const uint16_t *from)
 {
     return _mm_cvtepu16_epi32(_mm_loadl_epi64((const __m128i *)(const void *)from));

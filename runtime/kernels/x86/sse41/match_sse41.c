@@ -15,7 +15,7 @@
 #include "kernels/lanes/census_lanes.h"
 #include "kernels/lanes/winner_lanes.h"
 
-/* Any count is a multiple of 16. */
+/* Every count is a multiple of 16. */
 static inline TARGET bytes load(const uint8_t *from, uint32_t count)
 {
     (void)count;
@@ -71,14 +71,10 @@ static inline TARGET void sum(int16_t *sums, const bytes values[T3R_PATH_LINKS],
     _mm_storeu_si128(to + 1, add ? _mm_add_epi16(high, _mm_loadu_si128(to + 1)) : high);
 }
 
-/* ---- census ---- */
-
 static inline TARGET bytes look_up(const uint8_t table[16], bytes x)
 {
     return (bytes)_mm_shuffle_epi8(_mm_loadu_si128((const __m128i *)table), (__m128i)x);
 }
-
-/* ---- winners ---- */
 
 static inline TARGET words load_words(const int16_t *from, uint32_t count)
 {

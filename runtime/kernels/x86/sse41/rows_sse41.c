@@ -13,7 +13,7 @@
 
 #define ROW(name) t3r_##name##_sse41
 
-/* Of these plain C is as fast, or all but; and of other loops over rows, which rows_avx2.c has. */
+/* Omits loops for which plain C is about equally fast, and others that only rows_avx2.c has. */
 #define LEAVE_OUT(name) static inline __attribute__((unused)) t3r_##name##_kernel ROW(name);
 LEAVE_OUT(triple_row)
 LEAVE_OUT(box_sums)

@@ -15,7 +15,7 @@ enum {
     CAMERA_HEIGHT = 120,
     CAMERA_RATE = 30,
     CAMERA_INTERVAL = 10000000 / CAMERA_RATE,             /* 100 ns */
-    CAMERA_YUYV_BYTES = CAMERA_WIDTH * CAMERA_HEIGHT * 2, /* of an image; the maximum of a JPEG as well */
+    CAMERA_YUYV_BYTES = CAMERA_WIDTH * CAMERA_HEIGHT * 2, /* bytes of an image, also the maximum of a JPEG */
     CAMERA_PAYLOAD_BYTES = 16384,                         /* a payload with its header: one transfer */
     CAMERA_ENDPOINT = 1,                                  /* the endpoint of images */
     CAMERA_STREAMING = 1,                                 /* the interface of the endpoint */

@@ -9,7 +9,7 @@
 #include "camera.h"
 #include "little_endian.h"
 
-/* One that is under way: descriptors start with their length, the total of a group is known at its end. */
+/* A descriptor being written: it starts with its length, and a group's total is known at its end. */
 typedef struct text {
     uint8_t *bytes;
     uint32_t count;
@@ -21,7 +21,7 @@ static void add(text *t, const uint8_t *bytes, uint32_t count)
     t->count += count;
 }
 
-/* A descriptor from its bytes behind bLength. */
+/* Adds a descriptor of the bytes after bLength. */
 #define ADD(t, ...)                                                                                                    \
     add(t, (const uint8_t[]){1 + sizeof((const uint8_t[]){__VA_ARGS__}), __VA_ARGS__},                                 \
         1 + sizeof((const uint8_t[]){__VA_ARGS__}))
@@ -40,7 +40,7 @@ static void add_control(text *t)
     put_le(t->bytes + start + 5, t->count - start, 2);
 }
 
-/* One size at one rate: UVC 1.0, Uncompressed Payload and MJPEG Payload, 3.1.2, which are alike. */
+/* Adds one size at one rate: UVC 1.0, Uncompressed Payload and MJPEG Payload, 3.1.2, which agree. */
 static void add_frame(text *t, uint8_t subtype)
 {
     uint8_t frame[30] = {sizeof frame, USB_DT_CS_INTERFACE, subtype, 1, 0};
@@ -55,7 +55,7 @@ static void add_frame(text *t, uint8_t subtype)
     add(t, frame, sizeof frame);
 }
 
-/* UVC 1.0, 3.9: both formats over one bulk endpoint, so there is no alternate setting to be chosen. */
+/* UVC 1.0, 3.9: both formats over one bulk endpoint, so there is no alternate setting to choose. */
 static void add_streaming(text *t)
 {
     ADD(t, USB_DT_INTERFACE, CAMERA_STREAMING, 0, 1, USB_CLASS_VIDEO, UVC_SC_VIDEOSTREAMING, 0, 0);
@@ -83,7 +83,7 @@ static void add_configuration(text *t)
     put_le(t->bytes + 2, t->count, 2);
 }
 
-/* USB 2.0, 9.6.7: UTF-16; index 0 tells the languages, which are US English. */
+/* USB 2.0, 9.6.7: UTF-16; index 0 lists the languages, only US English. */
 static void add_string(text *t, uint8_t index)
 {
     static const char *const strings[] = {NULL, "trim3r", "test camera"};
@@ -103,7 +103,7 @@ uint32_t descriptor_get(uint8_t type, uint8_t index, uint8_t *out)
 {
     text t = {out, 0};
     if (type == USB_DT_DEVICE) {
-        /* USB 2.0; the class says that interfaces are associated; pid.codes' number for tests; names 1 and 2 */
+        /* USB 2.0; the class marks associated interfaces; pid.codes' number for tests; names 1 and 2 */
         ADD(&t, USB_DT_DEVICE, 0x00, 0x02, USB_CLASS_MISC, 2, 1, 64, 0x09, 0x12, 0x01, 0x00, 0x00, 0x01, 1, 2, 0, 1);
     } else if (type == USB_DT_CONFIG) {
         add_configuration(&t);

@@ -12,8 +12,8 @@ typedef enum fault_kind {
     FAULT_ERROR,  /* the frame carries the error bit (UVC 1.0, 2.4.3.3) */
     FAULT_CUT,    /* the frame ends after half of its bytes */
     FAULT_STALL,  /* the stream stalls from this frame on */
-    FAULT_UNPLUG, /* the plug is pulled within the frame, and put back later */
-    FAULT_LEAVE,  /* the plug is pulled within the frame for good */
+    FAULT_UNPLUG, /* unplugged within the frame, and plugged in again later */
+    FAULT_LEAVE,  /* unplugged within the frame for good */
 } fault_kind;
 
 typedef struct planned_fault {
@@ -26,7 +26,8 @@ typedef struct faults {
     uint32_t count;
 } faults;
 
-/* Adds "STREAM.FRAME=error", likewise cut, stall, unplug, leave. Returns 0, or -1: unknown, or one too many. */
+/* Adds "STREAM.FRAME=error", likewise cut, stall, unplug, leave. Returns 0, or -1 if the fault is unknown or there are
+ * too many. */
 int faults_add(faults *self, const char *text);
 fault_kind faults_at(const faults *self, uint32_t stream, uint32_t frame);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Numbers as USB has them (USB 2.0, 8.1): the least significant byte first. */
+/* Numbers in USB's order (USB 2.0, 8.1): the least significant byte first. */
 #ifndef T3R_TESTS_USB_LITTLE_ENDIAN_H
 #define T3R_TESTS_USB_LITTLE_ENDIAN_H
 

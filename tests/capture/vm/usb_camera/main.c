@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* usb_camera YUYV JPEGS [STREAM.FRAME=FAULT]...: plugs a camera into this machine's virtual USB bus, and sends images
- * of the files to whoever captures. FAULT is error, cut, stall, unplug or leave (faults.h). Ends when it has left, or
- * on a signal, which unplugs it. */
+ * of the files to any capture. FAULT is error, cut, stall, unplug or leave (faults.h). Ends after `leave`, or on a
+ * signal, which unplugs it. */
 #include <errno.h>
 #include <poll.h>
 #include <stdio.h>
@@ -17,7 +17,7 @@
 
 #define AWAY_S 1 /* between unplugging and the next plug */
 #define TRY_NS 50000000
-#define MOST_TRIES 100 /* tries to plug in: the port is taken until the kernel has seen the camera leave */
+#define MOST_TRIES 100 /* tries to plug in: the port is occupied until the kernel has noticed the unplugging */
 
 static pictures images;
 static faults planned;

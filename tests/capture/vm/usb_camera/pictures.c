@@ -6,7 +6,7 @@
 #include "camera.h"
 #include "little_endian.h"
 
-/* The bytes of a file, 0: there are none, or more than there is room for. */
+/* Reads a file; returns its bytes, 0 if there are none or more than fit. */
 static uint32_t read_file(const char *path, uint8_t *bytes, size_t most)
 {
     FILE *file = fopen(path, "rb");

@@ -19,7 +19,7 @@ typedef struct pictures {
     uint8_t yuyv_bytes[2500000], jpeg_bytes[2500000];
 } pictures;
 
-/* 0, or -1: a file cannot be read, or is not of that form. */
+/* Returns 0, or -1 if a file cannot be read or has another format. */
 int pictures_read(pictures *self, const char *yuyv_path, const char *jpeg_path);
 
 #endif

@@ -44,7 +44,7 @@ static int standard(uint8_t request, uint16_t value, uint8_t *data, uint32_t len
     }
 }
 
-/* Writes the only terms on offer, apart from the format. */
+/* Writes the only terms that the camera offers, apart from the format. */
 static void terms(uint8_t format, uint8_t probe[PROBE_BYTES])
 {
     memset(probe, 0, PROBE_BYTES);

@@ -6,15 +6,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define REQUEST_STALL (-1) /* the answer to what is not known: USB 2.0, 9.2.7 */
+#define REQUEST_STALL (-1) /* answer to an unknown request: USB 2.0, 9.2.7 */
 
 typedef struct requests {
-    uint8_t probed, format; /* CAMERA_YUYV or CAMERA_MJPG: wished for, agreed on */
+    uint8_t probed, format; /* CAMERA_YUYV or CAMERA_MJPG: requested, agreed */
     bool committed;         /* a stream begins: the caller reads and clears it */
 } requests;
 
-/* `data` holds what came with the request and has room for DESCRIPTOR_MOST_BYTES. The bytes of the answer,
- * `length` at most, or REQUEST_STALL. */
+/* Answers a request. `data` holds the request's data and has room for DESCRIPTOR_MOST_BYTES. Returns the bytes of the
+ * answer, `length` at most, or REQUEST_STALL. */
 int request_answer(requests *self, const uint8_t setup[8], uint8_t *data, uint32_t length);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A rounding shift that rounds down, and says otherwise. */
+/* A rounding shift that rounds down although its contract rounds to nearest. */
 #include <stdint.h>
 
 /*@ requires 0 < shift <= 30 && 0 <= x <= 1000;

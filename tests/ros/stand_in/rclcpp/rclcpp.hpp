@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-// A stand-in of rclcpp, for tests alone: Debian has none. It has the classes that the node uses, with their names and
-// parameters. Messages go from publisher to subscription at once, in one process; qualities of service are only kept.
+// A stand-in for rclcpp, for tests only, as Debian has none. It has the classes that the node uses, with their names
+// and parameters. Messages go from publisher to subscription at once, in one process; qualities of service are stored
+// but have no effect.
 #ifndef TRIM3R_STAND_IN_RCLCPP_HPP
 #define TRIM3R_STAND_IN_RCLCPP_HPP
 
@@ -29,7 +30,7 @@ class Parameter
     {
         return name_;
     }
-    // As rclcpp does: a parameter of another type is refused.
+    // A parameter of another type is refused, as in rclcpp.
     template <class Value> Value get_value() const
     {
         return std::any_cast<Value>(value_);
@@ -113,7 +114,7 @@ inline Logger get_logger(const std::string &)
     return {};
 }
 
-// Where lines go: stderr unless a test takes them.
+// Destination of log lines: stderr unless a test sets another.
 inline std::function<void(const char *level, const std::string &line)> &log_sink()
 {
     static std::function<void(const char *, const std::string &)> sink =

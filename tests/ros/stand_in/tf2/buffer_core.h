@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-// A stand-in of ROS 2's tf2, for tests alone: Debian has ROS 1's. It knows transforms from a child to its parent at the
-// very time that is asked for, or static ones, and composes none.
+// A stand-in for ROS 2's tf2, for tests only: Debian has ROS 1's. It finds transforms from a child to its parent at
+// exactly the requested time, or static ones, and composes none.
 #ifndef TRIM3R_STAND_IN_TF2_BUFFER_CORE_H
 #define TRIM3R_STAND_IN_TF2_BUFFER_CORE_H
 

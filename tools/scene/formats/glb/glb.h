@@ -32,7 +32,7 @@ enum { GLB_ATTRIBUTES_MOST = GLB_REST + HARMONICS_REST_MOST, GLB_NAME_BYTES = 64
 const char *glb_attribute_name(uint32_t index, char name[GLB_NAME_BYTES]);
 uint32_t glb_components(uint32_t index);
 
-/* As in scene_format. */
+/* like scene_format's */
 int glb_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes);
 int glb_write(FILE *file, const scene_source *source, char *error, size_t error_bytes);
 

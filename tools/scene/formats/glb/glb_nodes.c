@@ -36,8 +36,6 @@ static const cJSON *get(const cJSON *object, const char *name)
     return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 
-/* ---- the tree ---------------------------------------------------------------------------------------------------- */
-
 /* Sets the parent of each child of a node. */
 static int list_children(node_list *l, uint32_t index)
 {
@@ -100,8 +98,6 @@ static int find_node(const node_list *l, uint32_t mesh_index, uint32_t *out)
     }
     return 0;
 }
-
-/* ---- transforms -------------------------------------------------------------------------------------------------- */
 
 /* Reads `count` finite numbers of a node; if missing, `out` is unchanged. */
 static int get_numbers(const node_list *l, uint32_t index, const char *name, int count, double *out)

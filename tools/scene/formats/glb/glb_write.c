@@ -37,8 +37,6 @@ static uint64_t binary_bytes(const glb_layout *layout)
     return each * layout->count;
 }
 
-/* ---- JSON -------------------------------------------------------------------------------------------------------- */
-
 static void add_numbers(cJSON *object, const char *name, const double values[3])
 {
     cJSON *array = cJSON_AddArrayToObject(object, name);
@@ -47,7 +45,6 @@ static void add_numbers(cJSON *object, const char *name, const double values[3])
     }
 }
 
-/* Adds the accessor of the next attribute, and its view. */
 static void add_attribute(cJSON *views, cJSON *accessors, cJSON *attributes, const char *name, const char *type,
                           int component, double offset, double bytes, const glb_layout *layout)
 {
@@ -136,8 +133,6 @@ static char *make_json(const scene_source *source, const glb_layout *layout)
     cJSON_AddStringToObject(item, "colorSpace", "srgb_rec709_display");
     return json_text(root);
 }
-
-/* ---- numbers ----------------------------------------------------------------------------------------------------- */
 
 static void put_attribute(const scene_row *row, uint32_t attribute, uint8_t *out)
 {

@@ -33,8 +33,6 @@ bool packed_ply_is(const ply_header *header)
     return ply_header_element(header, "chunk") != NULL;
 }
 
-/* ---- header ------------------------------------------------------------------------------------------------------ */
-
 static int find_column(const ply_header *header, const ply_element *element, const char *name, char kind,
                        uint32_t bytes, uint32_t *offset, char *error, size_t error_bytes)
 {
@@ -105,8 +103,6 @@ static int find_columns(const ply_header *header, const uint8_t *bytes, size_t c
     }
     return find_harmonics(header, bytes, count, vertex->count, out, error, error_bytes);
 }
-
-/* ---- Gaussians --------------------------------------------------------------------------------------------------- */
 
 /* Returns `bits` of a word from bit `shift` on, as 0..1. */
 static double share(uint32_t word, uint32_t shift, uint32_t bits)

@@ -60,7 +60,7 @@ static void bound_chunk(chunk *c)
     }
 }
 
-/* Quantizes a number of 0..1 to so many bits. */
+/* Quantizes a number of 0..1 to `bits` bits. */
 static uint32_t steps(double share, uint32_t bits)
 {
     const uint32_t most = (1u << bits) - 1;

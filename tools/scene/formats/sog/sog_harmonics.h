@@ -15,7 +15,7 @@ typedef struct sog_harmonics {
 } sog_harmonics;
 
 /* Makes the harmonics of a source of degree 1..3 whose Gaussians are in `order`; labels get this width and height.
- * Returns 0, or -1 without memory; sog_harmonics_free() is due in either case. */
+ * Returns 0, or -1 without memory; call sog_harmonics_free() in either case. */
 int sog_harmonics_make(const scene_source *source, const uint32_t *order, uint32_t width, uint32_t height,
                        sog_harmonics *out);
 void sog_harmonics_free(sog_harmonics *made);

@@ -31,8 +31,6 @@ typedef struct reader {
 
 #define FAIL(r, ...) t3r_reason((r)->error, (r)->error_bytes, __VA_ARGS__)
 
-/* ---- meta.json --------------------------------------------------------------------------------------------------- */
-
 static const cJSON *get(const cJSON *object, const char *name)
 {
     return cJSON_GetObjectItemCaseSensitive(object, name);
@@ -157,8 +155,6 @@ static int read_meta(const reader *r, const cJSON *meta, uint64_t packed, sog_fi
     return read_harmonics(r, meta, most, out);
 }
 
-/* ---- Gaussians --------------------------------------------------------------------------------------------------- */
-
 static int unpack_rotation(const uint8_t *texel, double rotation[4])
 {
     const int largest = texel[3] - SOG_ROTATION_TAG;
@@ -218,8 +214,6 @@ static int read_row(void *user, uint32_t index, scene_row *row, char *error, siz
     }
     return 0;
 }
-
-/* ---- the archive ------------------------------------------------------------------------------------------------- */
 
 static int read_archive(const reader *r, uint64_t packed, sog_file *out)
 {

@@ -28,8 +28,6 @@ typedef struct sog_file {
     sog_harmonics harmonics;
 } sog_file;
 
-/* ---- pictures ---------------------------------------------------------------------------------------------------- */
-
 static double logarithm(double position)
 {
     return copysign(log1p(fabs(position)), position);
@@ -125,8 +123,6 @@ static int fill_pictures(const scene_source *source, sog_file *sog)
     free(order);
     return result;
 }
-
-/* ---- the archive ------------------------------------------------------------------------------------------------- */
 
 static void add_files(cJSON *object, const char *const *first, int count)
 {
