@@ -15,7 +15,9 @@
 
 static const char too_large[] = "the file is too large";
 
-/* Opens with O_NONBLOCK, so that opening a pipe does not wait for a writer; a pipe without a writer reads as empty. */
+/* Opens with O_NONBLOCK, so that opening a pipe does not wait for a writer; a pipe without a writer reads as empty.
+ * Reading a pipe then waits. Reading a file does not: for those of a disk it makes no difference, and one like
+ * /proc/kmsg would block for ever. */
 static FILE *open_kind(const char *path, bool pipes, struct stat *about, char *error, size_t error_bytes)
 {
     if (stat(path, about) != 0) {
@@ -29,7 +31,8 @@ static FILE *open_kind(const char *path, bool pipes, struct stat *about, char *e
     }
     int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     FILE *file = NULL;
-    if (descriptor >= 0 && fstat(descriptor, about) == 0 && fcntl(descriptor, F_SETFL, 0) == 0) {
+    if (descriptor >= 0 && fstat(descriptor, about) == 0 &&
+        (!S_ISFIFO(about->st_mode) || fcntl(descriptor, F_SETFL, 0) == 0)) {
         file = fdopen(descriptor, "rb");
     }
     if (file == NULL) {

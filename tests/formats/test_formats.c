@@ -11,6 +11,7 @@
 #include "host/file_bytes.h"
 #include "scene/gaussian_shape.h"
 #include "scene/scene_file.h"
+#include "scene/scene_rows.h"
 #include "scene/scene_turn.h"
 #include "scratch.h"
 #include "test.h"
@@ -32,6 +33,8 @@ static const struct format {
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 /* Cuts tried per file, at most. */
 enum { TRIED = 1500 };
+/* One in FAR_EVERY Gaussians is far away, FAR in all. */
+enum { FAR = 3, FAR_EVERY = 100 };
 
 static void *folder;
 
@@ -147,17 +150,80 @@ static const char *path_of(const struct format *f, const char *stem)
 static void must_read(const char *path, scene_file *out)
 {
     char error[256] = "";
-    if (scene_file_read(path, out, error, sizeof error) != 0) {
+    if (scene_file_read(path, 0, out, error, sizeof error) != 0) {
+        fail_msg("%s", error);
+    }
+}
+
+/* Writes a scene as .ply with doubles, in world coordinates. */
+static void write_doubles(const char *path, const scene_file *scene)
+{
+    static const char *const names[] = {"x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2"}, *const last[] = {
+                                                                                          "opacity", "scale_0",
+                                                                                          "scale_1", "scale_2",
+                                                                                          "rot_0",   "rot_1",
+                                                                                          "rot_2",   "rot_3"};
+    const uint32_t rest = harmonics_rest(scene->degree);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    fprintf(file, "ply\nformat binary_little_endian 1.0\nelement vertex %u\n", scene->count);
+    for (int i = 0; i < 6; i++) {
+        fprintf(file, "property double %s\n", names[i]);
+    }
+    for (uint32_t i = 0; i < 3 * rest; i++) {
+        fprintf(file, "property double f_rest_%u\n", i);
+    }
+    for (int i = 0; i < 8; i++) {
+        fprintf(file, "property double %s\n", last[i]);
+    }
+    fputs("end_header\n", file);
+    const scene_rows rows = scene_rows_of(scene);
+    for (uint32_t i = 0; i < scene->count; i++) {
+        scene_row row;
+        double values[6 + 3 * HARMONICS_REST_MOST + 8];
+        uint32_t at = 0;
+        assert_int_equal(scene_rows_read(&rows, i, &row, NULL, 0), 0);
+        for (int k = 0; k < 3; k++) {
+            values[at++] = row.position[k] + ldexp((double)scene->frame.origin_q32[k], -32);
+        }
+        for (int k = 0; k < 3; k++) {
+            values[at++] = row.harmonic[k];
+        }
+        for (uint32_t k = 0; k < 3 * rest; k++) {
+            values[at++] = row.rest[k % rest][k / rest];
+        }
+        values[at++] = row.opacity_logit;
+        memcpy(values + at, row.log_scale, sizeof row.log_scale);
+        memcpy(values + at + 3, row.rotation, sizeof row.rotation);
+        for (uint32_t k = 0; k < at + 7; k++) {
+            uint64_t bits;
+            uint8_t bytes[8];
+            memcpy(&bits, &values[k], sizeof bits);
+            t3r_store_le64(bytes, bits);
+            fwrite(bytes, 1, sizeof bytes, file);
+        }
+    }
+    assert_int_equal(fclose(file), 0);
+}
+
+static void must_convert(const char *from, const char *to, int flags, scene_conversion *done)
+{
+    char error[256] = "";
+    if (scene_file_convert(from, to, flags, done, error, sizeof error) != 0) {
         fail_msg("%s", error);
     }
 }
 
 static void must_write(const char *path, const scene_file *scene, int flags)
 {
-    char error[256] = "";
-    if (scene_file_rewrite(path, scene, flags, error, sizeof error) != 0) {
-        fail_msg("%s", error);
-    }
+    scene_conversion done;
+    char to[sizeof((scratch){0}.path)];
+    snprintf(to, sizeof to, "%s", path); /* which scratch_path() overwrites */
+    const char *doubles = scratch_path(folder, "doubles.ply");
+    write_doubles(doubles, scene);
+    must_convert(doubles, to, flags, &done);
+    (void)scratch_path(folder, strrchr(to, '/') + 1);
+    assert_int_equal(done.count, scene->count);
 }
 
 TEST(read_back)
@@ -231,7 +297,7 @@ TEST(nodes_of_glb)
      * z */
     uint8_t *with = with_node(bytes, count,
                               "{\"mesh\":0,\"rotation\":[0,1,0,0],\"scale\":[2,2,2],\"translation\":[1,2,3 ]}", &size);
-    assert_int_equal(scene_file_parse("scene.glb", with, size, &moved, error, sizeof error), 0);
+    assert_int_equal(scene_file_parse("scene.glb", with, size, 0, &moved, error, sizeof error), 0);
     const double turn[4] = {0, 0, 1, 0}, translation[3] = {-1, -2, 3};
     scene_turn half = scene_turn_of(turn);
     for (uint32_t i = 0; i < COUNT; i++) {
@@ -275,7 +341,7 @@ static int parse(const char *suffix, const uint8_t *bytes, size_t count, char er
     memcpy(copy, bytes, count);
     scene_file scene;
     error[0] = '\0';
-    int result = scene_file_parse(name, copy, count, &scene, error, 256);
+    int result = scene_file_parse(name, copy, count, 0, &scene, error, 256);
     assert_int_equal(result != 0, error[0] != '\0');
     if (result != 0) {
         assert_true(scene.gaussians == NULL && scene.harmonics_q12 == NULL);
@@ -380,16 +446,95 @@ TEST(say_why)
     }
 }
 
-/* A position outside the format's range. */
+/* Moves a few Gaussians of a scene to a million times the distance of the others, and writes it as write_doubles(). */
+static void write_with_far(const char *path, const scene_file *scene)
+{
+    char error[256] = "";
+    size_t count;
+    write_doubles(path, scene);
+    uint8_t *bytes = t3r_file_bytes(path, SIZE_MAX, &count, error, sizeof error);
+    assert_non_null(bytes);
+    const size_t row_bytes = (6 + 3 * (size_t)harmonics_rest(scene->degree) + 8) * sizeof(double);
+    uint8_t *rows = bytes + count - scene->count * row_bytes;
+    for (uint32_t i = 0; i < FAR; i++) {
+        const double x = 1e6 * (i + 1); /* on a little-endian machine */
+        memcpy(rows + i * FAR_EVERY * row_bytes, &x, sizeof x);
+    }
+    assert_int_equal(scratch_write(folder, strrchr(path, '/') + 1, bytes, count), 0);
+    free(bytes);
+}
+
+/* Gaussians far away do not change where the others are, in any format. */
+TEST(far_gaussians)
+{
+    for (int k = 0; k < FORMATS; k++) {
+        const struct format *f = &formats[k];
+        scene_file scene, back;
+        scene_conversion done;
+        char from[sizeof((scratch){0}.path)];
+        make_scene(&scene, 3);
+        snprintf(from, sizeof from, "%s", scratch_path(folder, "doubles.ply"));
+        write_with_far(from, &scene);
+        const char *path = path_of(f, "far");
+        must_convert(from, path, 0, &done);
+        must_read(path, &back);
+        const bool keeps =
+            strcmp(f->suffix, ".ply") == 0 || strcmp(f->suffix, ".splat") == 0 || strcmp(f->suffix, ".glb") == 0;
+        assert_int_equal(back.count, keeps ? COUNT : COUNT - FAR);
+        for (uint32_t index = 0; index < COUNT; index++) {
+            const uint32_t other = find(&scene, index, &back);
+            for (int axis = 0; axis < 3 && index % FAR_EVERY != 0; axis++) {
+                NEAR(world(&back, other, axis), world(&scene, index, axis), f->position);
+            }
+        }
+        scene_file_free(&scene);
+        scene_file_free(&back);
+    }
+}
+
+static double height_of(const scene_file *scene)
+{
+    double low = world(scene, 0, 1), high = low;
+    for (uint32_t i = 1; i < scene->count; i++) {
+        low = fmin(low, world(scene, i, 1));
+        high = fmax(high, world(scene, i, 1));
+    }
+    return high - low;
+}
+
+/* Where floats have steps of a half, the detail stays, and formats that can say where they are do so. */
+TEST(far_from_the_origin)
+{
+    for (int k = 0; k < FORMATS; k++) {
+        const struct format *f = &formats[k];
+        scene_file scene, back;
+        make_scene(&scene, 0);
+        for (int axis = 0; axis < 3; axis++) {
+            scene.frame.origin_q32[axis] += (axis + 1) * (INT64_C(4700000) << 32);
+        }
+        const char *path = path_of(f, "utm");
+        must_write(path, &scene, 0);
+        must_read(path, &back);
+        const bool has_origin = strcmp(f->suffix, ".ply") == 0 || strcmp(f->suffix, ".glb") == 0;
+        for (uint32_t index = 0; index < COUNT && has_origin; index++) {
+            for (int axis = 0; axis < 3; axis++) {
+                NEAR(world(&back, index, axis), world(&scene, index, axis), f->position);
+            }
+        }
+        assert_true(fabs(height_of(&back) - height_of(&scene)) < 1e-2);
+        scene_file_free(&scene);
+        scene_file_free(&back);
+    }
+}
+
+/* A scene wider than the format holds. */
 TEST(refuse_to_write)
 {
     char error[256] = "";
-    t3r_gaussian g = {.opacity_q15 = 9};
-    const t3r_scene far = {.frame = {{INT64_C(1) << 60, 0, 0}, 0}, .gaussians = &g, .count = 1};
-    const char *path = scratch_path(folder, "far.spz");
-    assert_int_equal(scene_file_write(path, &far, 0, NULL, error, sizeof error), -1);
-    assert_non_null(strstr(error, "--local"));
-    assert_int_equal(scene_file_write(path, &far, SCENE_FILE_LOCAL, NULL, error, sizeof error), 0);
+    t3r_gaussian g = {.position_q20 = {1000 << 20, 0, 0}, .opacity_q15 = 9};
+    const t3r_scene wide = {.frame = {.exponent = 24}, .gaussians = &g, .count = 1};
+    assert_int_equal(scene_file_write(scratch_path(folder, "wide.spz"), &wide, 0, NULL, error, sizeof error), -1);
+    assert_non_null(strstr(error, "2^23"));
 }
 
 ALL_TESTS_WITH(make_folder, scratch_teardown)

@@ -33,13 +33,13 @@ static void turn_vector(const scene_turn *turn, const double in[3], double out[3
     scene_turn_apply(turn, out, rotation, 0, none);
 }
 
-/* A turn is a proper rotation, and colours turn with their directions. */
+/* A turn keeps lengths, and a direction shows the same colour before and behind it. */
 static void check_turn(const scene_turn *turn)
 {
     const double *m = turn->matrix;
     const double determinant =
         m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
-    assert_true(fabs(determinant - 1) < 1e-12);
+    assert_true(fabs(determinant - (turn->mirrors ? -1 : 1)) < 1e-12);
     static const double directions[][3] = {
         {0.6, 0.8, 0}, {0, 0.6, 0.8}, {-0.48, 0.64, 0.6}, {0.36, -0.48, 0.8}, {0, 0, -1}};
     for (size_t i = 0; i < sizeof directions / sizeof directions[0]; i++) {
@@ -59,9 +59,9 @@ static void check_turn(const scene_turn *turn)
 
 TEST(turns_all_alike)
 {
-    for (int axes = SCENE_AXES_AS_THEY_ARE; axes <= SCENE_AXES_LUF; axes++) {
+    for (int axes = SCENE_AXES_AS_THEY_ARE; axes <= SCENE_AXES_LAST; axes++) {
         for (int up = SCENE_UP_UNKNOWN; up <= SCENE_UP_MZ; up++) {
-            const scene_turn turn = scene_turn_to((scene_axes)axes, (scene_up)up);
+            const scene_turn turn = scene_turn_between(SCENE_AXES_AS_THEY_ARE, (scene_axes)axes, (scene_up)up);
             check_turn(&turn);
         }
     }
@@ -88,8 +88,9 @@ TEST(points_up)
     for (size_t i = 0; i < sizeof ups / sizeof ups[0]; i++) {
         const scene_up up = scene_up_named(ups[i].name);
         assert_int_not_equal(up, SCENE_UP_UNKNOWN);
-        for (int axes = SCENE_AXES_AS_THEY_ARE; axes <= SCENE_AXES_LUF; axes++) {
-            const scene_turn turn = scene_turn_to((scene_axes)axes, up);
+        static const scene_axes written[] = {SCENE_AXES_AS_THEY_ARE, SCENE_AXES_RUB, SCENE_AXES_LUF};
+        for (int k = 0; k < 3; k++) {
+            const scene_turn turn = scene_turn_between(SCENE_AXES_AS_THEY_ARE, written[k], up);
             double turned[3];
             turn_vector(&turn, ups[i].up, turned);
             assert_true(turned[0] == 0 && turned[1] == 1 && turned[2] == 0);
@@ -102,19 +103,24 @@ TEST(points_up)
 /* Reading and writing a file changes nothing; without --up, a scene has x right, y down and z forward. */
 TEST(knows_the_axes_of_formats)
 {
-    const double point[3] = {1, 2, 3}, rub[3] = {1, -2, -3}, luf[3] = {-1, -2, 3};
-    for (int axes = SCENE_AXES_AS_THEY_ARE; axes <= SCENE_AXES_LUF; axes++) {
-        const scene_turn to = scene_turn_to((scene_axes)axes, SCENE_UP_UNKNOWN),
-                         from = scene_turn_from((scene_axes)axes);
+    const double point[3] = {1, 2, 3}, rub[3] = {1, -2, -3}, luf[3] = {-1, -2, 3}, rbu[3] = {1, 3, 2},
+                 ldb[3] = {-1, 2, -3};
+    for (int axes = SCENE_AXES_AS_THEY_ARE; axes <= SCENE_AXES_LAST; axes++) {
+        const scene_turn to = scene_turn_between(SCENE_AXES_AS_THEY_ARE, (scene_axes)axes, SCENE_UP_UNKNOWN),
+                         from = scene_turn_between((scene_axes)axes, SCENE_AXES_AS_THEY_ARE, SCENE_UP_UNKNOWN);
         double there[3], back[3];
         turn_vector(&to, point, there);
         turn_vector(&from, there, back);
         assert_memory_equal(back, point, sizeof back);
-        const double *want = axes == SCENE_AXES_RUB ? rub : axes == SCENE_AXES_LUF ? luf : point;
+        const double *want = axes == SCENE_AXES_RUB   ? rub
+                             : axes == SCENE_AXES_LUF ? luf
+                             : axes == SCENE_AXES_RBU ? rbu
+                             : axes == SCENE_AXES_LDB ? ldb
+                                                      : there;
         assert_memory_equal(there, want, sizeof there);
     }
     const int64_t origin[3] = {INT64_C(1) << 61, -5, 7};
-    const scene_turn turn = scene_turn_to(SCENE_AXES_RUB, SCENE_UP_UNKNOWN);
+    const scene_turn turn = scene_turn_between(SCENE_AXES_AS_THEY_ARE, SCENE_AXES_RUB, SCENE_UP_UNKNOWN);
     int64_t turned[3];
     scene_turn_origin(&turn, origin, turned);
     assert_true(turned[0] == origin[0] && turned[1] == 5 && turned[2] == -7);

@@ -181,7 +181,7 @@ given("scene", "list-property.ply", f.ply(behind="property list uchar int vertex
 given("scene", "header-without-end.ply", b"ply\nformat binary_little_endian 1.0\n" + b"comment x\n" * 100000, "no end")
 given("scene", "huge-header-line.ply", lambda: b"ply\ncomment " + b"x" * (8 * MIB) + b"\n", "")
 given("scene", "skips-2^37-bytes.ply",
-      f.ply(before="element face 16777216\n" + "".join(f"property double p{i}\n" for i in range(1000))), "more than 512")
+      f.ply(before="element face 16777216\n" + "".join(f"property double p{i}\n" for i in range(1000))), "cut off")
 given("scene", "nan.ply", f.ply(3, values=[float("nan")] + [0] * 13), "not a finite number")
 given("scene", "far-apart.ply", lambda: f.ply(2, rows=1) + struct.pack("<14f", 3e38, *([0] * 10), 1, 0, 0))
 given("scene", "no-rotation.ply", f.ply(values=[0] * 14), "rotation without length")
@@ -210,7 +210,7 @@ given("scene", "3-million-nodes.glb",
       lambda: f.glb(json.dumps(f.gaussians(1)).encode()[:-1] + b', "nodes": [' + b"0," * 2900000 + b"0]}", bytes(64)), None)
 given("scene", "moved.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "matrix": [0] * 16}]), bytes(64)), "last row")
 given("scene", "flat.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "scale": [1, 0, 1]}]), bytes(64)), "make them flat")
-given("scene", "far.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "translation": [1e300] * 3}]), bytes(64)), "half of the positions")
+given("scene", "far.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "translation": [1e300] * 3}]), struct.pack("<16f", *[1] * 16)), "half of the positions")
 given("scene", "circle.glb", f.glb(f.gaussians(1, nodes=[{"mesh": 0, "children": [1]}, {"children": [0]}]), bytes(64)), "own children")
 given("scene", "700000-nodes-deep.glb",
       lambda: f.glb(json.dumps(f.gaussians(1)).encode()[:-1] + b', "nodes": [' +
@@ -224,7 +224,7 @@ given("scene", "meta-of-64-mb.sog", lambda: f.sog({"meta.json": b" " * (64 * MIB
 given("scene", "16-million.sog", lambda: f.sog({"meta.json": f.sog_meta(1 << 24)}), "")
 given("scene", "picture-of-16383x16383.sog", lambda: f.sog({"meta.json": f.sog_meta(1000), "x.webp": f.webp(16383, 16383)}), "")
 given("scene", "escapes.sog", lambda: f.sog({"meta.json": f.sog_meta(9, f.ESCAPE)}), "")
-given("scene", "escapes-in-format.ply", b"ply\nformat " + f.ESCAPE.encode() + b"\n", "only binary_little_endian")
+given("scene", "escapes-in-format.ply", b"ply\nformat " + f.ESCAPE.encode() + b"\n", "binary_big_endian and ascii")
 
 
 # --- pictures --------------------------------------------------------------------------------------------------------

@@ -77,6 +77,10 @@ TEST(refuses_bad_poses)
          "transform_matrix"},
         {"{\"fl_x\": 200, \"w\": 64, \"h\": 64, \"transform_matrix\": [[1,0,0,2e9],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}",
          "2^30"},
+        {"{\"fl_x\": 200, \"w\": 64, \"h\": 64, \"k1\": 0.1, \"transform_matrix\": " IDENTITY "}", "pinhole"},
+        {"{\"fl_x\": 200, \"w\": 64, \"h\": 64, \"k1\": 0.1, \"camera_model\": \"OPENCV_FISHEYE\", "
+         "\"transform_matrix\": " IDENTITY "}",
+         "pinhole"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         viewpoint_list list;

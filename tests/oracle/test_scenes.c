@@ -164,7 +164,7 @@ static void trained_scene(void **state)
     char path[2 * PATH_BYTES], error[256] = "";
     (void)snprintf(path, sizeof path, "%s/splats/bulba.ply", data);
     scene_file scene;
-    if (scene_file_read(path, &scene, error, sizeof error) != 0) {
+    if (scene_file_read(path, 0, &scene, error, sizeof error) != 0) {
         fail_msg("%s", error);
     }
     size_t count = 0;

@@ -4,9 +4,11 @@
 import http.client
 import json
 import re
+import socket
 import subprocess
 import sys
 import tempfile
+import time
 
 from checks import check, done, run
 from common import need_page
@@ -65,6 +67,20 @@ def served(scene):
             check(status == 200 and kind.startswith("text/html") and len(body) == told["bytes"], f"the page: {status}")
             check(ask(port, "HEAD")[0] == 200 and ask(port, host=f"localhost:{port}")[0] == 200, "HEAD, and localhost")
             check(ask(port, host="elsewhere.example")[0] == 403, "a page of another site is refused")
+            idle = [socket.create_connection(("127.0.0.1", port)) for _ in range(3)]
+            begun = time.monotonic()
+            check(ask(port)[0] == 200 and time.monotonic() - begun < 2, "clients that ask nothing delay none")
+            for each in idle:
+                each.close()
+            slow = socket.create_connection(("127.0.0.1", port))
+            slow.settimeout(30)
+            begun = time.monotonic()
+            try:
+                while True:  # a byte now and then, and never a whole request
+                    slow.sendall(b"G")
+                    time.sleep(0.5)
+            except OSError:
+                check(4 < time.monotonic() - begun < 8, f"a slow client has 5 s: {time.monotonic() - begun:.1f}")
             check(ask(port, path="/other")[0] == 404 and ask(port, "POST")[0] == 405, "there is one page, to be read")
             taken = run(TRIM3R, "view", scene, "--port", str(port), expect=1)
             check(f"127.0.0.1:{port}: " in taken.stderr, f"a port that is taken: {taken.stderr}")

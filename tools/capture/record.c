@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "capture/record.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -34,7 +35,8 @@ static int failed(capture_record *record)
 {
     char name[400];
     capture_record_name(record->path, record->files > 0 ? record->files - 1 : 0, name, sizeof name);
-    return t3r_reason(record->error, sizeof record->error, "%s: cannot be written", name);
+    return t3r_reason(record->error, sizeof record->error, "%s: %s", name,
+                      errno == EBUSY ? "another process records to it" : "cannot be written");
 }
 
 static int open_next(capture_record *record)
@@ -134,6 +136,9 @@ int capture_record_frame(capture_record *record, const t3r_capture_frame *frame)
         .camera = capture_camera_recorded(frame),
     };
     if (t3r_recorder_frame(recorder_of(record), &recorded) != 0) {
+        return failed(record);
+    }
+    if (t3r_recording_file_place(&record->file) != 0) {
         return failed(record);
     }
     record->frames++;

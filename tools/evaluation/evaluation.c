@@ -37,7 +37,7 @@ int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluatio
         .alpha_q15 = alpha,
         .alpha_stride_bytes = views->width * 2,
     };
-    int code = reconstruction_look_from(r, camera);
+    int code = reconstruction_look_from(r, camera, views->width, views->height);
     if (code != CLI_OK) {
         return code;
     }
@@ -228,7 +228,7 @@ static int through_file(reconstruction *loaded, const reconstruction *built, con
     }
     int failed = scene_file_write(path, &built->scene, 0, NULL, error, sizeof error);
     if (failed == 0) {
-        failed = scene_file_read(path, &scene, error, sizeof error);
+        failed = scene_file_read(path, SCENE_FILE_QUIET, &scene, error, sizeof error);
     }
     unlink(path);
     part_files_forget(path);
@@ -330,7 +330,7 @@ static int measure_scene(evaluation_row *row, uint8_t *render, const evaluation_
     scene_file scene;
     reconstruction loaded;
     char error[512] = "";
-    if (scene_file_read(options->scene, &scene, error, sizeof error) != 0) {
+    if (scene_file_read(options->scene, options->scene_flags | SCENE_FILE_QUIET, &scene, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     row->value[EVALUATION_GAUSSIANS] = scene.count;

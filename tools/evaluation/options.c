@@ -12,6 +12,7 @@
 #include "reconstruction/chosen_head.h"
 #include "reconstruction/options/option_names.h"
 #include "reconstruction/options/poses_option.h"
+#include "scene/scene_options.h"
 
 enum { KEY_CONTEXT = 0x200, KEY_TARGET, KEY_VIEWS, KEY_KEEP, KEY_GAUSSIANS, KEY_HEADS, KEY_SIZE, KEY_JOBS };
 
@@ -115,6 +116,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->settings;
         state->child_inputs[1] = &o->settings.poses;
+        state->child_inputs[2] = &o->settings.scene_flags;
         return 0;
     case KEY_CONTEXT:
         option_frames(state, "context", arg, o->settings.context, &o->settings.context_count);
@@ -225,7 +227,8 @@ static char *add_examples(int key, const char *text, void *input)
     return key == ARGP_KEY_HELP_EXTRA ? strdup(examples) : (char *)(uintptr_t)text;
 }
 
-static const struct argp_child children[] = {{.argp = &reconstruction_settings_argp}, {.argp = &poses_argp}, {0}};
+static const struct argp_child children[] = {
+    {.argp = &reconstruction_settings_argp}, {.argp = &poses_argp}, {.argp = &scene_input_argp}, {0}};
 
 const struct argp evaluation_argp = {
     .options = options,

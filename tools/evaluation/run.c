@@ -17,14 +17,14 @@ static int open_cases(const evaluation_options *o, evaluation_cases *cases)
 }
 
 /* Opens the scene to be pruned, so that a bad one is reported before the work. */
-static int look_at_scene(const char *path, const evaluation_cases *cases)
+static int look_at_scene(const char *path, int flags, const evaluation_cases *cases)
 {
     if (cases->count > 1) {
         return cli_error(CLI_BAD_USAGE, "--prune: the scene belongs to one context; name it, of one recording, by "
                                         "--context and --target");
     }
     scene_file scene;
-    int code = scene_to_prune(path, &scene);
+    int code = scene_to_prune(path, flags, &scene);
     if (code == CLI_OK) {
         scene_file_free(&scene);
     }
@@ -47,11 +47,11 @@ static int report_all(const evaluation_options *o, const evaluation_work *work)
 }
 
 /* Opens the scene to be scored, for the same reason. */
-static int look_at_judged(const char *path)
+static int look_at_judged(const char *path, int flags)
 {
     scene_file scene;
     char error[512] = "";
-    if (scene_file_read(path, &scene, error, sizeof error) != 0) {
+    if (scene_file_read(path, flags, &scene, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     scene_file_free(&scene);
@@ -81,10 +81,10 @@ int evaluation_run(const evaluation_options *o, const evaluation_contestants *co
     evaluation_resume resume = {0};
     int code = open_cases(o, &cases);
     if (code == CLI_OK && o->settings.points_of != NULL) {
-        code = look_at_scene(o->settings.points_of, &cases);
+        code = look_at_scene(o->settings.points_of, o->settings.scene_flags, &cases);
     }
     if (code == CLI_OK && o->settings.scene != NULL) {
-        code = look_at_judged(o->settings.scene);
+        code = look_at_judged(o->settings.scene, o->settings.scene_flags);
     }
     if (code == CLI_OK && o->to.resume) {
         const char *made = o->settings.scene != NULL ? o->settings.scene : o->settings.points_of;

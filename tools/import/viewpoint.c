@@ -79,6 +79,11 @@ static int convert_frames(const posed_folder *folder, viewpoint_list *out, char 
             0) {
             return -1;
         }
+        if (camera.distortion != T3R_DISTORTION_NONE) {
+            return t3r_reason(error, error_bytes,
+                              "k1 ..: pictures are drawn by pinhole cameras; without distortion coefficients and a "
+                              "fisheye's camera_model this pose is one");
+        }
         *view = (viewpoint){.width = camera.width, .height = camera.height};
         view->camera.fx_q16 = to_q(camera.fx, 16);
         view->camera.fy_q16 = to_q(camera.fy, 16);

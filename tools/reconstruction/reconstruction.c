@@ -447,8 +447,8 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
     const uint16_t *const *planes = NULL;
     int code = choose_context(r, recording, path, options, frames);
     if (code == CLI_OK && options->points_of != NULL) {
-        code = scene_frames_make(&made, options->points_of, recording, path, r->context, r->context_count,
-                                 r->config.width, r->config.height, frames);
+        code = scene_frames_make(&made, options->points_of, options->scene_flags, recording, path, r->context,
+                                 r->context_count, r->config.width, r->config.height, frames);
         r->pruned = made.gaussians;
         r->add_views_seconds = made.seconds;
     }
@@ -524,7 +524,7 @@ int reconstruction_live_stream(reconstruction *r, uint32_t width, uint32_t heigh
 
 /* ---- from a file ---------------------------------------------------------------------------------------------- */
 
-static int append_loaded(reconstruction *r, const t3r_camera *eye)
+static int append_loaded(reconstruction *r, const scene_eye *eye)
 {
     uint32_t index = 0;
     t3r_status status = scene_append_all(r->runtime, &r->loaded, eye, &index);
@@ -537,11 +537,12 @@ static int append_loaded(reconstruction *r, const t3r_camera *eye)
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, "scene", &r->config, r->arena_bytes);
 }
 
-int reconstruction_look_from(reconstruction *r, const t3r_camera *camera)
+int reconstruction_look_from(reconstruction *r, const t3r_camera *camera, uint32_t width, uint32_t height)
 {
     t3r_pose pose;
     const bool is_drawn = t3r_pose_in_scene(camera, &r->loaded.frame, &pose) == T3R_OK; /* else t3r_render() refuses */
-    return r->loaded.degree == 0 || !is_drawn ? CLI_OK : append_loaded(r, camera);
+    const scene_eye eye = {camera, width, height};
+    return scene_file_depends_on_view(&r->loaded) && is_drawn ? append_loaded(r, &eye) : CLI_OK;
 }
 
 static int load(reconstruction *r, uint32_t width, uint32_t height, const reconstruction_options *options)

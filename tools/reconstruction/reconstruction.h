@@ -46,8 +46,9 @@ typedef struct reconstruction_options {
     const char *mask_head; /* likewise, for methods that rank a scene of another head; NULL = `head` */
     t3r_ablation ablation; /* part removed from the method */
     bool hide_mask;        /* the network sees a mask of all pixels: hidden_mask.h */
-    const char *points_of; /* a .ply whose Gaussians give the depth instead (scene_frames.h), and the points that
+    const char *points_of; /* a scene whose Gaussians give the depth instead (scene_frames.h), and the points that
                               percentages refer to; NULL = none */
+    int scene_flags;       /* for scene_file_read() of both files */
     const char *scene;     /* set by callers: a scene file to evaluate instead of a build; NULL = none */
     bool hash;             /* collect the stages' hashes */
     arena_choice arena;
@@ -135,9 +136,9 @@ t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *
  * threads and hash are read. `r` takes ownership of the scene in every case: *scene is left empty. */
 int reconstruction_load(reconstruction *r, scene_file *scene, uint32_t width, uint32_t height,
                         const reconstruction_options *options);
-/* Gives a loaded scene the colours of its harmonics as seen from a camera; later t3r_render() calls draw them. Scenes
- * without harmonics are unchanged. */
-int reconstruction_look_from(reconstruction *r, const t3r_camera *camera);
+/* Gives a loaded scene the colours and opacities that a camera sees; later t3r_render() calls draw them. Scenes that
+ * look the same from everywhere are unchanged. */
+int reconstruction_look_from(reconstruction *r, const t3r_camera *camera, uint32_t width, uint32_t height);
 
 /* Contents of a scene's frames before it is built: valid points, and by stereo the scene's depth in world units, a
  * power of two times 1.5 (0 by sensor). */

@@ -5,8 +5,14 @@
 
 #include "scene/scene_file.h"
 
-/* Replaces the scene in the arena. `eye`: harmonics show the colours seen from it; NULL = degree 0 only. *index
- * receives the Gaussian that was refused. */
-t3r_status scene_append_all(t3r_runtime *runtime, const scene_file *scene, const t3r_camera *eye, uint32_t *index);
+/* A camera, and the size of its picture. */
+typedef struct scene_eye {
+    const t3r_camera *camera;
+    uint32_t width, height;
+} scene_eye;
+
+/* Replaces the scene in the arena by what the eye sees of it: colours of harmonics, opacities of mip-splatting. NULL:
+ * colours of degree 0 and opacities as they are. *index receives the Gaussian that was refused. */
+t3r_status scene_append_all(t3r_runtime *runtime, const scene_file *scene, const scene_eye *eye, uint32_t *index);
 
 #endif

@@ -8,10 +8,11 @@
 #include "reconstruction/developed_frame.h"
 #include "reconstruction/splat_depth.h"
 
-int scene_to_prune(const char *path, scene_file *scene)
+int scene_to_prune(const char *path, int flags, scene_file *scene)
 {
     char error[512] = "";
-    return scene_file_read(path, scene, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
+    return scene_file_read(path, flags, scene, error, sizeof error) == 0 ? CLI_OK
+                                                                         : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
 static int make_frame(scene_frames *made, uint32_t view, const scene_file *scene, const char *scene_path,
@@ -50,14 +51,14 @@ static int make_frame(scene_frames *made, uint32_t view, const scene_file *scene
     return CLI_OK;
 }
 
-int scene_frames_make(scene_frames *made, const char *scene, const t3r_recording *recording, const char *path,
-                      const uint32_t *context, uint32_t count, uint32_t width, uint32_t height,
+int scene_frames_make(scene_frames *made, const char *scene, int flags, const t3r_recording *recording,
+                      const char *path, const uint32_t *context, uint32_t count, uint32_t width, uint32_t height,
                       t3r_capture_frame *frames)
 {
     scene_file read;
     double start = cli_now();
     *made = (scene_frames){0};
-    int code = scene_to_prune(scene, &read);
+    int code = scene_to_prune(scene, flags, &read);
     if (code != CLI_OK) {
         return code;
     }

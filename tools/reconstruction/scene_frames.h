@@ -9,8 +9,8 @@
 #include "recording/recording.h"
 #include "scene/scene_file.h"
 
-/* Reads a scene to be pruned, at least one Gaussian. Returns an exit status of cli.h after a message. */
-int scene_to_prune(const char *path, scene_file *scene);
+/* Reads a scene to be pruned; flags as for scene_file_read(). Returns an exit status of cli.h after a message. */
+int scene_to_prune(const char *path, int flags, scene_file *scene);
 
 /* Memory that the frames point into. */
 typedef struct scene_frames {
@@ -23,8 +23,8 @@ typedef struct scene_frames {
  * at width x height, undistorted, and the depth of the scene in the file `scene` (splat_depth.h). The scene must be in
  * the recording's world. A view that sees none of it is refused. Returns an exit status of cli.h after a message; call
  * scene_frames_free() in either case, once the frames are no longer used. */
-int scene_frames_make(scene_frames *made, const char *scene, const t3r_recording *recording, const char *path,
-                      const uint32_t *context, uint32_t count, uint32_t width, uint32_t height,
+int scene_frames_make(scene_frames *made, const char *scene, int flags, const t3r_recording *recording,
+                      const char *path, const uint32_t *context, uint32_t count, uint32_t width, uint32_t height,
                       t3r_capture_frame *frames);
 void scene_frames_free(scene_frames *made);
 

@@ -1,13 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/scene_file.h"
 
+#include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
+#include "cli/cli.h"
 #include "cli/files/whole_file.h"
+#include "cli/options/file_kind.h"
+#include "core/scene_frame.h"
 #include "host/file_bytes.h"
 #include "host/reason.h"
+#include "scene/chosen_rows.h"
+#include "scene/scene_extent.h"
 #include "scene/scene_format.h"
 
 /* All formats. Of two with one suffix the first is written; `ply` is used for files that no format recognises. */
@@ -37,7 +45,7 @@ static const scene_format *format_of_path(const char *path)
     size_t longest = 0;
     for (int i = 0; i < FORMATS_COUNT; i++) {
         const size_t end = strlen(formats[i]->suffix);
-        if (length > end && end > longest && strcmp(path + length - end, formats[i]->suffix) == 0) {
+        if (length > end && end > longest && strcasecmp(path + length - end, formats[i]->suffix) == 0) {
             found = formats[i];
             longest = end;
         }
@@ -56,10 +64,12 @@ static const scene_format *format_of_bytes(const uint8_t *bytes, size_t count)
     return NULL;
 }
 
-bool scene_file_is_read(const char *path)
+bool scene_file_is_one(const char *path)
 {
-    const scene_format *format = format_of_path(path);
-    return format != NULL && format->parse != NULL;
+    const file_kind kind = file_kind_of(path);
+    const scene_format *named = format_of_path(path);
+    return kind == FILE_SCENE ||
+           (kind != FILE_RECORDING && kind != FILE_PICTURE && named != NULL && named->parse != NULL);
 }
 
 bool scene_file_is_written(const char *path)
@@ -80,14 +90,6 @@ const char *scene_file_suffixes(char text[SCENE_FILE_SUFFIXES_BYTES])
     return text;
 }
 
-static int parse_as(const scene_format *format, const uint8_t *bytes, size_t count, scene_file *out, char *error,
-                    size_t error_bytes)
-{
-    *out = (scene_file){0};
-    return format->parse == NULL ? t3r_reason(error, error_bytes, "%s is written, not read", format->suffix)
-                                 : format->parse(bytes, count, out, error, error_bytes);
-}
-
 /* Finds the format by the first bytes, else by the name. */
 static const scene_format *format_of(const char *name, const uint8_t *bytes, size_t count)
 {
@@ -96,10 +98,58 @@ static const scene_format *format_of(const char *name, const uint8_t *bytes, siz
     return format != NULL ? format : &scene_format_ply;
 }
 
-int scene_file_parse(const char *name, const uint8_t *bytes, size_t count, scene_file *out, char *error,
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
+
+typedef struct valid_sink {
+    const scene_sink *next;
+    uint32_t dropped;
+} valid_sink;
+
+static int take_valid(void *user, const scene_rows *rows, char *error, size_t error_bytes)
+{
+    valid_sink *valid = user;
+    chosen_rows chosen;
+    int result = chosen_rows_valid(rows, &chosen, error, error_bytes);
+    valid->dropped = chosen.left_out;
+    if (result == 0) {
+        result = valid->next->take(valid->next->user, &chosen.rows, error, error_bytes);
+    }
+    chosen_rows_free(&chosen);
+    return result;
+}
+
+/* Hands the rows of a file to the sink, without the invalid ones if the flags say so; counts those. */
+static int parse_rows(const char *name, const uint8_t *bytes, size_t count, int flags, const scene_sink *sink,
+                      uint32_t *dropped, char *error, size_t error_bytes)
+{
+    const scene_format *format = format_of(name, bytes, count);
+    *dropped = 0;
+    if (format->parse == NULL) {
+        return t3r_reason(error, error_bytes, "%s is written, not read", format->suffix);
+    }
+    if ((flags & SCENE_FILE_DROP_INVALID) == 0) {
+        return format->parse(bytes, count, sink, error, error_bytes);
+    }
+    valid_sink valid = {.next = sink};
+    const int result = format->parse(bytes, count, &(scene_sink){take_valid, &valid}, error, error_bytes);
+    *dropped = valid.dropped;
+    return result;
+}
+
+static int take_scene(void *user, const scene_rows *rows, char *error, size_t error_bytes)
+{
+    return scene_file_from_rows(rows, user, error, error_bytes);
+}
+
+int scene_file_parse(const char *name, const uint8_t *bytes, size_t count, int flags, scene_file *out, char *error,
                      size_t error_bytes)
 {
-    return parse_as(format_of(name, bytes, count), bytes, count, out, error, error_bytes);
+    uint32_t dropped;
+    *out = (scene_file){0};
+    const scene_sink sink = {take_scene, out};
+    const int result = parse_rows(name, bytes, count, flags, &sink, &dropped, error, error_bytes);
+    out->remarks.dropped = dropped;
+    return result;
 }
 
 /* Checks the first bytes before the whole file is read. */
@@ -108,45 +158,144 @@ static const char *check_first(const uint8_t *first, size_t count)
     return format_of_bytes(first, count) != NULL ? NULL : scene_format_ply.foreign;
 }
 
-int scene_file_read(const char *path, scene_file *out, char *error, size_t error_bytes)
+/* Returns the bytes of a scene file; NULL with the reason in error[]. */
+static uint8_t *read_bytes(const char *path, size_t *count, char *error, size_t error_bytes)
+{
+    const scene_format *named = format_of_path(path);
+    const bool begins_with_anything = named != NULL && named->magic == NULL && named->parse != NULL;
+    return t3r_file_bytes_checked(path, SIZE_MAX, begins_with_anything ? NULL : check_first, count, error, error_bytes);
+}
+
+static void warn_of_dropped(const char *path, uint32_t dropped)
+{
+    if (dropped > 0) {
+        (void)cli_error(CLI_OK, "warning: %s: %" PRIu32 " invalid Gaussians are left out", path, dropped);
+    }
+}
+
+static void warn_of_far(const char *path, uint32_t count, const char *done)
+{
+    (void)cli_error(CLI_OK,
+                    "warning: %s: %" PRIu32 " Gaussians are about 1,000 times as far away as half of all, or farther: "
+                    "they are %s",
+                    path, count, done);
+}
+
+static void warn_of_text(const char *path, const char *text)
+{
+    if (text != NULL && text[0] != '\0') {
+        (void)cli_error(CLI_OK, "warning: %s: %s", path, text);
+    }
+}
+
+static void warn_of_remarks(const char *path, const scene_remarks *remarks)
+{
+    warn_of_text(path, remarks->text);
+    warn_of_dropped(path, remarks->dropped);
+    if (remarks->pulled > 0) {
+        warn_of_far(path, remarks->pulled, "drawn nearer, and smaller in proportion");
+    }
+    if (remarks->clipped > 0) {
+        (void)cli_error(CLI_OK, "warning: %s: %" PRIu32 " Gaussians have harmonics beyond 8: they are drawn with 8",
+                        path, remarks->clipped);
+    }
+}
+
+int scene_file_read(const char *path, int flags, scene_file *out, char *error, size_t error_bytes)
 {
     *out = (scene_file){0};
     size_t count;
-    const scene_format *named = format_of_path(path);
-    const bool begins_with_anything = named != NULL && named->magic == NULL && named->parse != NULL;
-    uint8_t *bytes =
-        t3r_file_bytes_checked(path, SIZE_MAX, begins_with_anything ? NULL : check_first, &count, error, error_bytes);
+    uint8_t *bytes = read_bytes(path, &count, error, error_bytes);
     if (bytes == NULL) {
         return -1;
     }
     char reason[256] = "";
-    int result = scene_file_parse(path, bytes, count, out, reason, sizeof reason);
+    int result = scene_file_parse(path, bytes, count, flags, out, reason, sizeof reason);
     if (result != 0) {
         t3r_reason(error, error_bytes, "%s: %s", path, reason);
     }
     free(bytes);
+    if ((flags & SCENE_FILE_QUIET) == 0) {
+        warn_of_remarks(path, &out->remarks);
+    }
     return result;
 }
 
-uint32_t scene_file_degree_most(const char *path)
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
+
+/* Floats have 24 bits: with the world's origin farther away than this many typical distances, positions lose more than
+ * 2^-11 of one. */
+#define FAR_FROM_ORIGIN 0x1p13
+
+/* Returns a frame for rows without one: its origin is a whole number of units. */
+static t3r_scene_frame frame_of(const scene_rows *rows, const scene_extent *extent)
 {
-    const scene_format *format = format_of_path(path);
-    return format == NULL ? 0 : format->degree;
+    t3r_scene_frame frame = rows->frame;
+    for (int axis = 0; axis < 3 && !rows->has_frame; axis++) {
+        const double whole = nearbyint(fmin(fmax(extent->centre[axis], -0x1p29), 0x1p29));
+        frame.origin_q32[axis] = (int64_t)whole * (INT64_C(1) << 32);
+    }
+    if (!rows->has_frame) {
+        const int exponent = scene_extent_exponent(extent);
+        frame.exponent = exponent < T3R_EXPONENT_LEAST  ? T3R_EXPONENT_LEAST
+                         : exponent > T3R_EXPONENT_MOST ? T3R_EXPONENT_MOST
+                                                        : exponent;
+    }
+    return frame;
 }
 
-static int write_file(const char *path, const scene_file *scene, int flags, const char *note, char *error,
-                      size_t error_bytes)
+/* Moves the centre of rows that are relative to an origin to the world. */
+static void add_origin(scene_extent *extent, const scene_rows *rows)
 {
-    const scene_format *format = format_of_path(path);
-    if (format == NULL || format->write == NULL) {
-        char known[SCENE_FILE_SUFFIXES_BYTES];
-        return t3r_reason(error, error_bytes, "%s: scenes are written as %s", path, scene_file_suffixes(known));
+    for (int axis = 0; axis < 3 && rows->has_frame && rows->local; axis++) {
+        extent->centre[axis] += ldexp((double)rows->frame.origin_q32[axis], -32);
     }
-    scene_source source = {.scene = scene,
+}
+
+static bool is_far_from_origin(const scene_extent *extent)
+{
+    const double *c = extent->centre;
+    return fmax(fabs(c[0]), fmax(fabs(c[1]), fabs(c[2]))) > FAR_FROM_ORIGIN * extent->typical;
+}
+
+/* Describes the rows as the format writes them. */
+static scene_source source_of(const scene_format *format, const scene_rows *rows, const scene_extent *extent, int flags,
+                              const char *note)
+{
+    scene_source source = {.rows = rows,
                            .flags = flags,
                            .note = note,
-                           .turn = scene_turn_to(format->axes, (scene_up)(flags / SCENE_FILE_UP)),
-                           .degree = scene->degree < format->degree ? scene->degree : format->degree};
+                           .frame = frame_of(rows, extent),
+                           .turn = scene_turn_between(rows->axes, format->axes, (scene_up)(flags / SCENE_FILE_UP)),
+                           .degree = rows->degree < format->degree ? rows->degree : format->degree};
+    const bool is_local = rows->has_frame && rows->local, writes_local = (flags & SCENE_FILE_LOCAL) != 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const double origin = ldexp((double)source.frame.origin_q32[axis], -32);
+        source.shift[axis] = is_local == writes_local ? 0 : is_local ? origin : -origin;
+    }
+    return source;
+}
+
+static void warn_of_origin(const char *path, const scene_format *format, const scene_source *source)
+{
+    const int64_t *origin = source->frame.origin_q32;
+    (void)cli_error(CLI_OK,
+                    "warning: %s: floats would lose the detail of positions so far from the world's origin: they are "
+                    "relative to (%.15g, %.15g, %.15g), which %s",
+                    path, ldexp((double)origin[0], -32), ldexp((double)origin[1], -32), ldexp((double)origin[2], -32),
+                    format->holds_origin ? "the file says" : "this format has no place for");
+}
+
+/* Writes all rows; `extent` is theirs, in world units. */
+static int write_all(const char *path, const scene_rows *rows, const scene_extent *extent, int flags, const char *note,
+                     scene_conversion *out, char *error, size_t error_bytes)
+{
+    const scene_format *format = format_of_path(path);
+    const bool moves = (flags & SCENE_FILE_LOCAL) == 0 && is_far_from_origin(extent);
+    const scene_source source =
+        source_of(format, rows, extent, moves ? flags | SCENE_FILE_LOCAL | SCENE_FILE_COMMENTS : flags, note);
+    out->count = rows->count;
+    out->degree = source.degree;
     whole_file file;
     if (whole_file_begin(&file, path, error, error_bytes) != 0) {
         return -1;
@@ -156,19 +305,95 @@ static int write_file(const char *path, const scene_file *scene, int flags, cons
         whole_file_abandon(&file);
         return t3r_reason(error, error_bytes, "%s: %s", path, reason);
     }
+    if (moves) {
+        warn_of_origin(path, format, &source);
+    }
+    if (rows->mip && !format->holds_mip) {
+        warn_of_text(path,
+                     "this format has no place for the mark of mip-splatting (antialiased): viewers will draw the "
+                     "scene too bright");
+    }
     return whole_file_commit(&file, NULL, error, error_bytes);
+}
+
+/* Writes the rows that the format has bits for; `extent` is in the rows' own units. */
+static int write_rows(const char *path, const scene_rows *rows, const scene_extent *extent, int flags, const char *note,
+                      scene_conversion *out, char *error, size_t error_bytes)
+{
+    const scene_format *format = format_of_path(path);
+    if (format == NULL || format->write == NULL) {
+        char known[SCENE_FILE_SUFFIXES_BYTES];
+        return t3r_reason(error, error_bytes, "%s: scenes are written as %s", path, scene_file_suffixes(known));
+    }
+    scene_extent in_world = *extent;
+    add_origin(&in_world, rows);
+    if (!format->shares_bits || extent->far == 0) {
+        return write_all(path, rows, &in_world, flags, note, out, error, error_bytes);
+    }
+    chosen_rows chosen;
+    int result = chosen_rows_near(rows, extent, &chosen, error, error_bytes);
+    if (result == 0) {
+        result = write_all(path, &chosen.rows, &in_world, flags, note, out, error, error_bytes);
+    }
+    if (result == 0) {
+        warn_of_far(path, chosen.left_out, "left out, as their range would cost the others their bits");
+    }
+    chosen_rows_free(&chosen);
+    return result;
 }
 
 int scene_file_write(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
                      size_t error_bytes)
 {
-    /* read only */
+    scene_conversion written;
+    /* only read */
     const scene_file made = {
         .frame = scene->frame, .gaussians = (t3r_gaussian *)(uintptr_t)scene->gaussians, .count = scene->count};
-    return write_file(path, &made, flags, note, error, error_bytes);
+    const scene_rows rows = scene_rows_of(&made);
+    const scene_extent extent = {.typical = ldexp(1, scene->frame.exponent)};
+    return write_rows(path, &rows, &extent, flags, note, &written, error, error_bytes);
 }
 
-int scene_file_rewrite(const char *path, const scene_file *scene, int flags, char *error, size_t error_bytes)
+/* ---- converting -------------------------------------------------------------------------------------------------- */
+
+typedef struct conversion {
+    const char *from, *to;
+    int flags;
+    scene_conversion *out;
+    bool is_read; /* a reason is about the file that is written */
+} conversion;
+
+static int take_conversion(void *user, const scene_rows *rows, char *error, size_t error_bytes)
 {
-    return write_file(path, scene, flags, NULL, error, error_bytes);
+    conversion *c = user;
+    const int kept = rows->has_frame ? SCENE_FILE_COMMENTS | (rows->local ? SCENE_FILE_LOCAL : 0) : 0;
+    scene_extent extent;
+    if (scene_extent_of(rows, &extent, error, error_bytes) != 0) {
+        return -1;
+    }
+    c->is_read = true;
+    warn_of_text(c->from, rows->remark);
+    c->out->degree_read = rows->degree;
+    return write_rows(c->to, rows, &extent, c->flags | kept, NULL, c->out, error, error_bytes);
+}
+
+int scene_file_convert(const char *from, const char *to, int flags, scene_conversion *out, char *error,
+                       size_t error_bytes)
+{
+    size_t count;
+    uint32_t dropped;
+    *out = (scene_conversion){0};
+    uint8_t *bytes = read_bytes(from, &count, error, error_bytes);
+    if (bytes == NULL) {
+        return -1;
+    }
+    char reason[512] = "";
+    conversion to_do = {.from = from, .to = to, .flags = flags, .out = out};
+    const scene_sink sink = {take_conversion, &to_do};
+    const int result = parse_rows(from, bytes, count, flags, &sink, &dropped, reason, sizeof reason);
+    free(bytes);
+    warn_of_dropped(from, dropped);
+    return result == 0     ? 0
+           : to_do.is_read ? t3r_reason(error, error_bytes, "%s", reason)
+                           : t3r_reason(error, error_bytes, "%s: %s", from, reason);
 }

@@ -11,6 +11,14 @@
 
 #define SCENE_FILE_SUFFIXES_BYTES 96
 
+/* What reading changed. */
+typedef struct scene_remarks {
+    uint32_t pulled;  /* Gaussians beyond the fixed point, moved to its end (scene_pull()) */
+    uint32_t clipped; /* Gaussians with harmonics beyond 8, which are 8 now */
+    uint32_t dropped; /* invalid Gaussians left out */
+    char text[96];    /* what of the file is not read; "": nothing */
+} scene_remarks;
+
 /* A scene outside the arena. */
 typedef struct scene_file {
     t3r_scene_frame frame;
@@ -18,7 +26,15 @@ typedef struct scene_file {
     uint32_t count;
     uint32_t degree;        /* of its harmonics, 0..3 */
     int16_t *harmonics_q12; /* heap; NULL: degree 0. In the layout of t3r_harmonics_colour(), Gaussian by Gaussian */
+    bool mip;               /* opacities are those of mip-splatting; see seen_gaussian.h */
+    scene_remarks remarks;
 } scene_file;
+
+/* Whether the Gaussians look different from each viewpoint. */
+static inline bool scene_file_depends_on_view(const scene_file *scene)
+{
+    return scene->degree > 0 || scene->mip;
+}
 
 /* Returns the numbers in harmonics_q12 per Gaussian. */
 static inline size_t scene_file_harmonics_count(const scene_file *scene)
@@ -32,22 +48,32 @@ static inline int16_t *scene_file_harmonics(const scene_file *scene, uint32_t in
     return scene->harmonics_q12 + index * scene_file_harmonics_count(scene);
 }
 
-/* Whether a path has the suffix of a scene file that can be read, or written. */
-bool scene_file_is_read(const char *path);
+/* Whether a file is a scene by its content; or by its suffix, if it does not exist or its content is no other kind. */
+bool scene_file_is_one(const char *path);
+/* Whether a path has the suffix of a scene file that can be written. */
 bool scene_file_is_written(const char *path);
 /* Writes the suffixes of files that can be written: ".ply, .splat". */
 const char *scene_file_suffixes(char text[SCENE_FILE_SUFFIXES_BYTES]);
 
-/* Reads a scene in the format that its first bytes identify, else its suffix. Returns 0, or -1 with "what, where" in
- * error[]. The scene frame (origin, exponent) is the one in the file's SCENE_FILE_COMMENTS, else chosen from the
- * positions. */
-int scene_file_read(const char *path, scene_file *out, char *error, size_t error_bytes);
-/* The same for bytes in memory; `name` ends with the suffix. */
-int scene_file_parse(const char *name, const uint8_t *bytes, size_t count, scene_file *out, char *error,
+/* For reading: leaves out and counts Gaussians with numbers that are not finite or a rotation without length; without
+ * it one of them refuses the file. */
+enum {
+    SCENE_FILE_DROP_INVALID = 4,
+    SCENE_FILE_QUIET = 8, /* no warnings: the file was read before */
+};
+
+/* Reads a scene in the format that its first bytes identify, else its suffix. flags: 0, or a sum of the two above.
+ * Prints a warning for each of the remarks. Returns 0, or -1 with "what, where" in error[]. The scene frame (origin,
+ * exponent) is the one in the file's SCENE_FILE_COMMENTS, else chosen from the positions. */
+int scene_file_read(const char *path, int flags, scene_file *out, char *error, size_t error_bytes);
+/* The same for bytes in memory, without the warnings; `name` ends with the suffix. */
+int scene_file_parse(const char *name, const uint8_t *bytes, size_t count, int flags, scene_file *out, char *error,
                      size_t error_bytes);
 
 /* Writes in the recording's world frame, in the format of the path's suffix; flags: 0, or a sum of these. `note` (NULL:
- * none), one line, becomes another comment. Returns 0, or -1 with the reason in error[]. */
+ * none), one line, becomes another comment. Floats lose the detail of a scene that is small and far from the world's
+ * origin: it is written as by SCENE_FILE_LOCAL, with the origin in the file if the format has a place for it, and a
+ * warning. Returns 0, or -1 with the reason in error[]. */
 enum {
     SCENE_FILE_LOCAL = 1,    /* relative to the frame's origin: metres from the first context camera, for example */
     SCENE_FILE_COMMENTS = 2, /* header comments with bits epoch and scene frame; some readers reject comments */
@@ -55,10 +81,14 @@ enum {
 };
 int scene_file_write(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
                      size_t error_bytes);
-/* The same for a scene from a file, with harmonics up to the format's highest degree. */
-int scene_file_rewrite(const char *path, const scene_file *scene, int flags, char *error, size_t error_bytes);
-/* Returns the highest degree of harmonics in the format of the path's suffix, 0..3. */
-uint32_t scene_file_degree_most(const char *path);
+
+/* A file in another format, in doubles from end to end: what both formats hold stays as it is. */
+typedef struct scene_conversion {
+    uint32_t count, degree_read, degree; /* Gaussians, degrees of harmonics */
+} scene_conversion;
+/* `flags` of both reading and writing. Returns 0, or -1 with the reason in error[]. */
+int scene_file_convert(const char *from, const char *to, int flags, scene_conversion *out, char *error,
+                       size_t error_bytes);
 void scene_file_free(scene_file *scene);
 
 #endif

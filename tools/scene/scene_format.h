@@ -15,8 +15,12 @@ typedef struct scene_format {
     const char *foreign; /* error for files with other first bytes; NULL: as magic */
     scene_axes axes;     /* of written files; the reader knows its own */
     uint32_t degree;     /* highest degree of harmonics that is written, 0..3 */
-    /* like scene_file_parse(); NULL: not read */
-    int (*parse)(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
+    bool holds_origin;   /* a file can say where its origin is in the world */
+    bool holds_mip;      /* a file can say that its opacities are those of mip-splatting */
+    bool shares_bits;    /* the farthest Gaussian decides how exactly the others' positions are written */
+    /* Hands the rows to the sink, and returns what it returns; -1 with the reason in error[] if the bytes are no such
+     * file. NULL: not read. */
+    int (*parse)(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes);
     /* Writes to a stream whose errors the caller checks. Returns 0, or -1 with the reason in error[]; NULL: not
      * written. */
     int (*write)(FILE *file, const scene_source *source, char *error, size_t error_bytes);

@@ -122,7 +122,7 @@ static int summarise_all(const scene_info_request *request, scene_summaries *sum
     int code = CLI_OK;
     for (uint32_t i = 0; i < request->scene_count && code == CLI_OK; i++) {
         scene_file scene;
-        if (scene_file_read(request->scenes[i], &scene, error, sizeof error) != 0) {
+        if (scene_file_read(request->scenes[i], request->flags, &scene, error, sizeof error) != 0) {
             return cli_error(CLI_BAD_INPUT, "%s", error);
         }
         summary->scene[i] = summarise(&scene);
@@ -133,7 +133,9 @@ static int summarise_all(const scene_info_request *request, scene_summaries *sum
         }
         scene_file_free(&scene);
     }
-    summary->bins = scale_bins_of(summary->scales, request->scene_count);
+    if (code == CLI_OK) {
+        summary->bins = scale_bins_of(summary->scales, request->scene_count);
+    }
     return code;
 }
 

@@ -14,6 +14,7 @@ typedef struct scene_info_request {
     const char *recording; /* NULL: no scales in pixels */
     uint32_t view;         /* the frame whose pixels are used */
     const char *svg;       /* NULL: no picture */
+    int flags;             /* for scene_file_read() */
     bool json;
 } scene_info_request;
 

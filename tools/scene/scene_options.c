@@ -20,3 +20,26 @@ int scene_up_option(struct argp_state *state, const char *name)
     }
     return SCENE_FILE_UP * (int)up;
 }
+
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
+
+enum { KEY_DROP_INVALID = 0x7000 };
+
+static error_t parse_input(int key, char *argument, struct argp_state *state)
+{
+    (void)argument;
+    int *flags = state->input;
+    if (key != KEY_DROP_INVALID) {
+        return ARGP_ERR_UNKNOWN;
+    }
+    *flags |= SCENE_FILE_DROP_INVALID;
+    return 0;
+}
+
+static const struct argp_option input_options[] = {
+    {"drop-invalid", KEY_DROP_INVALID, NULL, 0,
+     "leave out and count Gaussians of a scene file that are not valid (such a file is refused)", 0},
+    {0},
+};
+
+const struct argp scene_input_argp = {.options = input_options, .parser = parse_input};

@@ -29,10 +29,25 @@ static uint32_t interleave(const uint32_t cell[3])
     return code;
 }
 
+/* Finds the low corner and the side of the cube about all means, with a row at a time. */
+static double bound(const scene_source *source, double low[3])
+{
+    double high[3], side = 0;
+    for (uint32_t i = 0; i < source->rows->count; i++) {
+        scene_row row;
+        scene_source_row(source, i, &row);
+        for (int axis = 0; axis < 3; axis++) {
+            low[axis] = i == 0 ? row.position[axis] : fmin(low[axis], row.position[axis]);
+            high[axis] = i == 0 ? row.position[axis] : fmax(high[axis], row.position[axis]);
+            side = fmax(side, high[axis] - low[axis]);
+        }
+    }
+    return side;
+}
+
 uint32_t *scene_order_morton(const scene_source *source)
 {
-    const uint32_t count = source->scene->count;
-    const t3r_gaussian *gaussians = source->scene->gaussians;
+    const uint32_t count = source->rows->count;
     placed *order = malloc((count + (size_t)1) * sizeof *order);
     uint32_t *indices = malloc((count + (size_t)1) * sizeof *indices);
     if (order == NULL || indices == NULL) {
@@ -40,23 +55,15 @@ uint32_t *scene_order_morton(const scene_source *source)
         free(indices);
         return NULL;
     }
-    int64_t low[3] = {INT64_MAX, INT64_MAX, INT64_MAX}, size = 1;
-    for (uint32_t i = 0; i < count; i++) {
-        for (int axis = 0; axis < 3; axis++) {
-            const int64_t at = gaussians[i].position_q20[axis];
-            low[axis] = at < low[axis] ? at : low[axis];
-        }
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        for (int axis = 0; axis < 3; axis++) {
-            const int64_t from = gaussians[i].position_q20[axis] - low[axis] + 1;
-            size = from > size ? from : size;
-        }
-    }
+    double low[3];
+    const double side = bound(source, low);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t cell[3];
+        scene_row row;
+        scene_source_row(source, i, &row);
         for (int axis = 0; axis < 3; axis++) {
-            cell[axis] = (uint32_t)(((gaussians[i].position_q20[axis] - low[axis]) << BITS) / size);
+            const double share = side > 0 ? (row.position[axis] - low[axis]) / side : 0;
+            cell[axis] = (uint32_t)fmin(ldexp(share, BITS), (1 << BITS) - 1);
         }
         order[i] = (placed){interleave(cell), i};
     }

@@ -22,37 +22,54 @@ typedef struct scene_row {
     double rotation[4];  /* w, x, y, z; of any length */
 } scene_row;
 
-/* ---- reading ---- */
-
+/* The Gaussians of a file or of a scene in memory, in the axes and the precision that they have there. */
 typedef struct scene_rows {
     uint32_t count; /* at least 1 */
     bool has_frame; /* the file has a frame; else one is chosen from the positions */
     bool local;     /* positions are relative to the given frame's origin */
     t3r_scene_frame frame;
-    uint32_t degree; /* of the rows' harmonics, 0..3 */
-    scene_axes axes; /* of the file */
+    uint32_t degree;    /* of the rows' harmonics, 0..3 */
+    scene_axes axes;    /* of the file */
+    bool mip;           /* opacities are those of mip-splatting (SPZ's "antialiased") */
+    const char *remark; /* what of the file is not read; NULL: nothing */
     /* Reads row `index`, any number of times. Returns 0, or -1 with the reason in error[]. */
     int (*read)(void *user, uint32_t index, scene_row *row, char *error, size_t error_bytes);
     void *user;
 } scene_rows;
 
+#define SCENE_REMARK_DEGREE_4 "harmonics of degree 4 are left out"
+
+/* Reads a row and checks it: its position is within SCENE_POSITION_MOST, its rotation has a length. */
+int scene_rows_read(const scene_rows *rows, uint32_t index, scene_row *row, char *error, size_t error_bytes);
+#define SCENE_POSITION_MOST 0x1p1000
+
+/* Takes the rows of a file, which live until it returns. Returns 0, or -1 with the reason in error[]. */
+typedef struct scene_sink {
+    int (*take)(void *user, const scene_rows *rows, char *error, size_t error_bytes);
+    void *user;
+} scene_sink;
+
+/* ---- the runtime's fixed point ---- */
+
 /* Returns 0, after which scene_file_free() is due; or -1 with the reason in error[]. */
 int scene_file_from_rows(const scene_rows *rows, scene_file *out, char *error, size_t error_bytes);
+/* Returns the rows of a scene in fixed point, which has to outlive them. */
+scene_rows scene_rows_of(const scene_file *scene);
 
 /* ---- writing ---- */
 
-/* Gaussian `index` of a scene in the axes of a file. Rotations have unit length. */
+/* The rows of a scene in the axes of a file, relative to an origin. Rotations have unit length. */
 typedef struct scene_source {
-    const scene_file *scene;
+    const scene_rows *rows;
     int flags; /* as for scene_file_write() */
     const char *note;
-    scene_turn turn;
-    uint32_t degree; /* of the harmonics to write */
+    t3r_scene_frame frame; /* in the axes of the rows; written where the format has a place for it */
+    scene_turn turn;       /* from the axes of the rows to those of the file */
+    double shift[3];       /* added to the positions of the rows */
+    uint32_t degree;       /* of the harmonics to write */
 } scene_source;
 
 void scene_source_row(const scene_source *source, uint32_t index, scene_row *row);
-/* Returns only the position. */
-void scene_source_position(const scene_source *source, uint32_t index, double position[3]);
 /* Returns the opacity of a row, 0..1. */
 double scene_row_opacity(const scene_row *row);
 /* Returns the colour of degree 0, 0..1 if a screen can show it; `channel` 0..2. */

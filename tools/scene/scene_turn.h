@@ -9,11 +9,18 @@
 
 #include "scene/harmonics.h"
 
-/* The axes of a format's files. */
+/* The axes of a file: where x, y and z point, of left or right, up or down, forward or backward. Numbers and meaning
+ * are those of nianticlabs/spz, whose files can declare any of them; half of them mirror a scene. From SCENE_AXES_LFD
+ * on that library turns the axes with the number 8 less by a quarter about x, which is not what its names say. */
 typedef enum scene_axes {
     SCENE_AXES_AS_THEY_ARE, /* the scene's axes, unchanged */
-    SCENE_AXES_RUB,         /* x right, y up, z backward */
-    SCENE_AXES_LUF,         /* x left, y up, z forward */
+    SCENE_AXES_LDB,
+    SCENE_AXES_RUB = 4, /* x right, y up, z backward */
+    SCENE_AXES_RDF = 6, /* x right, y down, z forward: as scenes */
+    SCENE_AXES_LUF = 7, /* x left, y up, z forward */
+    SCENE_AXES_LFD = 9,
+    SCENE_AXES_RBU = 16,
+    SCENE_AXES_LAST = SCENE_AXES_RBU
 } scene_axes;
 
 /* The axis of a scene that points up. */
@@ -30,16 +37,15 @@ typedef enum scene_up {
 
 typedef struct scene_turn {
     bool none;          /* identity: need not be applied */
+    bool mirrors;       /* the rotation is followed by x, y, z -> -x, -y, -z */
     double rotation[4]; /* unit quaternion, w x y z */
-    double matrix[9];   /* the same, row-major; between axes the entries are -1, 0 and 1 */
+    double matrix[9];   /* of positions, row-major; between axes the entries are -1, 0 and 1 */
     harmonics_turn harmonics;
 } scene_turn;
 
-/* Returns the turn from a scene to a file with these axes. If `up` is known, y points up in the file, whatever its
- * format. */
-scene_turn scene_turn_to(scene_axes axes, scene_up up);
-/* Returns the turn from a file with these axes to a scene. */
-scene_turn scene_turn_from(scene_axes axes);
+/* Returns the turn from a file with the axes `from` to one with `to`. If `up` is known, it is an axis of the scene, and
+ * y points up in the second file, whatever its format. */
+scene_turn scene_turn_between(scene_axes from, scene_axes to, scene_up up);
 /* Returns the turn by a unit quaternion w x y z. */
 scene_turn scene_turn_of(const double rotation[4]);
 /* Turns a Gaussian with harmonics up to a degree of 0..3. */

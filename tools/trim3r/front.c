@@ -3,6 +3,7 @@
 
 #include <argp.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +11,7 @@
 #include <unistd.h>
 
 #include "cli/cli.h"
+#include "cli/tables/json_output.h"
 #include "cli/text/edit_distance.h"
 #include "cli/text/style.h"
 #include "host/text.h"
@@ -177,8 +179,21 @@ static void check_output(void)
     }
 }
 
+/* Opens standard streams that the caller closed, so that no file which is opened later gets their numbers and what is
+ * printed. They are opened the other way round: printing to one fails, as it should. */
+static void open_closed_streams(void)
+{
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++) {
+        if (fcntl(stream, F_GETFD) == -1 && errno == EBADF) {
+            (void)open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+        }
+    }
+}
+
 int trim3r_main(int argc, char **argv, const trim3r_extension *added)
 {
+    open_closed_streams();
+    json_watch_memory();
     list_commands(added);
     argp_err_exit_status = CLI_BAD_USAGE;
     signal(SIGXFSZ, SIG_IGN); /* a file too large is an error of write() like any other */

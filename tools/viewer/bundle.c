@@ -95,6 +95,8 @@ static void put_all(FILE *out, const bundle *b)
     for (int i = 0; i < 3; i++) {
         put_u64(out, (uint64_t)scene->frame.origin_q32[i]);
     }
+    put_u32(out, scene->degree);
+    put_u32(out, scene->mip);
     for (uint32_t i = 0; i < b->frame_count; i++) {
         put_frame(out, &b->frames[i]);
     }
@@ -115,6 +117,10 @@ static void put_all(FILE *out, const bundle *b)
     align(out);
     for (uint32_t i = 0; i < scene->count; i++) {
         put_gaussian(out, &scene->gaussians[i]);
+    }
+    align(out);
+    for (size_t i = 0; scene->degree > 0 && i < scene->count * scene_file_harmonics_count(scene); i++) {
+        put_u16(out, (uint16_t)scene->harmonics_q12[i]);
     }
 }
 

@@ -3,18 +3,49 @@
 
 #include <arpa/inet.h>
 #include <errno.h>
+#include <fcntl.h>
+#include <math.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/socket.h>
-#include <sys/time.h>
 #include <unistd.h>
 
+#include "cli/cli.h"
 #include "host/reason.h"
 
-enum { REQUEST_BYTES = 8192, SECONDS = 5 };
+enum {
+    HTTP_PORT = 80,
+    REQUEST_BYTES = 8192,
+    HEAD_BYTES = 256,
+    CLIENTS_MOST = 16,
+    ASK_SECONDS = 5,    /* for a whole request */
+    ANSWER_SECONDS = 60 /* for a whole answer */
+};
+
+/* A connection: its request is read, then its answer is sent. */
+typedef struct client {
+    int socket; /* non-blocking */
+    double until;
+    size_t count; /* bytes of the request read, or of head and body sent */
+    char request[REQUEST_BYTES];
+    char head[HEAD_BYTES];
+    size_t head_bytes; /* 0: the request is not complete */
+    const char *body;
+    size_t body_bytes;
+} client;
+
+typedef struct server {
+    int listener;
+    uint16_t port;
+    const char *page;
+    size_t page_bytes;
+    client clients[CLIENTS_MOST];
+    uint32_t count;
+} server;
 
 int server_open(uint16_t *port, char *error, size_t error_bytes)
 {
@@ -35,29 +66,13 @@ int server_open(uint16_t *port, char *error, size_t error_bytes)
     return listener;
 }
 
-/* Reads the head of a request as a string; false: it is too long, or does not arrive. */
-static bool read_request(int client, char request[REQUEST_BYTES])
-{
-    size_t count = 0;
-    while (count < REQUEST_BYTES - 1) {
-        const ssize_t got = recv(client, request + count, REQUEST_BYTES - 1 - count, 0);
-        if (got <= 0) {
-            return false;
-        }
-        count += (size_t)got;
-        request[count] = '\0';
-        if (strstr(request, "\r\n\r\n") != NULL) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static bool is_own_host(const char *request, uint16_t port)
 {
+    static const char *const hosts[] = {"127.0.0.1", "localhost"};
     char names[2][32];
-    snprintf(names[0], sizeof names[0], "127.0.0.1:%u\r", (unsigned)port);
-    snprintf(names[1], sizeof names[1], "localhost:%u\r", (unsigned)port);
+    for (int i = 0; i < 2; i++) { /* browsers leave out HTTP's own port */
+        snprintf(names[i], sizeof names[i], port == HTTP_PORT ? "%s\r" : "%s:%u\r", hosts[i], (unsigned)port);
+    }
     for (const char *line = strstr(request, "\r\n"); line != NULL; line = strstr(line + 2, "\r\n")) {
         if (strncasecmp(line + 2, "host:", 5) == 0) {
             const char *name = line + 7 + strspn(line + 7, " ");
@@ -68,62 +83,124 @@ static bool is_own_host(const char *request, uint16_t port)
     return false;
 }
 
-static bool send_all(int client, const char *bytes, size_t count)
+static void begin_answer(client *c, const char *status, const char *body, size_t count, bool with_body)
 {
-    while (count > 0) {
-        const ssize_t sent = send(client, bytes, count, MSG_NOSIGNAL);
-        if (sent <= 0) {
-            return false;
-        }
-        bytes += sent;
-        count -= (size_t)sent;
-    }
-    return true;
+    c->head_bytes =
+        (size_t)snprintf(c->head, sizeof c->head,
+                         "HTTP/1.1 %s\r\nContent-Type: text/html; charset=utf-8\r\nContent-Length: %zu\r\n"
+                         "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
+                         status, count);
+    c->body = body;
+    c->body_bytes = with_body ? count : 0;
+    c->count = 0;
+    c->until = cli_now() + ANSWER_SECONDS;
 }
 
-static void answer(int client, const char *status, const char *body, size_t count, bool with_body)
+static void choose_answer(const server *s, client *c)
 {
-    char head[256];
-    const int length =
-        snprintf(head, sizeof head,
-                 "HTTP/1.1 %s\r\nContent-Type: text/html; charset=utf-8\r\nContent-Length: %zu\r\n"
-                 "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
-                 status, count);
-    if (send_all(client, head, (size_t)length) && with_body) {
-        (void)send_all(client, body, count);
-    }
-}
-
-static void serve(int client, uint16_t port, const char *page, size_t page_bytes)
-{
-    char request[REQUEST_BYTES];
-    const struct timeval most = {.tv_sec = SECONDS}; /* for each part: a client that stalls delays the others */
-    (void)setsockopt(client, SOL_SOCKET, SO_RCVTIMEO, &most, sizeof most);
-    (void)setsockopt(client, SOL_SOCKET, SO_SNDTIMEO, &most, sizeof most);
-    if (!read_request(client, request)) {
-        return;
-    }
+    const char *request = c->request;
     const bool get = strncmp(request, "GET ", 4) == 0, head = strncmp(request, "HEAD ", 5) == 0;
     const char *path = request + (get ? 4 : 5);
-    if (!is_own_host(request, port)) {
-        answer(client, "403 Forbidden", "", 0, true);
+    if (!is_own_host(request, s->port)) {
+        begin_answer(c, "403 Forbidden", "", 0, true);
     } else if (!get && !head) {
-        answer(client, "405 Method Not Allowed", "", 0, true);
+        begin_answer(c, "405 Method Not Allowed", "", 0, true);
     } else if (strncmp(path, "/ ", 2) != 0) {
-        answer(client, "404 Not Found", "", 0, true);
+        begin_answer(c, "404 Not Found", "", 0, true);
     } else {
-        answer(client, "200 OK", page, page_bytes, get);
+        begin_answer(c, "200 OK", s->page, s->page_bytes, get);
     }
+}
+
+/* Reads what has arrived. Returns false when the connection is to be closed. */
+static bool read_some(const server *s, client *c)
+{
+    const ssize_t got = recv(c->socket, c->request + c->count, REQUEST_BYTES - 1 - c->count, 0);
+    if (got <= 0) {
+        return got < 0 && (errno == EAGAIN || errno == EINTR);
+    }
+    c->count += (size_t)got;
+    c->request[c->count] = '\0';
+    if (strstr(c->request, "\r\n\r\n") != NULL) {
+        choose_answer(s, c);
+        return true;
+    }
+    return c->count < REQUEST_BYTES - 1;
+}
+
+/* Sends what the connection takes. Returns false when the connection is to be closed. */
+static bool send_some(client *c)
+{
+    const bool in_head = c->count < c->head_bytes;
+    const char *from = in_head ? c->head + c->count : c->body + (c->count - c->head_bytes);
+    const size_t left = in_head ? c->head_bytes - c->count : c->head_bytes + c->body_bytes - c->count;
+    const ssize_t sent = send(c->socket, from, left, MSG_NOSIGNAL);
+    if (sent < 0) {
+        return errno == EAGAIN || errno == EINTR;
+    }
+    c->count += (size_t)sent;
+    return c->count < c->head_bytes + c->body_bytes;
+}
+
+static void drop(server *s, uint32_t index)
+{
+    close(s->clients[index].socket);
+    s->clients[index] = s->clients[--s->count];
+}
+
+/* Takes a new connection; in place of the one that has the least time left, if there is no room. Returns -1 with errno
+ * if no connection can be taken any more. */
+static int take_client(server *s)
+{
+    const int socket = accept(s->listener, NULL, NULL);
+    if (socket >= 0) {
+        (void)fcntl(socket, F_SETFL, O_NONBLOCK);
+    } else {
+        return errno == EINTR || errno == ECONNABORTED || errno == EAGAIN ? 0 : -1;
+    }
+    if (s->count == CLIENTS_MOST) {
+        uint32_t first = 0;
+        for (uint32_t i = 1; i < s->count; i++) {
+            first = s->clients[i].until < s->clients[first].until ? i : first;
+        }
+        drop(s, first);
+    }
+    client *c = &s->clients[s->count++];
+    c->socket = socket;
+    c->until = cli_now() + ASK_SECONDS;
+    c->count = c->head_bytes = 0;
+    return 0;
+}
+
+/* Returns milliseconds until the first connection's time is over; -1: there is none. */
+static int wait_ms(const server *s)
+{
+    double least = INFINITY;
+    for (uint32_t i = 0; i < s->count; i++) {
+        least = fmin(least, s->clients[i].until - cli_now());
+    }
+    return s->count == 0 ? -1 : (int)(fmax(least, 0) * 1e3) + 1;
 }
 
 int server_run(int listener, uint16_t port, const char *page, size_t page_bytes, char *error, size_t error_bytes)
 {
+    static server s; /* the process has one */
+    s = (server){.listener = listener, .port = port, .page = page, .page_bytes = page_bytes};
     for (;;) {
-        const int client = accept(listener, NULL, NULL);
-        if (client >= 0) {
-            serve(client, port, page, page_bytes);
-            close(client);
-        } else if (errno != EINTR && errno != ECONNABORTED) {
+        struct pollfd polled[1 + CLIENTS_MOST] = {{.fd = listener, .events = POLLIN}};
+        for (uint32_t i = 0; i < s.count; i++) {
+            polled[1 + i] = (struct pollfd){s.clients[i].socket, s.clients[i].head_bytes > 0 ? POLLOUT : POLLIN, 0};
+        }
+        (void)poll(polled, 1 + s.count, wait_ms(&s));
+        for (uint32_t i = s.count; i-- > 0;) { /* from the last, as drop() moves it into a gap */
+            client *c = &s.clients[i];
+            const bool in_time = cli_now() < c->until, is_ready = polled[1 + i].revents != 0;
+            const bool stays = in_time && (!is_ready || (c->head_bytes > 0 ? send_some(c) : read_some(&s, c)));
+            if (!stays) {
+                drop(&s, i);
+            }
+        }
+        if (polled[0].revents != 0 && take_client(&s) != 0) {
             return t3r_reason(error, error_bytes, "127.0.0.1:%u: %s", (unsigned)port, strerror(errno));
         }
     }

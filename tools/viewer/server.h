@@ -10,9 +10,9 @@
  * in error[]. */
 int server_open(uint16_t *port, char *error, size_t error_bytes);
 
-/* Answers GET / with the page until the process ends; returns only when accepting fails: -1 with the reason. Requests
- * whose Host is not this machine's loopback at this port are refused, so that no other site's page can read the
- * page. */
+/* Answers GET / with the page until the process ends, several clients at a time and each within a bounded time; returns
+ * only when accepting fails: -1 with the reason. Requests whose Host is not this machine's loopback at this port are
+ * refused, so that no other site's page can read the page. */
 int server_run(int listener, uint16_t port, const char *page, size_t page_bytes, char *error, size_t error_bytes);
 
 #endif

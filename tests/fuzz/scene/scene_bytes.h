@@ -27,7 +27,7 @@ static inline void fuzz_draw(scene_file *scene)
     uint32_t index;
     scene->count = scene->count < MOST ? scene->count : MOST;
     if (t3r_init(&runtime, arena, sizeof arena, &config) != T3R_OK ||
-        scene_append_all(runtime, scene, &camera, &index) != T3R_OK ||
+        scene_append_all(runtime, scene, &(scene_eye){&camera, T3R_MIN_SIDE, T3R_MIN_SIDE}, &index) != T3R_OK ||
         t3r_render(runtime, &camera, &target) != T3R_OK) {
         abort();
     }
@@ -37,7 +37,7 @@ static inline int fuzz_scene(const char *name, const uint8_t *data, size_t size)
 {
     scene_file scene;
     char error[256] = "";
-    if (scene_file_parse(name, data, size, &scene, error, sizeof error) != 0) {
+    if (scene_file_parse(name, data, size, 0, &scene, error, sizeof error) != 0) {
         if (error[0] == '\0' || scene.gaussians != NULL || scene.harmonics_q12 != NULL) {
             abort();
         }

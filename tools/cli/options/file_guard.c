@@ -87,6 +87,18 @@ static const named_file *folder_of(const char *path, file_kind found)
     return NULL;
 }
 
+/* Refuses an output whose suffix promises another kind than the one that is written. */
+static int check_name(const named_file *file)
+{
+    const file_kind named = file_kind_named(file->path), wanted = OPTION_KINDS(file->flags);
+    if (named == 0 || wanted == 0 || (named & wanted) != 0 || (file->flags & OPTION_FOLDER) != 0 || guard.force) {
+        return CLI_OK;
+    }
+    file_kind one = (file_kind)(wanted & (0u - wanted)); /* the first of them */
+    return cli_error(CLI_BAD_USAGE, "%s %s: what is written is %s, and the name is that of %s; --force writes it",
+                     file->option, file->path, file_kind_name(one), file_kind_name(named));
+}
+
 /* Checks an output against the regular file of kind `found` that is there. */
 static int check_kind(const named_file *file, file_kind found)
 {
@@ -164,6 +176,9 @@ int file_guard_begin(named_file *files, uint32_t count, bool force)
     }
     for (uint32_t i = 0; i < count && code == CLI_OK; i++) {
         code = check_way(&files[i]);
+    }
+    for (uint32_t i = 0; i < count && code == CLI_OK; i++) {
+        code = writes(&files[i]) ? check_name(&files[i]) : CLI_OK;
     }
     for (uint32_t i = 0; i < count && code == CLI_OK; i++) {
         code = writes(&files[i]) ? check_output(&files[i], &guard.places[i]) : check_input(&files[i], &guard.places[i]);

@@ -14,6 +14,7 @@
  * - an output that is an input or another output, by whatever name or link: bad usage;
  * - an output that would replace a file of another kind, unless `force`, or a file that may be read within an input
  *   folder, even with `force`: bad usage;
+ * - an output whose suffix is that of another kind of file, unless `force`: bad usage;
  * - a path through a missing folder: bad input;
  * - inputs and outputs that are no regular files (or folders, if a folder is expected): bad input. /dev/null and
  *   /dev/full can be written.

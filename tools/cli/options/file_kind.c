@@ -44,7 +44,7 @@ static const char *ending_of(const char *path)
 static bool is_named(int row, const char *path)
 {
     const char *ending = ending_of(path);
-    return kinds[row].ending != NULL && ending != NULL && strcmp(ending, kinds[row].ending) == 0;
+    return kinds[row].ending != NULL && ending != NULL && strcasecmp(ending, kinds[row].ending) == 0;
 }
 
 /* Whether a text begins with a line of column names separated by commas, as the tables of eval and stress do. */

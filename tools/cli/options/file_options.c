@@ -336,7 +336,9 @@ void file_options_parse(const struct argp *argp, int argc, char **argv, void *in
         }
     }
     option_list_free(&list);
-    argp_parse(&whole, argc, argv, 0, NULL, input);
+    if (argp_parse(&whole, argc, argv, 0, NULL, input) != 0) {
+        exit(cli_error(CLI_BAD_INPUT, "out of memory for the options"));
+    }
     int code = file_guard_find();
     if (code != CLI_OK) {
         exit(code);

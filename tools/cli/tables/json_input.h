@@ -8,7 +8,8 @@
 #include <cjson/cJSON.h>
 
 /* Parses a text of at most T3R_LIMIT_JSON_VALUES values, which are counted before memory is allocated for them. Returns
- * NULL with "byte N: what" in error[] on failure; cJSON_Delete() the result. What follows the value is ignored. */
+ * NULL with "byte N: what" in error[] on failure; cJSON_Delete() the result. Text after the value, a name
+ * twice in one object, and \u0000 in a string are refused: programs read them differently. */
 cJSON *json_parse(const char *text, size_t bytes, char *error, size_t error_bytes);
 
 /* Finds the array of that name in an object; NULL if there is no such name. Returns 0, or -1 with a reason in error[].

@@ -2,9 +2,12 @@
 #include "cli/tables/json_output.h"
 
 #include <inttypes.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "cli/cli.h"
 
 void hash_text(uint64_t hash, char text[HASH_TEXT_BYTES])
 {
@@ -45,12 +48,38 @@ void json_add_integers(cJSON *object, const char *key, const uint32_t *values, u
     }
 }
 
+static bool ran_out;
+
+static void *watched_malloc(size_t bytes)
+{
+    void *memory = malloc(bytes);
+    ran_out = ran_out || memory == NULL;
+    return memory;
+}
+
+void json_watch_memory(void)
+{
+    ran_out = false;
+    cJSON_InitHooks(&(cJSON_Hooks){watched_malloc, free});
+}
+
+char *json_text(cJSON *object)
+{
+    char *text = object == NULL ? NULL : cJSON_PrintUnformatted(object);
+    cJSON_Delete(object);
+    if (ran_out) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
 void json_print(cJSON *object)
 {
-    char *text = cJSON_PrintUnformatted(object);
-    if (text != NULL) {
-        puts(text);
-        cJSON_free(text);
+    char *text = json_text(object);
+    if (text == NULL) {
+        exit(cli_error(CLI_BAD_INPUT, "out of memory for the JSON"));
     }
-    cJSON_Delete(object);
+    puts(text);
+    free(text);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The one JSON object that a command prints on stdout with --json. */
+/* JSON that is written: whole, or not at all when memory runs out. */
 #ifndef TRIM3R_TOOLS_JSON_OUTPUT_H
 #define TRIM3R_TOOLS_JSON_OUTPUT_H
 
@@ -18,7 +18,12 @@ void json_add_hash(cJSON *object, const char *key, uint64_t hash);
 /* Adds an integer exactly, also beyond 2^53, where a double would round. */
 void json_add_integer(cJSON *object, const char *key, int64_t value);
 void json_add_integers(cJSON *object, const char *key, const uint32_t *values, uint32_t count);
-/* Prints the object on one line and frees it. */
+/* Begins to watch cJSON's allocations: it leaves out what it has no memory for, without a word. */
+void json_watch_memory(void);
+/* Returns the object's text on one line, and frees the object; free() the text. NULL: an allocation failed since
+ * json_watch_memory(). */
+char *json_text(cJSON *object);
+/* Prints the one object of a command with --json, and frees it; ends the process if memory ran out. */
 void json_print(cJSON *object);
 
 #endif

@@ -49,7 +49,7 @@ class Scene:
         """
         error = ffi.new("char[]", ERROR_BYTES)
         file = ffi.new("scene_file *")
-        if lib.scene_file_read(os.fsencode(path), file, error, ERROR_BYTES) != 0:
+        if lib.scene_file_read(os.fsencode(path), 0, file, error, ERROR_BYTES) != 0:
             raise InputError(text_of(error))
         owner = ffi.gc(file, lib.scene_file_free)
         gaussians = borrowed(file.gaussians, file.count, owner, GAUSSIAN)

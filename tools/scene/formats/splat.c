@@ -34,7 +34,7 @@ static int read_row(void *user, uint32_t index, scene_row *row, char *error, siz
     return 0;
 }
 
-static int splat_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+static int splat_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes)
 {
     if (count == 0 || count % ROW_BYTES != 0 || count / ROW_BYTES > T3R_MAX_GAUSSIANS) {
         return t3r_reason(error, error_bytes, "%zu bytes are not those of 1..%u Gaussians, 32 each", count,
@@ -42,7 +42,7 @@ static int splat_parse(const uint8_t *bytes, size_t count, scene_file *out, char
     }
     const scene_rows rows = {
         .count = (uint32_t)(count / ROW_BYTES), .read = read_row, .user = (void *)(uintptr_t)bytes};
-    return scene_file_from_rows(&rows, out, error, error_bytes);
+    return sink->take(sink->user, &rows, error, error_bytes);
 }
 
 typedef struct ranked {
@@ -79,7 +79,7 @@ static void put_rotation(uint8_t *bytes, const double rotation[4])
 
 static int splat_write(FILE *file, const scene_source *source, char *error, size_t error_bytes)
 {
-    const uint32_t count = source->scene->count;
+    const uint32_t count = source->rows->count;
     ranked *order = malloc((count + (size_t)1) * sizeof *order);
     if (order == NULL) {
         return t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", count);

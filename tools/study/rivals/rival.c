@@ -89,7 +89,7 @@ static int load_whole(rival_source *source)
 {
     scene_file scene;
     double start = cli_now();
-    int code = scene_to_prune(source->options.points_of, &scene);
+    int code = scene_to_prune(source->options.points_of, source->options.scene_flags, &scene);
     if (code != CLI_OK) {
         return code;
     }

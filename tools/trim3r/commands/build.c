@@ -61,6 +61,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->settings;
         state->child_inputs[1] = &o->settings.poses;
+        state->child_inputs[2] = &o->settings.scene_flags;
         return 0;
     case 'o':
         o->output = arg;
@@ -92,7 +93,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-static const struct argp_child children[] = {{.argp = &reconstruction_argp}, {.argp = &poses_argp}, {0}};
+static const struct argp_child children[] = {
+    {.argp = &reconstruction_argp}, {.argp = &poses_argp}, {.argp = &scene_input_argp}, {0}};
 const struct argp build_argp = {
     .options = options,
     .parser = parse,

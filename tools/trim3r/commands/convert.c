@@ -27,6 +27,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     options *o = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->flags;
+        return 0;
     case 'o':
         o->output = argument;
         return 0;
@@ -59,6 +62,7 @@ static const struct argp_option argp_options[] = {
     {0},
 };
 
+static const struct argp_child children[] = {{.argp = &scene_input_argp}, {0}};
 static const struct argp argp = {
     .options = argp_options,
     .parser = parse_option,
@@ -71,22 +75,23 @@ static const struct argp argp = {
            "  trim3r convert scene.ply -o scene.spz\n"
            "  trim3r convert theirs.compressed.ply -o theirs.ply\n"
            "  trim3r convert scene.ply --up z -o scene.splat",
+    .children = children,
 };
 
-static void report(const options *o, const scene_file *scene, uint32_t degree)
+static void report(const options *o, const scene_conversion *done)
 {
     if (o->json) {
         cJSON *root = cJSON_CreateObject();
         cJSON_AddStringToObject(root, "scene", o->output);
-        json_add_integer(root, "gaussians", scene->count);
-        json_add_integer(root, "degree_read", scene->degree);
-        json_add_integer(root, "degree", degree);
+        json_add_integer(root, "gaussians", done->count);
+        json_add_integer(root, "degree_read", done->degree_read);
+        json_add_integer(root, "degree", done->degree);
         json_print(root);
         return;
     }
-    printf("%s: %" PRIu32 " Gaussians, harmonics of degree %" PRIu32, o->output, scene->count, degree);
-    if (degree < scene->degree) {
-        printf(" (%" PRIu32 " were read)", scene->degree);
+    printf("%s: %" PRIu32 " Gaussians, harmonics of degree %" PRIu32, o->output, done->count, done->degree);
+    if (done->degree < done->degree_read) {
+        printf(" (%" PRIu32 " were read)", done->degree_read);
     }
     putchar('\n');
 }
@@ -96,14 +101,10 @@ int command_convert(int argc, char **argv)
     options o = {0};
     file_options_parse(&argp, argc, argv, &o);
     char error[ERROR_BYTES] = "";
-    scene_file scene;
-    if (scene_file_read(o.scene, &scene, error, sizeof error) != 0 ||
-        scene_file_rewrite(o.output, &scene, o.flags, error, sizeof error) != 0) {
-        scene_file_free(&scene);
+    scene_conversion done;
+    if (scene_file_convert(o.scene, o.output, o.flags, &done, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    const uint32_t most = scene_file_degree_most(o.output);
-    report(&o, &scene, scene.degree < most ? scene.degree : most);
-    scene_file_free(&scene);
+    report(&o, &done);
     return CLI_OK;
 }

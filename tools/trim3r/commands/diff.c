@@ -15,11 +15,13 @@
 #include "pictures/picture.h"
 #include "scene/gaussian_shape.h"
 #include "scene/scene_file.h"
+#include "scene/scene_options.h"
 
 #define ERROR_BYTES 512
 
 typedef struct diff_options {
     const char *path[2];
+    int flags; /* for scene_file_read() */
     bool json;
 } diff_options;
 
@@ -33,13 +35,16 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     diff_options *o = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->flags;
+        return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, (const char **[]){&o->path[0], &o->path[1]}, 2);
         return 0;
     case ARGP_KEY_END:
         if (o->path[1] == NULL) {
             argp_error(state, "two files are needed");
-        } else if (scene_file_is_read(o->path[0]) != scene_file_is_read(o->path[1])) {
+        } else if (scene_file_is_one(o->path[0]) != scene_file_is_one(o->path[1])) {
             argp_error(state, "a scene and a picture cannot be compared");
         }
         return 0;
@@ -48,6 +53,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
+static const struct argp_child children[] = {{.argp = &scene_input_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,
@@ -57,6 +63,7 @@ static const struct argp argp = {
            "  trim3r diff scene.ply other.ply\n"
            "  trim3r diff view.png other.png --json\n\n"
            "Exit status: 0 equal, 1 different or unreadable, 2 bad usage.",
+    .children = children,
 };
 
 typedef struct scene_difference {
@@ -114,7 +121,7 @@ static int diff_scenes(const diff_options *o)
     scene_file scene[2] = {0};
     char error[ERROR_BYTES] = "";
     for (int i = 0; i < 2; i++) {
-        if (scene_file_read(o->path[i], &scene[i], error, sizeof error) != 0) {
+        if (scene_file_read(o->path[i], o->flags, &scene[i], error, sizeof error) != 0) {
             scene_file_free(&scene[0]);
             return cli_error(CLI_BAD_INPUT, "%s", error);
         }
@@ -253,5 +260,5 @@ int command_diff(int argc, char **argv)
 {
     diff_options o = {0};
     file_options_parse(&argp, argc, argv, &o);
-    return scene_file_is_read(o.path[0]) ? diff_scenes(&o) : diff_pictures(&o);
+    return scene_file_is_one(o.path[0]) ? diff_scenes(&o) : diff_pictures(&o);
 }

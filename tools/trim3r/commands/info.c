@@ -15,6 +15,7 @@
 #include "recording/recording.h"
 #include "scene/scene_file.h"
 #include "scene/scene_info.h"
+#include "scene/scene_options.h"
 
 #define ERROR_BYTES 512
 
@@ -24,6 +25,7 @@ typedef struct options {
     uint32_t scene_count;
     const char *svg;
     uint32_t view;
+    int flags; /* for scene_file_read() */
     bool has_view, json;
 } options;
 
@@ -40,7 +42,7 @@ enum { KEY_VIEW = 0x100 };
 
 static void take_argument(struct argp_state *state, options *o, const char *argument)
 {
-    if (!scene_file_is_read(argument)) {
+    if (!scene_file_is_one(argument)) {
         option_argument(state, argument, (const char **[]){&o->recording}, 1);
     } else if (o->scene_count == SCENE_INFO_MOST) {
         argp_error(state, "%s: at most %u scenes are shown at once", argument, SCENE_INFO_MOST);
@@ -66,6 +68,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     options *o = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &o->flags;
+        return 0;
     case KEY_VIEW:
         o->view = option_number(state, "view", argument, 0, UINT32_MAX);
         o->has_view = true;
@@ -90,6 +95,7 @@ static const struct argp_option argp_options[] = {
     {0},
 };
 
+static const struct argp_child children[] = {{.argp = &scene_input_argp}, {0}};
 static const struct argp parser = {
     .options = argp_options,
     .parser = parse_option,
@@ -105,6 +111,7 @@ static const struct argp parser = {
            "  trim3r info room.mcap\n"
            "  trim3r info --json room.mcap\n"
            "  trim3r info all.ply pruned.ply room.mcap --view 1 --svg scales.svg",
+    .children = children,
 };
 
 static const char *distortion_name(t3r_distortion distortion)
@@ -277,6 +284,7 @@ int command_info(int argc, char **argv)
                                                 .recording = o.recording,
                                                 .view = o.view,
                                                 .svg = o.svg,
+                                                .flags = o.flags,
                                                 .json = o.json});
     }
     char error[ERROR_BYTES];

@@ -20,6 +20,7 @@
 #include "pictures/picture.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_error.h"
+#include "scene/scene_options.h"
 
 #define ERROR_BYTES 512
 #define MAX_PATH_BYTES 4096
@@ -45,9 +46,9 @@ static const struct argp_option options[] = {
     {"view", KEY_VIEW, "N", 0, "frame of REC.mcap whose camera draws", 0},
     {"pose", OPTION_TO(render_options, pose), "FILE", OPTION_READS, "camera as JSON (below)", 0},
     {"trajectory", OPTION_TO(render_options, trajectory), "FILE", OPTION_READS,
-     "TUM poses, one numbered picture each; the lens comes from --view, --pose or --fov", 0},
+     "TUM poses, one numbered picture each; the lens is that of --view, --pose or --fov", 0},
     {"fov", KEY_FOV, "DEGREES", 0, "horizontal angle of view of a trajectory, with --size", 0},
-    {"size", KEY_SIZE, "WxH", 0, "size of the picture; the lens is scaled with it (the camera's)", 0},
+    {"size", KEY_SIZE, "WxH", 0, "size of the picture; the lens is scaled along (the camera's)", 0},
     {NULL, 0, NULL, 0, "Pictures:", 2},
     {"output", 'o', "view.png", OPTION_WRITES(FILE_PICTURE), "picture to write (needed)", 0},
     {"depth", OPTION_TO(render_options, depth), "d.png", OPTION_WRITES(FILE_PICTURE),
@@ -58,7 +59,7 @@ static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "Bounds of the time that a view takes:", 3},
     {"max-ms", KEY_MAX_MS, "MS", 0, "give up when a view takes longer (never)", 0},
     {"tile-splats", KEY_TILE_SPLATS, "N", 0,
-     "draw a tile of 16 x 16 pixels only from its N nearest Gaussians, 0..16777216; 0 = from all (0)", 0},
+     "draw a tile of 16 x 16 pixels from its N nearest Gaussians alone, 0..16777216; 0 = from all (0)", 0},
     {"arena", KEY_ARENA, "BYTES[K|M|G]|min|full", 0,
      "bytes of memory of the runtime; min is the least that works, full the most that helps (full)", PROCESSOR_GROUP},
     {NULL, 0, NULL, 0, "Other:", PROCESSOR_GROUP + 1},
@@ -111,6 +112,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->settings.processor;
+        state->child_inputs[1] = &o->settings.scene_flags;
         return 0;
     case KEY_VIEW:
         o->view = option_number(state, "view", arg, 0, UINT32_MAX);
@@ -150,7 +152,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-static const struct argp_child children[] = {{.argp = &processor_argp}, {0}};
+static const struct argp_child children[] = {{.argp = &processor_argp}, {.argp = &scene_input_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,
@@ -237,7 +239,7 @@ static int choose_viewpoints(const render_options *o, viewpoint_list *views)
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
-/* Writes "dir/view_0007.png" for "dir/view_0007.png" with index 7 of several. */
+/* Writes "dir/view_0007.png" for "dir/view.png" with index 7 of several. */
 static int numbered_path(const char *path, uint32_t index, uint32_t count, char out[MAX_PATH_BYTES])
 {
     const char *slash = strrchr(path, '/');
@@ -258,14 +260,27 @@ static int write_picture(const char *path, uint32_t index, uint32_t count, const
     return picture_write_png(name, p, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
-/* Converts scene units in Q20 to steps of the depth picture; 65535 for depths beyond 16 bits. */
-static void convert_depth(const uint32_t *depth_q20, size_t count, double unit, int exponent, uint16_t *out)
+/* Converts scene units in Q20 to steps of the depth picture. A depth of more steps than 16 bits hold becomes 0, none.
+ * Returns the number of these pixels. */
+static uint32_t convert_depth(const uint32_t *depth_q20, size_t count, double unit, int exponent, uint16_t *out)
 {
     double steps = ldexp(1.0, exponent - 20) / unit;
+    uint32_t far = 0;
     for (size_t i = 0; i < count; i++) {
         double value = nearbyint(depth_q20[i] * steps);
-        out[i] = depth_q20[i] == 0 ? 0 : value < 1 ? 1 : value > 65535 ? 65535 : (uint16_t)value;
+        out[i] = depth_q20[i] == 0 || value > UINT16_MAX ? 0 : value < 1 ? 1 : (uint16_t)value;
+        far += value > UINT16_MAX;
     }
+    return far;
+}
+
+static bool shows_nothing(const uint16_t *alpha_q15, size_t count)
+{
+    size_t i = 0;
+    while (i < count && alpha_q15[i] == 0) {
+        i++;
+    }
+    return i == count;
 }
 
 typedef struct planes {
@@ -286,12 +301,12 @@ static int render_one(const render_options *o, reconstruction *r, const viewpoin
         .rgb_stride_bytes = view->width * 3,
         .depth_q20 = o->depth != NULL ? p->depth_q20 : NULL,
         .depth_stride_bytes = view->width * 4,
-        .alpha_q15 = o->alpha != NULL ? p->alpha_q15 : NULL,
+        .alpha_q15 = p->alpha_q15,
         .alpha_stride_bytes = view->width * 2,
     };
     r->give_up_at = o->most_ms > 0 ? cli_now() + o->most_ms / 1e3 : 0;
     work_times_pass(times);
-    int code = reconstruction_look_from(r, &view->camera);
+    int code = reconstruction_look_from(r, &view->camera, view->width, view->height);
     if (code != CLI_OK) {
         return code;
     }
@@ -305,11 +320,21 @@ static int render_one(const render_options *o, reconstruction *r, const viewpoin
         const char *from = o->pose != NULL ? o->pose : o->trajectory != NULL ? o->trajectory : o->recording;
         return reconstruction_error(status, from, &r->config, r->arena_bytes);
     }
+    if (shows_nothing(p->alpha_q15, pixels)) {
+        (void)cli_error(CLI_OK, "warning: view %" PRIu32 " shows nothing of the scene: no Gaussian is in front of it",
+                        index);
+    }
     *hash = t3r_hash_bytes(*hash, p->rgb, pixels * 3);
     code = write_picture(o->output, index, count, &(picture){view->width, view->height, 3, 8, p->rgb});
     picture grey = {view->width, view->height, 1, 16, p->grey};
     if (code == CLI_OK && o->depth != NULL) {
-        convert_depth(p->depth_q20, pixels, o->depth_unit, r->scene.frame.exponent, p->grey);
+        const uint32_t far = convert_depth(p->depth_q20, pixels, o->depth_unit, r->scene.frame.exponent, p->grey);
+        if (far > 0) {
+            (void)cli_error(CLI_OK,
+                            "warning: %s: %" PRIu32 " pixels are farther than 65535 steps of %g, and 0: raise "
+                            "--depth-unit",
+                            o->depth, far, o->depth_unit);
+        }
         code = write_picture(o->depth, index, count, &grey);
     }
     if (code == CLI_OK && o->alpha != NULL) {
@@ -388,7 +413,7 @@ int command_render(int argc, char **argv)
     work_times times;
     work_times_begin(&times);
     int code = choose_viewpoints(&o, &views);
-    if (code == CLI_OK && scene_file_read(o.scene, &scene, error, sizeof error) != 0) {
+    if (code == CLI_OK && scene_file_read(o.scene, o.settings.scene_flags, &scene, error, sizeof error) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s", error);
     }
     work_times_end(&times, WORK_READ);

@@ -17,6 +17,7 @@
 #include "cli/tables/json_output.h"
 #include "reconstruction/reconstruction.h"
 #include "scene/scene_file.h"
+#include "scene/scene_options.h"
 #include "viewer/page.h"
 #include "viewer/server.h"
 #include "viewer/viewpoints.h"
@@ -73,6 +74,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->settings;
+        state->child_inputs[1] = &o->settings.scene_flags;
         return 0;
     case 'o':
         o->output = arg;
@@ -94,7 +96,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-static const struct argp_child children[] = {{.argp = &reconstruction_argp}, {0}};
+static const struct argp_child children[] = {{.argp = &reconstruction_argp}, {.argp = &scene_input_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,
@@ -295,7 +297,7 @@ int command_view(int argc, char **argv)
     char error[ERROR_BYTES] = "";
     scene_file scene = {0};
     reconstruction r = {0};
-    if (o.scene != NULL && scene_file_read(o.scene, &scene, error, sizeof error) != 0) {
+    if (o.scene != NULL && scene_file_read(o.scene, o.settings.scene_flags, &scene, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     const int code = show(&o, &scene, &r);

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The runtime as a WebAssembly module, called by the page's worker. The worker places the bundle and the arena in the
  * module's memory, which the worker grows; the module has no heap. */
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "bundle_layout.h"
 #include "core/hash.h"
+#include "scene/seen_gaussian.h"
 #include "state/state.h"
 #include "state/views.h"
 #include "trim3r.h"
@@ -35,13 +37,15 @@ static struct {
     t3r_config config;
     uint32_t frames;
     frame_data frame[BUNDLE_MOST_FRAMES];
-    const uint8_t *weights, *gaussians;
+    const uint8_t *weights, *gaussians, *harmonics;
     uint32_t weight_bytes, gaussian_count;
     t3r_scene_frame scene_frame;
+    seen_traits traits;
     t3r_runtime *runtime;
     t3r_scene scene;
     uint64_t hash[T3R_STAGE_COUNT];
     uint8_t hashed[T3R_STAGE_COUNT];
+    bool loaded; /* the scene in the arena is the bundle's, not one that was built */
 } module;
 
 static const uint8_t *take(reading *in, size_t bytes)
@@ -109,6 +113,13 @@ static void take_pixels(reading *in, frame_data *frame, size_t pixels)
     frame->depth = frame->depth_unit_q40 != 0 ? take_block(in, pixels * 2) : NULL;
 }
 
+/* Returns the bytes of a Gaussian's harmonics. */
+static size_t harmonics_bytes(void)
+{
+    const size_t rows = module.traits.degree + 1;
+    return module.traits.degree == 0 ? 0 : 2 * 3 * rows * rows;
+}
+
 static int32_t read_bundle(reading *in)
 {
     if (take_u32(in) != BUNDLE_MAGIC) {
@@ -123,9 +134,11 @@ static int32_t read_bundle(reading *in)
     for (int i = 0; i < 3; i++) {
         module.scene_frame.origin_q32[i] = (int64_t)take_number(in, 8);
     }
+    module.traits.degree = take_u32(in);
+    module.traits.mip = take_u32(in) != 0;
     if (in->broken || module.frames > BUNDLE_MOST_FRAMES || views > module.frames || views != module.config.views ||
-        module.gaussian_count > T3R_MAX_GAUSSIANS || module.config.width > T3R_MAX_SIDE ||
-        module.config.height > T3R_MAX_SIDE) {
+        module.gaussian_count > T3R_MAX_GAUSSIANS || module.traits.degree > T3R_HARMONICS_DEGREE_MOST ||
+        module.config.width > T3R_MAX_SIDE || module.config.height > T3R_MAX_SIDE) {
         return 0;
     }
     for (uint32_t i = 0; i < module.frames; i++) {
@@ -136,6 +149,7 @@ static int32_t read_bundle(reading *in)
         take_pixels(in, &module.frame[i], (size_t)module.config.width * module.config.height);
     }
     module.gaussians = take_block(in, (size_t)module.gaussian_count * BUNDLE_GAUSSIAN_BYTES);
+    module.harmonics = take_block(in, (size_t)module.gaussian_count * harmonics_bytes());
     return !in->broken;
 }
 
@@ -204,15 +218,31 @@ static t3r_gaussian gaussian_at(uint32_t index)
     return g;
 }
 
-/* Puts the bundle's Gaussians into the arena. Returns a t3r_status. */
-EXPORT(load) int32_t module_load(void)
+static bool depends_on_view(void)
+{
+    return module.traits.degree > 0 || module.traits.mip;
+}
+
+/* Puts the bundle's Gaussians into the arena, as a camera sees them; NULL: as they are. Returns a t3r_status. */
+static t3r_status append_gaussians(const seen_from *from)
 {
     t3r_status status = t3r_scene_begin(module.runtime, &module.scene_frame);
     for (uint32_t i = 0; i < module.gaussian_count && status == T3R_OK; i++) {
-        const t3r_gaussian g = gaussian_at(i);
-        status = t3r_scene_append(module.runtime, &g);
+        t3r_gaussian g = gaussian_at(i);
+        if (from != NULL) { /* blocks are aligned to 16, and WebAssembly is little-endian */
+            status =
+                seen_gaussian(&module.traits, (const int16_t *)(module.harmonics + i * harmonics_bytes()), from, &g);
+        }
+        status = status == T3R_OK ? t3r_scene_append(module.runtime, &g) : status;
     }
     return status == T3R_OK ? t3r_get_scene(module.runtime, &module.scene) : status;
+}
+
+/* Puts the bundle's Gaussians into the arena. Returns a t3r_status. */
+EXPORT(load) int32_t module_load(void)
+{
+    module.loaded = true;
+    return append_gaussians(NULL);
 }
 
 /* Adds the context views to an empty arena. Returns a t3r_status. */
@@ -244,6 +274,7 @@ static t3r_status add_views(void)
 EXPORT(build) int32_t module_build(uint32_t gaussians)
 {
     const t3r_request request = {.gaussians = gaussians};
+    module.loaded = false;
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
         module.hashed[stage] = 0;
     }
@@ -313,6 +344,14 @@ int32_t module_render(int32_t fx_q16, int32_t fy_q16, int32_t cx_q16, int32_t cy
         .alpha_q15 = alpha_q15,
         .alpha_stride_bytes = width * 2,
     };
+    seen_from from;
+    if (module.loaded && depends_on_view() &&
+        seen_from_camera(&camera, &module.scene_frame, width, height, &from) == T3R_OK) {
+        const t3r_status status = append_gaussians(&from);
+        if (status != T3R_OK) {
+            return status;
+        }
+    }
     return t3r_render(module.runtime, &camera, &target);
 }
 

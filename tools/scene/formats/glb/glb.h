@@ -33,7 +33,7 @@ const char *glb_attribute_name(uint32_t index, char name[GLB_NAME_BYTES]);
 uint32_t glb_components(uint32_t index);
 
 /* like scene_format's */
-int glb_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
+int glb_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes);
 int glb_write(FILE *file, const scene_source *source, char *error, size_t error_bytes);
 
 #endif

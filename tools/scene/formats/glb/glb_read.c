@@ -31,8 +31,11 @@ typedef struct accessor {
 typedef struct glb_file {
     accessor attributes[GLB_ATTRIBUTES_MOST];
     uint32_t degree;
+    const char *remark; /* as in scene_rows */
     glb_placement placement;
 } glb_file;
+
+/* ---- JSON -------------------------------------------------------------------------------------------------------- */
 
 static const cJSON *get(const cJSON *object, const char *name)
 {
@@ -90,7 +93,7 @@ static int find_primitive(const reader *r, const cJSON *root, const cJSON **prim
                 continue;
             }
             if (*primitive != NULL) {
-                return FAIL(r, "two primitives of Gaussians: one is read");
+                return FAIL(r, "two primitives of Gaussians: files with one are read; export the scene as one .ply");
             }
             *primitive = each;
             *mesh_index = index;
@@ -109,16 +112,21 @@ static int check_extensions(const reader *r, const cJSON *root, const cJSON *pri
     cJSON_ArrayForEach(each, required)
     {
         if (!cJSON_IsString(each) || strcmp(each->valuestring, GLB_EXTENSION) != 0) {
-            return FAIL(r, "it needs the extension '%s'", cJSON_IsString(each) ? each->valuestring : "?");
+            return FAIL(r, "it needs the extension '%s', which is not read; export the scene as .ply or .spz",
+                        cJSON_IsString(each) ? each->valuestring : "?");
         }
     }
     if (get(gaussians, "extensions") != NULL) {
-        return FAIL(r, "the Gaussians have an extension of their own");
+        return FAIL(
+            r,
+            "the Gaussians have an extension of their own, as those packed as SPZ; export the scene as .ply or .spz");
     }
     return is_text(gaussians, "kernel", "ellipse") && is_text(gaussians, "colorSpace", "srgb_rec709_display")
                ? 0
                : FAIL(r, "only the kernel ellipse in the colour space srgb_rec709_display is read");
 }
+
+/* ---- numbers ----------------------------------------------------------------------------------------------------- */
 
 static uint32_t bytes_of(uint32_t component)
 {
@@ -159,6 +167,23 @@ static int read_accessor(const reader *r, const cJSON *root, uint32_t index, uin
     return 0;
 }
 
+/* Says what harmonics the reader leaves out; NULL: none. */
+static const char *remark_of(const cJSON *attributes, uint32_t degree)
+{
+    const cJSON *each;
+    uint32_t count = 0;
+    bool has_more = false; /* a higher degree than the runtime draws */
+    cJSON_ArrayForEach(each, attributes)
+    {
+        count += strncmp(each->string, GLB_EXTENSION ":SH_DEGREE_", sizeof GLB_EXTENSION ":SH_DEGREE_" - 1) == 0;
+        has_more = has_more || strcmp(each->string, GLB_EXTENSION ":SH_DEGREE_4_COEF_0") == 0;
+    }
+    return count <= 1 + harmonics_rest(degree) ? NULL
+           : has_more && degree == HARMONICS_DEGREE_MOST
+               ? SCENE_REMARK_DEGREE_4
+               : "harmonics of a degree that lacks a coefficient are left out";
+}
+
 static int find_attributes(const reader *r, const cJSON *root, const cJSON *primitive, glb_file *out)
 {
     const cJSON *attributes = get(primitive, "attributes");
@@ -179,6 +204,7 @@ static int find_attributes(const reader *r, const cJSON *root, const cJSON *prim
             out->degree++;
         }
     }
+    out->remark = remark_of(attributes, out->degree);
     return 0;
 }
 
@@ -247,7 +273,9 @@ static int read_row(void *user, uint32_t index, scene_row *row, char *error, siz
                : t3r_reason(error, error_bytes, "Gaussian %" PRIu32 ": nodes put it infinitely far away", index);
 }
 
-static int parse_json(const reader *r, const cJSON *root, scene_file *out)
+/* ---- containers -------------------------------------------------------------------------------------------------- */
+
+static int parse_json(const reader *r, const cJSON *root, const scene_sink *sink)
 {
     const cJSON *primitive;
     uint32_t mesh_index = 0;
@@ -260,9 +288,10 @@ static int parse_json(const reader *r, const cJSON *root, scene_file *out)
     const scene_rows rows = {.count = file.attributes[GLB_POSITION].count,
                              .degree = file.degree,
                              .axes = SCENE_AXES_LUF,
+                             .remark = file.remark,
                              .read = read_row,
                              .user = &file};
-    return scene_file_from_rows(&rows, out, r->error, r->error_bytes);
+    return sink->take(sink->user, &rows, r->error, r->error_bytes);
 }
 
 /* Reads the chunk at *at, which moves past it. */
@@ -281,13 +310,12 @@ static int next_chunk(const reader *r, const uint8_t *bytes, size_t count, size_
     return 0;
 }
 
-int glb_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+int glb_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes)
 {
     reader r = {NULL, 0, error, error_bytes};
     const uint8_t *text;
     uint32_t text_bytes;
     size_t at = GLB_HEADER_BYTES;
-    *out = (scene_file){0};
     if (count < GLB_HEADER_BYTES || memcmp(bytes, GLB_MAGIC, 4) != 0 ||
         t3r_load_le32(bytes + GLB_VERSION_AT) != GLB_VERSION) {
         return FAIL(&r, "byte 0: not a .glb of version 2");
@@ -304,7 +332,7 @@ int glb_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, 
     if (root == NULL) {
         return -1;
     }
-    const int result = parse_json(&r, root, out);
+    const int result = parse_json(&r, root, sink);
     cJSON_Delete(root);
     return result;
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/tables/json_output.h"
 #include "core/little_endian.h"
 #include "host/little_floats.h"
 #include "host/reason.h"
@@ -92,10 +93,23 @@ static cJSON *only_item(cJSON *object, const char *array)
     return item;
 }
 
+/* Puts the scene's origin where it is in the world. */
+static void add_translation(cJSON *node, const scene_source *source)
+{
+    int64_t turned_q32[3];
+    double origin[3];
+    scene_turn_origin(&source->turn, source->frame.origin_q32, turned_q32);
+    for (int axis = 0; axis < 3; axis++) {
+        origin[axis] = ldexp((double)turned_q32[axis], -32);
+    }
+    cJSON_AddItemToObject(node, "translation", cJSON_CreateDoubleArray(origin, 3));
+}
+
 /* Returns NULL when out of memory. */
-static char *make_json(const glb_layout *layout)
+static char *make_json(const scene_source *source, const glb_layout *layout)
 {
     const int none = 0;
+    json_watch_memory();
     cJSON *root = cJSON_CreateObject(), *item = cJSON_AddObjectToObject(root, "asset");
     cJSON_AddStringToObject(item, "version", "2.0");
     cJSON_AddStringToObject(item, "generator", "trim3r");
@@ -105,6 +119,9 @@ static char *make_json(const glb_layout *layout)
     cJSON_AddItemToObject(item, "nodes", cJSON_CreateIntArray(&none, 1));
     item = only_item(root, "nodes");
     cJSON_AddNumberToObject(item, "mesh", 0);
+    if ((source->flags & SCENE_FILE_LOCAL) != 0 && (source->flags & SCENE_FILE_COMMENTS) != 0) {
+        add_translation(item, source);
+    }
     item = only_item(root, "buffers");
     cJSON_AddNumberToObject(item, "byteLength", (double)binary_bytes(layout));
     item = only_item(root, "meshes");
@@ -114,9 +131,7 @@ static char *make_json(const glb_layout *layout)
     item = cJSON_AddObjectToObject(cJSON_AddObjectToObject(item, "extensions"), GLB_EXTENSION);
     cJSON_AddStringToObject(item, "kernel", "ellipse");
     cJSON_AddStringToObject(item, "colorSpace", "srgb_rec709_display");
-    char *text = cJSON_PrintUnformatted(root);
-    cJSON_Delete(root);
-    return text;
+    return json_text(root);
 }
 
 static void put_attribute(const scene_row *row, uint32_t attribute, uint8_t *out)
@@ -175,13 +190,13 @@ static uint8_t *make_numbers(const scene_source *source, const glb_layout *layou
 
 static glb_layout layout_of(const scene_source *source)
 {
-    glb_layout layout = {.count = source->scene->count, .attributes = GLB_REST + harmonics_rest(source->degree)};
+    glb_layout layout = {.count = source->rows->count, .attributes = GLB_REST + harmonics_rest(source->degree)};
     for (uint32_t i = 0; i < layout.count; i++) {
-        double position[3];
-        scene_source_position(source, i, position);
+        scene_row row;
+        scene_source_row(source, i, &row);
         for (int axis = 0; axis < 3; axis++) {
-            layout.low[axis] = i == 0 ? position[axis] : fmin(layout.low[axis], position[axis]);
-            layout.high[axis] = i == 0 ? position[axis] : fmax(layout.high[axis], position[axis]);
+            layout.low[axis] = i == 0 ? row.position[axis] : fmin(layout.low[axis], row.position[axis]);
+            layout.high[axis] = i == 0 ? row.position[axis] : fmax(layout.high[axis], row.position[axis]);
         }
     }
     return layout;
@@ -217,7 +232,7 @@ int glb_write(FILE *file, const scene_source *source, char *error, size_t error_
     if (number_bytes > UINT32_MAX - JSON_BYTES_MOST) {
         return t3r_reason(error, error_bytes, "%" PRIu64 " bytes: a .glb ends at 4 GiB", number_bytes);
     }
-    char *json = make_json(&layout);
+    char *json = make_json(source, &layout);
     uint8_t *numbers = make_numbers(source, &layout);
     const bool is_made = json != NULL && numbers != NULL;
     if (is_made) {

@@ -25,7 +25,7 @@ extern const char *const packed_ply_words[PACKED_WORDS];
 
 /* Whether a header belongs to such a file. */
 bool packed_ply_is(const ply_header *header);
-int packed_ply_parse(const ply_header *header, const uint8_t *bytes, size_t count, scene_file *out, char *error,
+int packed_ply_parse(const ply_header *header, const uint8_t *bytes, size_t count, const scene_sink *sink, char *error,
                      size_t error_bytes);
 
 #endif

@@ -173,15 +173,14 @@ static int read_row(void *user, uint32_t index, scene_row *row, char *error, siz
     return 0;
 }
 
-int packed_ply_parse(const ply_header *header, const uint8_t *bytes, size_t count, scene_file *out, char *error,
+int packed_ply_parse(const ply_header *header, const uint8_t *bytes, size_t count, const scene_sink *sink, char *error,
                      size_t error_bytes)
 {
     packed_file file = {0};
     uint32_t vertices = 0;
-    *out = (scene_file){0};
     if (find_columns(header, bytes, count, &file, &vertices, error, error_bytes) != 0) {
         return -1;
     }
     const scene_rows rows = {.count = vertices, .degree = file.degree, .read = read_row, .user = &file};
-    return scene_file_from_rows(&rows, out, error, error_bytes);
+    return sink->take(sink->user, &rows, error, error_bytes);
 }

@@ -23,7 +23,7 @@ typedef struct chunk {
 
 static void read_chunk(const scene_source *source, const uint32_t *order, uint32_t index, chunk *out)
 {
-    const uint32_t first = index * PACKED_PLY_CHUNK, left = source->scene->count - first;
+    const uint32_t first = index * PACKED_PLY_CHUNK, left = source->rows->count - first;
     out->count = left < PACKED_PLY_CHUNK ? left : PACKED_PLY_CHUNK;
     for (uint32_t i = 0; i < out->count; i++) {
         scene_row *row = &out->rows[i];
@@ -104,7 +104,7 @@ static uint32_t pack_colour(const chunk *c, const scene_row *row)
 
 static void write_header(FILE *file, const scene_source *source)
 {
-    const uint32_t count = source->scene->count;
+    const uint32_t count = source->rows->count;
     fprintf(file, "ply\nformat binary_little_endian 1.0\nelement chunk %" PRIu32 "\n",
             (count + PACKED_PLY_CHUNK - 1) / PACKED_PLY_CHUNK);
     for (int i = 0; i < PACKED_BOUNDS; i++) {
@@ -148,7 +148,7 @@ static void write_words(FILE *file, const chunk *c)
 static void write_harmonics(FILE *file, const scene_source *source, const uint32_t *order)
 {
     const uint32_t rest = harmonics_rest(source->degree);
-    for (uint32_t i = 0; i < source->scene->count && rest > 0; i++) {
+    for (uint32_t i = 0; i < source->rows->count && rest > 0; i++) {
         scene_row row;
         scene_source_row(source, order[i], &row);
         for (uint32_t k = 0; k < 3 * rest; k++) {
@@ -159,13 +159,13 @@ static void write_harmonics(FILE *file, const scene_source *source, const uint32
 
 static int packed_ply_write(FILE *file, const scene_source *source, char *error, size_t error_bytes)
 {
-    const uint32_t chunks = (source->scene->count + PACKED_PLY_CHUNK - 1) / PACKED_PLY_CHUNK;
+    const uint32_t chunks = (source->rows->count + PACKED_PLY_CHUNK - 1) / PACKED_PLY_CHUNK;
     uint32_t *order = scene_order_morton(source);
     chunk *c = malloc(sizeof *c);
     if (order == NULL || c == NULL) {
         free(order);
         free(c);
-        return t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", source->scene->count);
+        return t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", source->rows->count);
     }
     write_header(file, source);
     /* all bounds come before all words */
@@ -182,5 +182,9 @@ static int packed_ply_write(FILE *file, const scene_source *source, char *error,
     return 0;
 }
 
-const scene_format scene_format_packed_ply = {
-    .suffix = ".compressed.ply", .magic = "ply", .degree = 3, .parse = ply_parse, .write = packed_ply_write};
+const scene_format scene_format_packed_ply = {.suffix = ".compressed.ply",
+                                              .magic = "ply",
+                                              .degree = 3,
+                                              .shares_bits = true,
+                                              .parse = ply_parse,
+                                              .write = packed_ply_write};

@@ -6,8 +6,10 @@
 const scene_format scene_format_ply = {
     .suffix = ".ply",
     .magic = "ply",
-    .foreign = "byte 0: not a .ply file, nor another scene",
+    .foreign = "byte 0: not a .ply file, nor another scene (an unpacked .sog is read once its files are zipped)",
     .degree = 3,
+    .holds_origin = true,
+    .holds_mip = true,
     .parse = ply_parse,
     .write = ply_write,
 };

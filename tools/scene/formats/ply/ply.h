@@ -9,7 +9,7 @@
 #include "scene/scene_rows.h"
 
 /* like scene_format's */
-int ply_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
+int ply_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes);
 int ply_write(FILE *file, const scene_source *source, char *error, size_t error_bytes);
 
 #endif

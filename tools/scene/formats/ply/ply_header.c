@@ -7,9 +7,9 @@
 
 #include "host/reason.h"
 
-#define MAX_HEADER_BYTES 65536u
+#define MAX_HEADER_BYTES 262144u
 #define MAX_LINE_BYTES 512u
-#define MAX_ROW_BYTES 8192u
+#define MAX_ROW_BYTES 16384u
 
 typedef struct reader {
     const uint8_t *bytes;
@@ -20,7 +20,26 @@ typedef struct reader {
 
 #define FAIL(r, ...) t3r_reason((r)->error, (r)->error_bytes, __VA_ARGS__)
 
-/* Reads the line at *at without its end; *at moves past it. -1 when none is left or it is too long. */
+static bool is_remark(const char *line)
+{
+    return strncmp(line, "comment", 7) == 0 || strncmp(line, "obj_info", 8) == 0;
+}
+
+/* Replaces runs of blanks by one, and drops those at the end. */
+static void trim(char *line)
+{
+    size_t length = 0;
+    for (const char *c = line; *c != '\0'; c++) {
+        const bool blank = *c == ' ' || *c == '\t' || *c == '\r';
+        if (!blank || (length > 0 && line[length - 1] != ' ')) {
+            line[length++] = blank ? ' ' : *c;
+        }
+    }
+    line[length - (length > 0 && line[length - 1] == ' ')] = '\0';
+}
+
+/* Reads the line at *at without its end; *at moves past it. Comments may be longer than the line, which then has their
+ * beginning. -1 when no line is left or it is too long. */
 static int next_line(const reader *r, size_t *at, char line[MAX_LINE_BYTES])
 {
     size_t limit = r->count < MAX_HEADER_BYTES ? r->count : MAX_HEADER_BYTES;
@@ -28,20 +47,18 @@ static int next_line(const reader *r, size_t *at, char line[MAX_LINE_BYTES])
     while (end < limit && r->bytes[end] != '\n') {
         end++;
     }
-    if (end == limit || end - start >= MAX_LINE_BYTES) {
-        return FAIL(r, "byte %zu: %s", start, end == limit ? "the header has no end" : "a header line is too long");
+    if (end == limit) {
+        return FAIL(r, "byte %zu: the header has no end", start);
     }
-    size_t length = end - start;
-    if (length > 0 && r->bytes[end - 1] == '\r') {
-        length--;
-    }
+    const size_t whole = end - start, length = whole < MAX_LINE_BYTES ? whole : MAX_LINE_BYTES - 1;
     if (memchr(r->bytes + start, 0, length) != NULL) {
         return FAIL(r, "byte %zu: a zero byte in the header", start);
     }
     memcpy(line, r->bytes + start, length);
     line[length] = '\0';
+    trim(line);
     *at = end + 1;
-    return 0;
+    return length == whole || is_remark(line) ? 0 : FAIL(r, "byte %zu: a header line is too long", start);
 }
 
 static void read_comment(const char *line, ply_header *h)
@@ -58,6 +75,8 @@ static void read_comment(const char *line, ply_header *h)
         h->has_origin = true;
     } else if (sscanf(line, "comment trim3r local %d%n", &local, &end) == 1 && line[end] == '\0') {
         h->local = local != 0;
+    } else if (strcmp(line, "comment SplatRenderMode: mip") == 0) {
+        h->mip = true;
     }
 }
 
@@ -128,9 +147,8 @@ static int begin_element(const reader *r, size_t at, const char *line, ply_heade
         strchr(line, '-') != NULL) {
         return FAIL(r, "byte %zu: '%.80s' is no element", at, line);
     }
-    if (count > T3R_MAX_GAUSSIANS) {
-        return FAIL(r, "byte %zu: %" PRIu64 " elements '%s' are over the limit of %u", at, count, element->name,
-                    T3R_MAX_GAUSSIANS);
+    if (count > UINT32_MAX) {
+        return FAIL(r, "byte %zu: %" PRIu64 " elements '%s' are over the limit of 2^32", at, count, element->name);
     }
     if (ply_header_element(h, element->name) != NULL) {
         return FAIL(r, "byte %zu: a second element %s", at, element->name);
@@ -139,6 +157,20 @@ static int begin_element(const reader *r, size_t at, const char *line, ply_heade
     element->first = element->second = h->property_count;
     h->element_count++;
     return 0;
+}
+
+static int read_format(const reader *r, size_t at, const char *line, ply_header *h)
+{
+    static const char *const names[] = {[PLY_LITTLE_ENDIAN] = "format binary_little_endian 1.0",
+                                        [PLY_BIG_ENDIAN] = "format binary_big_endian 1.0",
+                                        [PLY_TEXT] = "format ascii 1.0"};
+    for (int i = PLY_LITTLE_ENDIAN; i <= PLY_TEXT; i++) {
+        if (strcmp(line, names[i]) == 0) {
+            h->encoding = (ply_encoding)i;
+            return 0;
+        }
+    }
+    return FAIL(r, "byte %zu: '%.80s': binary_little_endian, binary_big_endian and ascii 1.0 are read", at, line);
 }
 
 static int read_line(const reader *r, size_t at, const char *line, ply_header *h, bool *has_format)
@@ -151,21 +183,18 @@ static int read_line(const reader *r, size_t at, const char *line, ply_header *h
     }
     if (strncmp(line, "format ", 7) == 0) {
         *has_format = true;
-        return strcmp(line, "format binary_little_endian 1.0") == 0
-                   ? 0
-                   : FAIL(r, "byte %zu: '%.80s': only binary_little_endian 1.0 is read", at, line);
+        return read_format(r, at, line, h);
     }
-    if (strncmp(line, "comment", 7) == 0) {
+    if (is_remark(line)) {
         read_comment(line, h);
         return 0;
     }
-    return strncmp(line, "obj_info", 8) == 0 ? 0 : FAIL(r, "byte %zu: unknown header line '%.80s'", at, line);
+    return line[0] == '\0' ? 0 : FAIL(r, "byte %zu: unknown header line '%.80s'", at, line);
 }
 
-/* Computes where each element's rows begin: below 16 x 2^24 x 2^13. */
-static void place_elements(ply_header *h, size_t data)
+void ply_header_place(ply_header *h, uint64_t data)
 {
-    uint64_t at = data;
+    uint64_t at = data; /* below 16 x 2^32 x 2^14 from there on */
     bool lists = false;
     for (uint32_t i = 0; i < h->element_count; i++) {
         ply_element *element = &h->elements[i];
@@ -201,7 +230,8 @@ int ply_header_read(const uint8_t *bytes, size_t count, ply_header *out, char *e
             return -1;
         }
     }
-    place_elements(out, at);
+    out->bytes = at;
+    ply_header_place(out, at);
     return has_format ? 0 : FAIL(&r, "the header names no format");
 }
 
@@ -214,6 +244,10 @@ int ply_header_rows(const ply_header *header, const char *name, size_t count, co
     }
     if (element->lists) {
         return t3r_reason(error, error_bytes, "element %s has lists or follows some: they are not read", name);
+    }
+    if (element->count > T3R_MAX_GAUSSIANS) {
+        return t3r_reason(error, error_bytes, "%" PRIu32 " elements '%s' are over the limit of %u", element->count,
+                          name, T3R_MAX_GAUSSIANS);
     }
     const uint64_t end = element->at + (uint64_t)element->count * element->row_bytes;
     if (end > count) {

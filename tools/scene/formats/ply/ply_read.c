@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* 3DGS .ply, binary little-endian: floats or doubles in any order, among other properties. */
+/* 3DGS .ply: floats or doubles in any order, among other properties. */
 #include "scene/formats/ply/ply.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "host/little_floats.h"
 #include "host/reason.h"
 #include "scene/formats/ply/packed_ply.h"
+#include "scene/formats/ply/ply_body.h"
 #include "scene/formats/ply/ply_header.h"
 #include "scene/scene_rows.h"
 
@@ -21,12 +24,17 @@ enum { VALUES_MOST = WANTED_COUNT + 3 * HARMONICS_REST_MOST };
 
 typedef struct ply_vertices {
     const uint8_t *rows;
-    uint64_t at; /* byte of the file where they begin */
     uint32_t row_bytes;
     uint32_t degree;
     uint32_t value_count; /* numbers read per row */
+    /* NULL: missing. Colours may be bytes (red, green, blue) instead of harmonics. A flat Gaussian (2DGS) has no third
+     * scale; a round one has one scale, and needs no rotation. */
     const ply_property *values[VALUES_MOST];
+    bool has_bytes; /* colours are bytes */
+    const char *remark;
 } ply_vertices;
+
+/* ---- header --------------------------------------------------------------------------------------------- */
 
 static int find_wanted(const ply_header *header, const ply_element *vertex, const char *name, const ply_property **out,
                        char *error, size_t error_bytes)
@@ -46,7 +54,7 @@ static int find_rest(const ply_header *header, const ply_element *vertex, ply_ve
 {
     enum { DEGREES_KNOWN = 4 };
     const ply_property *rest[3 * ((DEGREES_KNOWN + 1) * (DEGREES_KNOWN + 1) - 1) + 1];
-    uint32_t count = 0;
+    uint32_t count = 0, known = 0;
     for (; count < sizeof rest / sizeof rest[0]; count++) {
         char name[24];
         snprintf(name, sizeof name, "f_rest_%" PRIu32, count);
@@ -57,17 +65,42 @@ static int find_rest(const ply_header *header, const ply_element *vertex, ply_ve
             break;
         }
     }
-    for (uint32_t degree = 1; degree <= DEGREES_KNOWN; degree++) {
-        if (count == 3 * harmonics_rest(degree)) {
-            out->degree = degree < HARMONICS_DEGREE_MOST ? degree : HARMONICS_DEGREE_MOST;
-        }
+    for (uint32_t degree = 0; degree <= DEGREES_KNOWN; degree++) {
+        known = count == 3 * harmonics_rest(degree) ? degree : known;
     }
+    out->degree = known < HARMONICS_DEGREE_MOST ? known : HARMONICS_DEGREE_MOST;
+    out->remark = count != 3 * harmonics_rest(known) ? "harmonics whose number fits no degree are left out"
+                  : known > HARMONICS_DEGREE_MOST    ? SCENE_REMARK_DEGREE_4
+                                                     : NULL;
     const uint32_t read = harmonics_rest(out->degree);
     for (uint32_t i = 0; i < 3 * read; i++) {
         out->values[WANTED_COUNT + i] = rest[i / read * (count / 3) + i % read];
     }
     out->value_count = WANTED_COUNT + 3 * read;
     return 0;
+}
+
+/* Finds bytes red, green and blue for missing harmonics of degree 0. */
+static void find_bytes(const ply_header *header, const ply_element *vertex, ply_vertices *out)
+{
+    static const char *const names[] = {"red", "green", "blue"};
+    const ply_property *found[3];
+    for (int i = 0; i < 3; i++) {
+        found[i] = ply_header_property(header, vertex, names[i]);
+        if (out->values[DC_0 + i] != NULL || found[i] == NULL || found[i]->kind != 'u' || found[i]->bytes != 1) {
+            return;
+        }
+    }
+    memcpy(&out->values[DC_0], found, sizeof found);
+    out->has_bytes = true;
+}
+
+static bool may_be_missing(const ply_vertices *v, int index)
+{
+    const bool is_round = v->values[SCALE_0] != NULL && v->values[SCALE_1] == NULL && v->values[SCALE_2] == NULL;
+    const bool is_turned =
+        v->values[ROT_0] != NULL || v->values[ROT_1] != NULL || v->values[ROT_2] != NULL || v->values[ROT_3] != NULL;
+    return index == SCALE_2 || (is_round && (index == SCALE_1 || (index >= ROT_0 && !is_turned)));
 }
 
 static int find_values(const ply_header *header, const ply_element *vertex, ply_vertices *out, char *error,
@@ -77,11 +110,29 @@ static int find_values(const ply_header *header, const ply_element *vertex, ply_
         if (find_wanted(header, vertex, wanted[i], &out->values[i], error, error_bytes) != 0) {
             return -1;
         }
-        if (out->values[i] == NULL) {
+    }
+    find_bytes(header, vertex, out);
+    for (int i = 0; i < WANTED_COUNT; i++) {
+        if (out->values[i] == NULL && !may_be_missing(out, i)) {
             return t3r_reason(error, error_bytes, "property %s is missing: not a file of Gaussians", wanted[i]);
         }
     }
     return find_rest(header, vertex, out, error, error_bytes);
+}
+
+/* ---- vertices --------------------------------------------------------------------------------------------- */
+
+/* Returns the value of a column that the file does not have. */
+static double value_of_missing(uint32_t index, const double value[VALUES_MOST], bool is_round)
+{
+    return index == ROT_0 ? 1 : index > ROT_0 ? 0 : is_round ? value[SCALE_0] : -INFINITY; /* flat */
+}
+
+static double load(const ply_property *property, const uint8_t *bytes)
+{
+    return property->kind == 'u'  ? (*bytes / 255.0 - 0.5) / HARMONICS_ZERO
+           : property->bytes == 8 ? t3r_load_double(bytes)
+                                  : t3r_load_float(bytes);
 }
 
 /* Whether an infinity is intended: exporters write the logit of opacity 1 or 0, and the logarithm of scale 0, so. */
@@ -98,11 +149,14 @@ static int read_vertex(void *user, uint32_t index, scene_row *row, char *error, 
     const size_t at = (size_t)index * vertices->row_bytes;
     for (uint32_t i = 0; i < vertices->value_count; i++) {
         const ply_property *property = vertices->values[i];
-        const uint8_t *bytes = vertices->rows + at + property->offset;
-        value[i] = property->bytes == 8 ? t3r_load_double(bytes) : t3r_load_float(bytes);
+        if (property == NULL) {
+            value[i] = value_of_missing(i, value, vertices->values[SCALE_1] == NULL);
+            continue;
+        }
+        value[i] = load(property, vertices->rows + at + property->offset);
         if (!is_meant(i, value[i])) {
-            return t3r_reason(error, error_bytes, "byte %" PRIu64 ": vertex %" PRIu32 ": %s is not a finite number",
-                              vertices->at + at + property->offset, index, property->name);
+            return t3r_reason(error, error_bytes, "vertex %" PRIu32 ": %s is not a finite number", index,
+                              property->name);
         }
     }
     *row = (scene_row){.position = {value[X], value[Y], value[Z]},
@@ -117,8 +171,8 @@ static int read_vertex(void *user, uint32_t index, scene_row *row, char *error, 
     return 0;
 }
 
-static int parse_vertices(const ply_header *header, const uint8_t *bytes, size_t count, scene_file *out, char *error,
-                          size_t error_bytes)
+static int parse_vertices(const ply_header *header, const uint8_t *bytes, size_t count, const scene_sink *sink,
+                          char *error, size_t error_bytes)
 {
     const ply_element *vertex;
     ply_vertices vertices = {0};
@@ -130,25 +184,37 @@ static int parse_vertices(const ply_header *header, const uint8_t *bytes, size_t
         return t3r_reason(error, error_bytes, "the file holds no Gaussians");
     }
     vertices.rows = bytes + vertex->at;
-    vertices.at = vertex->at;
     vertices.row_bytes = vertex->row_bytes;
     scene_rows rows = {.count = vertex->count,
                        .has_frame = header->has_exponent && header->has_origin,
                        .local = header->local,
                        .frame = header->frame,
                        .degree = vertices.degree,
+                       .mip = header->mip,
+                       .remark = vertices.remark,
                        .read = read_vertex,
                        .user = &vertices};
-    return scene_file_from_rows(&rows, out, error, error_bytes);
+    return sink->take(sink->user, &rows, error, error_bytes);
 }
 
-int ply_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+static int parse_body(const ply_header *header, const uint8_t *bytes, size_t count, const scene_sink *sink, char *error,
+                      size_t error_bytes)
 {
-    *out = (scene_file){0};
+    return packed_ply_is(header) ? packed_ply_parse(header, bytes, count, sink, error, error_bytes)
+                                 : parse_vertices(header, bytes, count, sink, error, error_bytes);
+}
+
+int ply_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes)
+{
     ply_header header;
     if (ply_header_read(bytes, count, &header, error, error_bytes) != 0) {
         return -1;
     }
-    return packed_ply_is(&header) ? packed_ply_parse(&header, bytes, count, out, error, error_bytes)
-                                  : parse_vertices(&header, bytes, count, out, error, error_bytes);
+    if (header.encoding == PLY_LITTLE_ENDIAN) {
+        return parse_body(&header, bytes, count, sink, error, error_bytes);
+    }
+    uint8_t *converted = ply_body_convert(&header, bytes, &count, error, error_bytes);
+    const int result = converted != NULL ? parse_body(&header, converted, count, sink, error, error_bytes) : -1;
+    free(converted);
+    return result;
 }

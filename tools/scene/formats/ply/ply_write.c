@@ -44,13 +44,15 @@ static void put_vertex(FILE *file, const scene_row *row, uint32_t degree)
 
 static void write_header(FILE *file, const scene_source *source)
 {
-    const scene_file *scene = source->scene;
     fputs("ply\nformat binary_little_endian 1.0\n", file);
+    if (source->rows->mip) {
+        fputs("comment SplatRenderMode: mip\n", file);
+    }
     if (source->flags & SCENE_FILE_COMMENTS) {
         fprintf(file, "comment trim3r bits_epoch %d\n", T3R_BITS_EPOCH);
-        fprintf(file, "comment trim3r exponent %" PRId32 "\n", scene->frame.exponent);
+        fprintf(file, "comment trim3r exponent %" PRId32 "\n", source->frame.exponent);
         int64_t origin_q32[3];
-        scene_turn_origin(&source->turn, scene->frame.origin_q32, origin_q32);
+        scene_turn_origin(&source->turn, source->frame.origin_q32, origin_q32);
         fprintf(file, "comment trim3r origin_q32 %" PRId64 " %" PRId64 " %" PRId64 "\n", origin_q32[0], origin_q32[1],
                 origin_q32[2]);
         fprintf(file, "comment trim3r local %d\n", (source->flags & SCENE_FILE_LOCAL) != 0);
@@ -58,7 +60,7 @@ static void write_header(FILE *file, const scene_source *source)
             fprintf(file, "comment trim3r %s\n", source->note);
         }
     }
-    fprintf(file, "element vertex %" PRIu32 "\n", scene->count);
+    fprintf(file, "element vertex %" PRIu32 "\n", source->rows->count);
     write_properties(file, "x y z nx ny nz f_dc_0 f_dc_1 f_dc_2");
     for (uint32_t i = 0; i < 3 * harmonics_rest(source->degree); i++) {
         fprintf(file, "property float f_rest_%" PRIu32 "\n", i);
@@ -72,7 +74,7 @@ int ply_write(FILE *file, const scene_source *source, char *error, size_t error_
     (void)error;
     (void)error_bytes;
     write_header(file, source);
-    for (uint32_t i = 0; i < source->scene->count; i++) {
+    for (uint32_t i = 0; i < source->rows->count; i++) {
         scene_row row;
         scene_source_row(source, i, &row);
         put_vertex(file, &row, source->degree);

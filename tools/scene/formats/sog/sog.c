@@ -4,4 +4,4 @@
 #include "scene/scene_format.h"
 
 const scene_format scene_format_sog = {
-    .suffix = ".sog", .magic = "PK\x03\x04", .degree = 3, .parse = sog_parse, .write = sog_write};
+    .suffix = ".sog", .magic = "PK\x03\x04", .degree = 3, .shares_bits = true, .parse = sog_parse, .write = sog_write};

@@ -20,7 +20,7 @@ enum { SOG_MEANS_LOW, SOG_MEANS_HIGH, SOG_SCALES, SOG_ROTATIONS, SOG_COLOURS, SO
 #define SOG_CENTROIDS_A_ROW 64u
 
 /* like scene_format's */
-int sog_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
+int sog_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes);
 int sog_write(FILE *file, const scene_source *source, char *error, size_t error_bytes);
 
 #endif

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/formats/sog/sog_harmonics.h"
 
+#include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 #include "scene/formats/sog/palette.h"
@@ -17,20 +19,20 @@ static uint32_t entries_of(uint32_t count)
     return entries;
 }
 
-/* Turns coefficients to the file's axes. Rotation preserves distances, so only the means need turning. */
-static void turn(const scene_source *source, palette *made)
+/* Returns the coefficients above degree 0 of all Gaussians in Q12, clamped to 8; free() them. NULL: out of memory. */
+static int16_t *coefficients_of(const scene_source *source)
 {
-    for (uint32_t i = 0; i < made->rows; i++) {
-        double position[3] = {0}, rotation[4] = {1}, rest[HARMONICS_REST_MOST][3] = {{0}};
-        double *mean = made->means + (size_t)i * made->width;
-        for (uint32_t k = 0; k < made->width; k++) {
-            rest[k / 3][k % 3] = mean[k] / 4096;
-        }
-        scene_turn_apply(&source->turn, position, rotation, source->degree, rest);
-        for (uint32_t k = 0; k < made->width; k++) {
-            mean[k] = rest[k / 3][k % 3];
+    const uint32_t width = 3 * harmonics_rest(source->degree);
+    int16_t *all_q12 = malloc((size_t)source->rows->count * width * sizeof *all_q12);
+    for (uint32_t i = 0; i < source->rows->count && all_q12 != NULL; i++) {
+        scene_row row;
+        scene_source_row(source, i, &row);
+        for (uint32_t k = 0; k < width; k++) {
+            const double value = nearbyint(row.rest[k / 3][k % 3] * 4096);
+            all_q12[(size_t)i * width + k] = (int16_t)fmax(fmin(value, INT16_MAX), INT16_MIN);
         }
     }
+    return all_q12;
 }
 
 static int begin_texels(webp_texels *out, uint32_t width, uint32_t height)
@@ -77,19 +79,22 @@ static void fill_labels(const palette *made, const uint32_t *order, uint32_t cou
 int sog_harmonics_make(const scene_source *source, const uint32_t *order, uint32_t width, uint32_t height,
                        sog_harmonics *out)
 {
-    const scene_file *scene = source->scene;
+    const uint32_t count = source->rows->count, values = 3 * harmonics_rest(source->degree);
     palette made;
     *out = (sog_harmonics){0};
-    /* skips degree 0, whose coefficients are colours */
-    if (palette_make(scene->harmonics_q12 + 3, scene->count, scene_file_harmonics_count(scene),
-                     3 * harmonics_rest(source->degree), entries_of(scene->count), &made) != 0) {
+    int16_t *all_q12 = coefficients_of(source);
+    const bool is_made = all_q12 != NULL && palette_make(all_q12, count, values, values, entries_of(count), &made) == 0;
+    free(all_q12);
+    if (!is_made) {
         return -1;
     }
-    turn(source, &made);
+    for (size_t i = 0; i < (size_t)made.rows * made.width; i++) {
+        made.means[i] /= 4096;
+    }
     const int result = fill_centroids(&made, out) == 0 && begin_texels(&out->labels, width, height) == 0 ? 0 : -1;
     if (result == 0) {
         out->count = made.rows;
-        fill_labels(&made, order, scene->count, &out->labels);
+        fill_labels(&made, order, count, &out->labels);
     }
     palette_free(&made);
     return result;

@@ -126,6 +126,10 @@ static int read_meta(const reader *r, const cJSON *meta, uint64_t packed, sog_fi
         int index;
     } files[SOG_PICTURES] = {{"means", 0}, {"means", 1}, {"scales", 0}, {"quats", 0}, {"sh0", 0}};
     uint32_t version;
+    if (get(meta, "version") == NULL && get(meta, "means") != NULL) {
+        return FAIL(r, SOG_META ": SOG of version 1; %d is read: convert it by PlayCanvas's splat-transform",
+                    SOG_VERSION);
+    }
     if (get_whole(r, meta, "version", UINT32_MAX, &version) != 0) {
         return -1;
     }
@@ -226,10 +230,9 @@ static int read_archive(const reader *r, uint64_t packed, sog_file *out)
     return result;
 }
 
-int sog_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+int sog_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes)
 {
     sog_file sog = {0};
-    *out = (scene_file){0};
     const reader r = {sog_archive_open(bytes, count, error, error_bytes), error, error_bytes};
     if (r.archive == NULL) {
         return -1;
@@ -238,7 +241,7 @@ int sog_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, 
     sog_archive_close(r.archive);
     if (result == 0) {
         const scene_rows rows = {.count = sog.count, .degree = sog.degree, .read = read_row, .user = &sog};
-        result = scene_file_from_rows(&rows, out, error, error_bytes);
+        result = sink->take(sink->user, &rows, error, error_bytes);
     }
     for (int i = 0; i < SOG_PICTURES; i++) {
         webp_texels_free(&sog.pictures[i]);

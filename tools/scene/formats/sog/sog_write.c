@@ -7,6 +7,7 @@
 #include <string.h>
 #include <zip.h>
 
+#include "cli/tables/json_output.h"
 #include "host/reason.h"
 #include "scene/formats/byte_codes.h"
 #include "scene/formats/sog/codebook.h"
@@ -35,7 +36,7 @@ static double logarithm(double position)
 /* Computes bounds and codebooks. Returns 0, or -1 without memory. */
 static int survey(const scene_source *source, sog_file *sog)
 {
-    const size_t count = source->scene->count;
+    const size_t count = source->rows->count;
     double *scales = malloc((3 * count + 1) * sizeof *scales), *colours = malloc((3 * count + 1) * sizeof *colours);
     const bool is_made = scales != NULL && colours != NULL;
     for (uint32_t i = 0; i < count && is_made; i++) {
@@ -105,7 +106,7 @@ static int begin_pictures(sog_file *sog, uint32_t count)
 static int fill_pictures(const scene_source *source, sog_file *sog)
 {
     uint32_t *order = scene_order_morton(source);
-    for (uint32_t i = 0; i < source->scene->count && order != NULL; i++) {
+    for (uint32_t i = 0; i < source->rows->count && order != NULL; i++) {
         scene_row row;
         uint8_t *texels[SOG_PICTURES];
         for (int k = 0; k < SOG_PICTURES; k++) {
@@ -136,6 +137,7 @@ static void add_codebook(cJSON *object, const double values[CODEBOOK_VALUES])
 /* Returns meta.json; free() it. NULL: out of memory. */
 static char *make_meta(const sog_file *sog, uint32_t count)
 {
+    json_watch_memory();
     cJSON *root = cJSON_CreateObject(), *item = cJSON_AddObjectToObject(root, "asset");
     cJSON_AddStringToObject(item, "generator", "trim3r");
     cJSON_AddNumberToObject(root, "version", SOG_VERSION);
@@ -158,17 +160,22 @@ static char *make_meta(const sog_file *sog, uint32_t count)
         add_codebook(item, sog->harmonics.codebook);
         add_files(item, harmonics_names, 2);
     }
-    char *text = cJSON_PrintUnformatted(root);
-    cJSON_Delete(root);
-    return text;
+    return json_text(root);
 }
 
-/* Adds a member, stored, since pictures are compressed already. The archive takes `bytes`. Returns 0, or -1. */
-static int add_member(zip_t *zip, const char *name, uint8_t *bytes, size_t count)
+/* The archive's members, which libzip reads when it closes the archive. They stay ours: where it fails to take one, it
+ * frees its bytes in some cases and not in others. */
+typedef struct held_members {
+    uint8_t *bytes[SOG_PICTURES + 3];
+    uint32_t count;
+} held_members;
+
+/* Adds a member, stored, since pictures are compressed already, and holds its bytes. Returns 0, or -1. */
+static int add_member(zip_t *zip, held_members *held, const char *name, uint8_t *bytes, size_t count)
 {
-    zip_source_t *source = zip_source_buffer(zip, bytes, count, 1);
+    held->bytes[held->count++] = bytes;
+    zip_source_t *source = zip_source_buffer(zip, bytes, count, 0);
     if (source == NULL) {
-        free(bytes);
         return -1;
     }
     const zip_int64_t index = zip_file_add(zip, name, source, 0);
@@ -183,30 +190,34 @@ static int add_member(zip_t *zip, const char *name, uint8_t *bytes, size_t count
                : -1;
 }
 
-static int add_picture(zip_t *zip, const char *name, const webp_texels *picture, char *error, size_t error_bytes)
+static int add_picture(zip_t *zip, held_members *held, const char *name, const webp_texels *picture, char *error,
+                       size_t error_bytes)
 {
     uint8_t *bytes;
     size_t size;
     if (webp_texels_write(picture, &bytes, &size, error, error_bytes) != 0) {
         return -1;
     }
-    return add_member(zip, name, bytes, size) == 0 ? 0
-                                                   : t3r_reason(error, error_bytes, "%s: %s", name, zip_strerror(zip));
+    return add_member(zip, held, name, bytes, size) == 0
+               ? 0
+               : t3r_reason(error, error_bytes, "%s: %s", name, zip_strerror(zip));
 }
 
-static int add_members(zip_t *zip, const sog_file *sog, uint32_t count, char *error, size_t error_bytes)
+static int add_members(zip_t *zip, held_members *held, const sog_file *sog, uint32_t count, char *error,
+                       size_t error_bytes)
 {
     for (int i = 0; i < SOG_PICTURES; i++) {
-        if (add_picture(zip, names[i], &sog->pictures[i], error, error_bytes) != 0) {
+        if (add_picture(zip, held, names[i], &sog->pictures[i], error, error_bytes) != 0) {
             return -1;
         }
     }
-    if (sog->degree > 0 && (add_picture(zip, harmonics_names[0], &sog->harmonics.centroids, error, error_bytes) != 0 ||
-                            add_picture(zip, harmonics_names[1], &sog->harmonics.labels, error, error_bytes) != 0)) {
+    if (sog->degree > 0 &&
+        (add_picture(zip, held, harmonics_names[0], &sog->harmonics.centroids, error, error_bytes) != 0 ||
+         add_picture(zip, held, harmonics_names[1], &sog->harmonics.labels, error, error_bytes) != 0)) {
         return -1;
     }
     char *meta = make_meta(sog, count);
-    return meta != NULL && add_member(zip, SOG_META, (uint8_t *)meta, strlen(meta)) == 0
+    return meta != NULL && add_member(zip, held, SOG_META, (uint8_t *)meta, strlen(meta)) == 0
                ? 0
                : t3r_reason(error, error_bytes, SOG_META ": out of memory");
 }
@@ -228,6 +239,7 @@ static int copy_source(zip_source_t *source, FILE *file)
 static int write_archive(FILE *file, const sog_file *sog, uint32_t count, char *error, size_t error_bytes)
 {
     zip_error_t why;
+    held_members held = {.count = 0};
     zip_error_init(&why);
     zip_source_t *archive = zip_source_buffer_create(NULL, 0, 0, &why);
     zip_t *zip = archive != NULL ? zip_open_from_source(archive, ZIP_CREATE | ZIP_TRUNCATE, &why) : NULL;
@@ -236,12 +248,16 @@ static int write_archive(FILE *file, const sog_file *sog, uint32_t count, char *
         (void)t3r_reason(error, error_bytes, "%s", zip_error_strerror(&why));
     } else {
         zip_source_keep(archive);
-        result = add_members(zip, sog, count, error, error_bytes);
-        if (result != 0) {
+        result = add_members(zip, &held, sog, count, error, error_bytes);
+        if (result != 0 || zip_close(zip) != 0) {
             zip_discard(zip);
-        } else if (zip_close(zip) != 0 || copy_source(archive, file) != 0) {
-            result = t3r_reason(error, error_bytes, "the archive was not made");
+            result = result != 0 ? result : t3r_reason(error, error_bytes, "the archive was not made");
+        } else if (copy_source(archive, file) != 0) {
+            result = t3r_reason(error, error_bytes, "the archive was not copied");
         }
+    }
+    for (uint32_t i = 0; i < held.count; i++) {
+        free(held.bytes[i]);
     }
     if (archive != NULL) {
         zip_source_free(archive);
@@ -252,7 +268,7 @@ static int write_archive(FILE *file, const sog_file *sog, uint32_t count, char *
 
 int sog_write(FILE *file, const scene_source *source, char *error, size_t error_bytes)
 {
-    const uint32_t count = source->scene->count;
+    const uint32_t count = source->rows->count;
     sog_file sog = {.degree = source->degree};
     int result = survey(source, &sog) == 0 && begin_pictures(&sog, count) == 0 && fill_pictures(source, &sog) == 0
                      ? 0

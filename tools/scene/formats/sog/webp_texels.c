@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/formats/sog/webp_texels.h"
 
+#include <errno.h>
 #include <inttypes.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "host/reason.h"
 
@@ -59,10 +63,32 @@ static int encode(const webp_texels *texels, WebPMemoryWriter *writer)
     picture.height = (int)texels->height;
     picture.writer = WebPMemoryWrite;
     picture.custom_ptr = writer;
-    const int made =
-        WebPPictureImportRGBA(&picture, texels->rgba, 4 * (int)texels->width) && WebPEncode(&config, &picture);
+    const int made = WebPPictureImportRGBA(&picture, texels->rgba, 4 * (int)texels->width) &&
+                     WebPEncode(&config, &picture) && picture.error_code == VP8_ENC_OK;
     WebPPictureFree(&picture);
     return made ? 0 : -1;
+}
+
+static bool is_whole(const webp_texels *texels, const uint8_t *bytes, size_t count)
+{
+    webp_texels back;
+    const size_t texel_count = (size_t)texels->width * texels->height;
+    return webp_texels_read(bytes, count, texel_count, &back, NULL, 0) == 0 &&
+           memcmp(back.rgba, texels->rgba, 4 * texel_count) == 0;
+}
+
+/* Whether a picture reads back, tried in a process of its own: where memory runs out, libwebp 1.2.4 writes damaged
+ * pictures and reports success, and its reader crashes. */
+static bool reads_back(const webp_texels *texels, const uint8_t *bytes, size_t count)
+{
+    int status = -1;
+    const pid_t child = fork();
+    if (child == 0) {
+        _exit(is_whole(texels, bytes, count) ? 0 : 1);
+    }
+    while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 int webp_texels_write(const webp_texels *texels, uint8_t **bytes, size_t *count, char *error, size_t error_bytes)
@@ -76,6 +102,10 @@ int webp_texels_write(const webp_texels *texels, uint8_t **bytes, size_t *count,
         memcpy(*bytes, writer.mem, writer.size);
     }
     WebPMemoryWriterClear(&writer);
+    if (*bytes != NULL && !reads_back(texels, *bytes, *count)) {
+        free(*bytes);
+        *bytes = NULL;
+    }
     return *bytes != NULL ? 0
                           : t3r_reason(error, error_bytes, "a picture of %" PRIu32 "x%" PRIu32 " was not made",
                                        texels->width, texels->height);

@@ -3,7 +3,13 @@
 
 #include "scene/scene_format.h"
 
-const scene_format scene_format_spz = {
-    .suffix = ".spz", .magic = SPZ_MAGIC, .axes = SCENE_AXES_RUB, .degree = 3, .parse = spz_parse, .write = spz_write};
-/* Files of versions 2 and 3 are gzip streams. */
+const scene_format scene_format_spz = {.suffix = ".spz",
+                                       .magic = SPZ_MAGIC,
+                                       .axes = SCENE_AXES_RUB,
+                                       .degree = 3,
+                                       .holds_mip = true,
+                                       .shares_bits = true,
+                                       .parse = spz_parse,
+                                       .write = spz_write};
+/* Most files of versions 1 to 3 are gzip streams. */
 const scene_format scene_format_spz_gzip = {.suffix = ".spz", .magic = "\x1f\x8b", .parse = spz_parse_gzip};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Niantic's .spz: about 20 bytes per Gaussian before compression, attribute by attribute. Version 4 has a header of 32
- * bytes, a table of lengths and a Zstandard stream per attribute; versions 2 and 3 are one gzip stream of a header of
- * 16 bytes and the same attributes. */
+ * bytes, extensions, a table of lengths and a Zstandard stream per attribute; versions 1 to 3 are a header of 16 bytes
+ * and the same attributes, in one gzip stream or bare. */
 #ifndef TRIM3R_TOOLS_SPZ_H
 #define TRIM3R_TOOLS_SPZ_H
 
@@ -10,7 +10,7 @@
 #include "scene/scene_rows.h"
 
 #define SPZ_MAGIC "NGSP"
-#define SPZ_VERSION 4u /* version written; 2 to 4 are read */
+#define SPZ_VERSION 4u /* version written; 1 to 4 are read */
 
 /* Sizes and offsets of both headers. */
 enum {
@@ -26,6 +26,11 @@ enum {
     SPZ_ENTRY_BYTES = 16 /* table entry: compressed and decompressed bytes of a stream */
 };
 
+enum { SPZ_FLAG_MIP = 1, SPZ_FLAG_EXTENSIONS = 2 };
+/* An extension: its type, the number of bytes that follow, and these. */
+enum { SPZ_EXTENSION_BYTES = 8 };
+#define SPZ_EXTENSION_AXES 0xADBE0003u /* SPZ_ADOBE_coordinate_system: a scene_axes */
+
 /* The attributes, in the order of the file. */
 enum { SPZ_POSITIONS, SPZ_ALPHAS, SPZ_COLOURS, SPZ_SCALES, SPZ_ROTATIONS, SPZ_HARMONICS, SPZ_STREAMS };
 
@@ -33,7 +38,7 @@ enum { SPZ_POSITIONS, SPZ_ALPHAS, SPZ_COLOURS, SPZ_SCALES, SPZ_ROTATIONS, SPZ_HA
 #define SPZ_DEGREE_MOST 4u
 
 typedef struct spz_layout {
-    uint32_t version, count, degree, fraction_bits;
+    uint32_t version, count, degree, fraction_bits, flags;
 } spz_layout;
 
 /* Returns the bytes of an attribute per Gaussian. */
@@ -44,9 +49,9 @@ uint32_t spz_stream_bytes(const spz_layout *layout, int stream);
 #define SPZ_SCALE_STEPS 16.0
 #define SPZ_SCALE_LEAST -10.0
 
-/* like scene_format's: version 4, and versions 2 and 3 */
-int spz_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
-int spz_parse_gzip(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes);
+/* As in scene_format: bare files, and gzip streams. */
+int spz_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes);
+int spz_parse_gzip(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes);
 int spz_write(FILE *file, const scene_source *source, char *error, size_t error_bytes);
 
 #endif

@@ -14,6 +14,7 @@
 
 typedef struct spz_file {
     spz_layout layout;
+    scene_axes axes;
     const uint8_t *streams[SPZ_STREAMS];
 } spz_file;
 
@@ -22,14 +23,30 @@ uint32_t spz_stream_bytes(const spz_layout *layout, int stream)
     static const uint32_t bytes[] = {
         [SPZ_POSITIONS] = 9, [SPZ_ALPHAS] = 1, [SPZ_COLOURS] = 3, [SPZ_SCALES] = 3, [SPZ_ROTATIONS] = 4};
     return stream == SPZ_HARMONICS                           ? 3 * harmonics_rest(layout->degree)
-           : stream == SPZ_ROTATIONS && layout->version == 2 ? 3
+           : stream == SPZ_POSITIONS && layout->version == 1 ? 6
+           : stream == SPZ_ROTATIONS && layout->version <= 2 ? 3
                                                              : bytes[stream];
 }
 
-static double position_of(const uint8_t *bytes, uint32_t fraction_bits)
+/* ---- Gaussians --------------------------------------------------------------------------------------------------- */
+
+/* Converts a float of 16 bits (IEEE 754). */
+static double half_of(uint32_t bits)
 {
+    const uint32_t exponent = bits >> 10 & 31, fraction = bits & 1023;
+    const double size = exponent == 31 ? (fraction == 0 ? INFINITY : NAN)
+                        : exponent > 0 ? ldexp(1024 + fraction, (int)exponent - 25)
+                                       : ldexp(fraction, -24);
+    return (bits & 0x8000) != 0 ? -size : size;
+}
+
+static double position_of(const uint8_t *bytes, const spz_layout *layout)
+{
+    if (layout->version == 1) {
+        return half_of(t3r_load_le16(bytes));
+    }
     const uint32_t low = (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16;
-    return ldexp((double)((int32_t)(low << 8) >> 8), -(int)fraction_bits);
+    return ldexp((double)((int32_t)(low << 8) >> 8), -(int)layout->fraction_bits);
 }
 
 /* Reads x y z from bytes; computes w. */
@@ -72,11 +89,11 @@ static int read_row(void *user, uint32_t index, scene_row *row, char *error, siz
     }
     *row = (scene_row){.opacity_logit = logit_of_byte(*at[SPZ_ALPHAS])};
     for (int i = 0; i < 3; i++) {
-        row->position[i] = position_of(at[SPZ_POSITIONS] + 3 * i, file->layout.fraction_bits);
+        row->position[i] = position_of(at[SPZ_POSITIONS] + (file->layout.version == 1 ? 2 : 3) * i, &file->layout);
         row->harmonic[i] = (at[SPZ_COLOURS][i] / 255.0 - 0.5) / SPZ_COLOUR_SCALE;
         row->log_scale[i] = at[SPZ_SCALES][i] / SPZ_SCALE_STEPS + SPZ_SCALE_LEAST;
     }
-    (file->layout.version == 2 ? read_three : read_smallest)(at[SPZ_ROTATIONS], row->rotation);
+    (file->layout.version <= 2 ? read_three : read_smallest)(at[SPZ_ROTATIONS], row->rotation);
     const uint32_t rest = harmonics_rest(file->layout.degree);
     for (uint32_t i = 0; i < (rest < HARMONICS_REST_MOST ? rest : HARMONICS_REST_MOST); i++) {
         for (int channel = 0; channel < 3; channel++) {
@@ -86,16 +103,20 @@ static int read_row(void *user, uint32_t index, scene_row *row, char *error, siz
     return 0;
 }
 
-static int make_scene(spz_file *file, scene_file *out, char *error, size_t error_bytes)
+static int take_rows(spz_file *file, const scene_sink *sink, char *error, size_t error_bytes)
 {
     const uint32_t degree = file->layout.degree;
     const scene_rows rows = {.count = file->layout.count,
                              .degree = degree < HARMONICS_DEGREE_MOST ? degree : HARMONICS_DEGREE_MOST,
-                             .axes = SCENE_AXES_RUB,
+                             .axes = file->axes,
+                             .remark = degree > HARMONICS_DEGREE_MOST ? SCENE_REMARK_DEGREE_4 : NULL,
+                             .mip = (file->layout.flags & SPZ_FLAG_MIP) != 0,
                              .read = read_row,
                              .user = file};
-    return scene_file_from_rows(&rows, out, error, error_bytes);
+    return sink->take(sink->user, &rows, error, error_bytes);
 }
+
+/* ---- containers -------------------------------------------------------------------------------------------------- */
 
 /* Reads the fields that both headers have; the number of Gaussians is limited by `packed` bytes. */
 static int read_header(const uint8_t *bytes, uint64_t packed, spz_layout *out, char *error, size_t error_bytes)
@@ -103,7 +124,8 @@ static int read_header(const uint8_t *bytes, uint64_t packed, spz_layout *out, c
     *out = (spz_layout){.version = t3r_load_le32(bytes + SPZ_VERSION_AT),
                         .count = t3r_load_le32(bytes + SPZ_COUNT_AT),
                         .degree = bytes[SPZ_DEGREE_AT],
-                        .fraction_bits = bytes[SPZ_FRACTION_AT]};
+                        .fraction_bits = bytes[SPZ_FRACTION_AT],
+                        .flags = bytes[SPZ_FLAGS_AT]};
     if (out->degree > SPZ_DEGREE_MOST || out->fraction_bits > 30) {
         return t3r_reason(error, error_bytes,
                           "byte %d: harmonics of degree %" PRIu32 ", positions of %" PRIu32 " fraction bits",
@@ -126,6 +148,28 @@ static size_t whole_bytes(const spz_layout *layout)
     return bytes;
 }
 
+/* Reads the extensions between the header and the table: of those known, the axes change what is read. */
+static int read_extensions(const uint8_t *bytes, uint64_t end, spz_file *file, char *error, size_t error_bytes)
+{
+    uint64_t at = SPZ_HEADER_BYTES;
+    while ((file->layout.flags & SPZ_FLAG_EXTENSIONS) != 0 && at < end) {
+        const uint64_t size = end - at < SPZ_EXTENSION_BYTES ? UINT32_MAX : t3r_load_le32(bytes + at + 4);
+        if (size > end - at - SPZ_EXTENSION_BYTES) {
+            return t3r_reason(error, error_bytes, "byte %" PRIu64 ": an extension reaches beyond the others", at);
+        }
+        if (t3r_load_le32(bytes + at) == SPZ_EXTENSION_AXES && size >= 4) {
+            const uint32_t axes = t3r_load_le32(bytes + at + SPZ_EXTENSION_BYTES);
+            if (axes > SCENE_AXES_LAST) {
+                return t3r_reason(error, error_bytes, "byte %" PRIu64 ": axes %" PRIu32 "; 1 to %d are known", at, axes,
+                                  SCENE_AXES_LAST);
+            }
+            file->axes = axes > 0 ? (scene_axes)axes : SCENE_AXES_RUB;
+        }
+        at += SPZ_EXTENSION_BYTES + size;
+    }
+    return 0;
+}
+
 /* Decompresses the streams one after the other. */
 static int unpack_streams(const uint8_t *bytes, size_t count, spz_file *file, uint8_t *whole, char *error,
                           size_t error_bytes)
@@ -137,6 +181,9 @@ static int unpack_streams(const uint8_t *bytes, size_t count, spz_file *file, ui
     if (streams < needed || table < SPZ_HEADER_BYTES || at > count) {
         return t3r_reason(error, error_bytes, "byte %d: %" PRIu32 " streams, their table at byte %" PRIu64,
                           SPZ_STREAMS_AT, streams, table);
+    }
+    if (read_extensions(bytes, table, file, error, error_bytes) != 0) {
+        return -1;
     }
     for (uint32_t i = 0; i < needed; i++) {
         const uint64_t packed = t3r_load_le64(bytes + table + i * SPZ_ENTRY_BYTES);
@@ -156,10 +203,42 @@ static int unpack_streams(const uint8_t *bytes, size_t count, spz_file *file, ui
     return 0;
 }
 
-int spz_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+/* Finds the attributes of versions 1 to 3 in the bytes after the header. */
+static void find_streams(spz_file *file, const uint8_t *bytes)
 {
-    spz_file file = {0};
-    *out = (scene_file){0};
+    for (int i = 0; i < SPZ_STREAMS; i++) {
+        file->streams[i] = bytes;
+        bytes += (size_t)file->layout.count * spz_stream_bytes(&file->layout, i);
+    }
+}
+
+static int check_old(const spz_layout *layout, char *error, size_t error_bytes)
+{
+    return layout->version >= 1 && layout->version < SPZ_VERSION
+               ? 0
+               : t3r_reason(error, error_bytes, "byte %d: version %" PRIu32 "; 1 to 4 are read", SPZ_VERSION_AT,
+                            layout->version);
+}
+
+/* Reads a file of versions 1 to 3 that is not compressed. */
+static int parse_bare(const uint8_t *bytes, size_t count, spz_file *file, const scene_sink *sink, char *error,
+                      size_t error_bytes)
+{
+    if (check_old(&file->layout, error, error_bytes) != 0) {
+        return -1;
+    }
+    const size_t size = SPZ_OLD_HEADER_BYTES + whole_bytes(&file->layout);
+    if (count < size) {
+        return t3r_reason(error, error_bytes, "byte %zu: cut off: %" PRIu32 " Gaussians end at byte %zu", count,
+                          file->layout.count, size);
+    }
+    find_streams(file, bytes + SPZ_OLD_HEADER_BYTES);
+    return take_rows(file, sink, error, error_bytes);
+}
+
+int spz_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes)
+{
+    spz_file file = {.axes = SCENE_AXES_RUB};
     if (count < SPZ_HEADER_BYTES || memcmp(bytes, SPZ_MAGIC, 4) != 0) {
         return t3r_reason(error, error_bytes, "byte 0: not an .spz file");
     }
@@ -167,8 +246,7 @@ int spz_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, 
         return -1;
     }
     if (file.layout.version != SPZ_VERSION) {
-        return t3r_reason(error, error_bytes, "byte %d: version %" PRIu32 "; 2, 3 and 4 are read", SPZ_VERSION_AT,
-                          file.layout.version);
+        return parse_bare(bytes, count, &file, sink, error, error_bytes);
     }
     uint8_t *whole = malloc(whole_bytes(&file.layout));
     if (whole == NULL) {
@@ -177,7 +255,7 @@ int spz_parse(const uint8_t *bytes, size_t count, scene_file *out, char *error, 
     file.streams[SPZ_HARMONICS] = whole;
     int result = unpack_streams(bytes, count, &file, whole, error, error_bytes);
     if (result == 0) {
-        result = make_scene(&file, out, error, error_bytes);
+        result = take_rows(&file, sink, error, error_bytes);
     }
     free(whole);
     return result;
@@ -202,9 +280,8 @@ static int inflate_file(z_stream *stream, uint64_t packed, spz_file *file, uint8
     if (read_header(header, packed, &file->layout, error, error_bytes) != 0) {
         return -1;
     }
-    if (file->layout.version != 2 && file->layout.version != 3) {
-        return t3r_reason(error, error_bytes, "version %" PRIu32 " within gzip; 2 and 3 are read",
-                          file->layout.version);
+    if (check_old(&file->layout, error, error_bytes) != 0) {
+        return -1;
     }
     const size_t size = whole_bytes(&file->layout);
     *whole = malloc(size);
@@ -214,20 +291,15 @@ static int inflate_file(z_stream *stream, uint64_t packed, spz_file *file, uint8
     if (inflate_bytes(stream, *whole, size) != 0) {
         return t3r_reason(error, error_bytes, "what is packed is not %zu bytes and a header", size);
     }
-    const uint8_t *at = *whole;
-    for (int i = 0; i < SPZ_STREAMS; i++) {
-        file->streams[i] = at;
-        at += (size_t)file->layout.count * spz_stream_bytes(&file->layout, i);
-    }
+    find_streams(file, *whole);
     return 0;
 }
 
-int spz_parse_gzip(const uint8_t *bytes, size_t count, scene_file *out, char *error, size_t error_bytes)
+int spz_parse_gzip(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes)
 {
     enum { GZIP = 16, WINDOW_BITS = 15 };
-    spz_file file = {0};
+    spz_file file = {.axes = SCENE_AXES_RUB};
     uint8_t *whole = NULL;
-    *out = (scene_file){0};
     z_stream stream = {.next_in = (Bytef *)(uintptr_t)bytes,
                        .avail_in = (uInt)(count < UINT32_MAX ? count : UINT32_MAX)};
     if (inflateInit2(&stream, GZIP + WINDOW_BITS) != Z_OK) {
@@ -235,7 +307,7 @@ int spz_parse_gzip(const uint8_t *bytes, size_t count, scene_file *out, char *er
     }
     int result = inflate_file(&stream, count, &file, &whole, error, error_bytes);
     if (result == 0) {
-        result = make_scene(&file, out, error, error_bytes);
+        result = take_rows(&file, sink, error, error_bytes);
     }
     free(whole);
     inflateEnd(&stream);

@@ -27,10 +27,10 @@ typedef struct packed_stream {
 static int choose_fraction(const scene_source *source)
 {
     double farthest = 0;
-    for (uint32_t i = 0; i < source->scene->count; i++) {
-        double position[3];
-        scene_source_position(source, i, position);
-        farthest = fmax(farthest, fmax(fmax(fabs(position[0]), fabs(position[1])), fabs(position[2])));
+    for (uint32_t i = 0; i < source->rows->count; i++) {
+        scene_row row;
+        scene_source_row(source, i, &row);
+        farthest = fmax(farthest, fmax(fmax(fabs(row.position[0]), fabs(row.position[1])), fabs(row.position[2])));
     }
     int bits = FRACTION_BITS_MOST;
     while (bits >= 0 && ldexp(farthest, bits) > 0x7fffff) {
@@ -138,6 +138,7 @@ static void write_packed(FILE *file, const spz_layout *layout, const packed_stre
     t3r_store_le32(header + SPZ_COUNT_AT, layout->count);
     header[SPZ_DEGREE_AT] = (uint8_t)layout->degree;
     header[SPZ_FRACTION_AT] = (uint8_t)layout->fraction_bits;
+    header[SPZ_FLAGS_AT] = (uint8_t)layout->flags;
     header[SPZ_STREAMS_AT] = (uint8_t)stream_count;
     t3r_store_le32(header + SPZ_TABLE_AT, SPZ_HEADER_BYTES);
     fwrite(header, 1, sizeof header, file);
@@ -156,11 +157,10 @@ int spz_write(FILE *file, const scene_source *source, char *error, size_t error_
 {
     const int fraction_bits = choose_fraction(source);
     if (fraction_bits < 0) {
-        return t3r_reason(error, error_bytes, "positions of 2^23 world units and more have no place in an .spz%s",
-                          (source->flags & SCENE_FILE_LOCAL) == 0 ? " (--local writes them from the first camera)"
-                                                                  : "");
+        return t3r_reason(error, error_bytes, "positions of 2^23 world units and more have no place in an .spz");
     }
-    const spz_layout layout = {SPZ_VERSION, source->scene->count, source->degree, (uint32_t)fraction_bits};
+    const spz_layout layout = {SPZ_VERSION, source->rows->count, source->degree, (uint32_t)fraction_bits,
+                               source->rows->mip ? SPZ_FLAG_MIP : 0};
     const int stream_count = source->degree > 0 ? SPZ_STREAMS : SPZ_HARMONICS;
     packed_stream streams[SPZ_STREAMS] = {0};
     const int result = pack_streams(source, &layout, stream_count, streams);

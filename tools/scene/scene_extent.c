@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "scene/scene_extent.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "host/reason.h"
+
+/* Reorders the values, and returns the one that would stand at count / 2 if they were sorted (Hoare's selection). */
+static double take_median(double *values, uint32_t count)
+{
+    int64_t low = 0, high = (int64_t)count - 1, wanted = count / 2;
+    while (low < high) {
+        const double pivot = values[low + (high - low) / 2];
+        int64_t left = low, right = high;
+        while (left <= right) {
+            while (values[left] < pivot) {
+                left++;
+            }
+            while (pivot < values[right]) {
+                right--;
+            }
+            if (left <= right) {
+                const double kept = values[left];
+                values[left++] = values[right];
+                values[right--] = kept;
+            }
+        }
+        if (wanted <= right) {
+            high = right;
+        } else if (wanted >= left) {
+            low = left;
+        } else {
+            break;
+        }
+    }
+    return values[wanted];
+}
+
+static double distance_of(const double position[3], const double centre[3])
+{
+    return hypot(hypot(position[0] - centre[0], position[1] - centre[1]), position[2] - centre[2]);
+}
+
+/* Fills positions[] and the largest log_scale. */
+static int read_positions(const scene_rows *rows, double (*positions)[3], double *largest, char *error,
+                          size_t error_bytes)
+{
+    scene_row row;
+    *largest = -INFINITY;
+    for (uint32_t i = 0; i < rows->count; i++) {
+        if (scene_rows_read(rows, i, &row, error, error_bytes) != 0) {
+            return -1;
+        }
+        for (int axis = 0; axis < 3; axis++) {
+            positions[i][axis] = row.position[axis];
+            *largest = fmax(*largest, row.log_scale[axis]);
+        }
+    }
+    return 0;
+}
+
+int scene_extent_exponent(const scene_extent *extent)
+{
+    int exponent;
+    (void)frexp(extent->typical, &exponent);
+    return exponent - 1;
+}
+
+static double reach_of(const scene_extent *extent)
+{
+    return ldexp(SCENE_REACH, scene_extent_exponent(extent));
+}
+
+bool scene_extent_holds(const scene_extent *extent, const double position[3])
+{
+    return distance_of(position, extent->centre) <= reach_of(extent);
+}
+
+static scene_extent measure(double (*positions)[3], double *values, uint32_t count, double largest)
+{
+    scene_extent extent = {.far = 0};
+    for (int axis = 0; axis < 3; axis++) {
+        for (uint32_t i = 0; i < count; i++) {
+            values[i] = positions[i][axis];
+        }
+        extent.centre[axis] = take_median(values, count);
+    }
+    double farthest = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        values[i] = distance_of(positions[i], extent.centre);
+        farthest = fmax(farthest, values[i]);
+    }
+    const double median = take_median(values, count);
+    extent.typical = median > 0 ? median : farthest > 0 ? farthest : exp(fmin(fmax(largest, -30), 30));
+    for (uint32_t i = 0; i < count; i++) {
+        extent.far += values[i] > reach_of(&extent);
+    }
+    return extent;
+}
+
+int scene_extent_of(const scene_rows *rows, scene_extent *out, char *error, size_t error_bytes)
+{
+    double(*positions)[3] = malloc(rows->count * sizeof *positions);
+    double *values = malloc(rows->count * sizeof *values), largest;
+    int result = positions != NULL && values != NULL
+                     ? read_positions(rows, positions, &largest, error, error_bytes)
+                     : t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", rows->count);
+    if (result == 0) {
+        *out = measure(positions, values, rows->count, largest);
+    }
+    free(positions);
+    free(values);
+    return result;
+}
+
+bool scene_pull(scene_row *row, const double centre[3], double reach)
+{
+    const double distance = distance_of(row->position, centre);
+    if (!(distance > reach)) {
+        return false;
+    }
+    const double share = reach / distance;
+    for (int axis = 0; axis < 3; axis++) {
+        row->position[axis] = centre[axis] + share * (row->position[axis] - centre[axis]);
+        row->log_scale[axis] += log(share);
+    }
+    return true;
+}
