@@ -20,8 +20,8 @@ typedef struct count_job {
 
 #define NO_GROUP UINT32_MAX
 
-/* How pixels map to groups: to their SuperCluster, or to cluster 0 for all points; deferred pixels to the group after
- * the last SuperCluster; pixels without depth to none. */
+/* Maps pixels to groups: to their SuperCluster, or to cluster 0 for all points; deferred pixels to the group after the
+ * last SuperCluster; pixels without depth to none. */
 typedef struct grouping {
     uint32_t deferred; /* the group after the last SuperCluster */
     uint32_t labels;   /* all bits set if labels count, else 0 */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a learned head sees: T3R_FEATURES int8 channels a pixel of the working size (SPEC.md, "Head features").
+/* The input of a learned head: T3R_FEATURES int8 channels a pixel of the working size (SPEC.md, "Head features").
  *
  *   0..2  red, green, blue - 128
  *   3     retained: 127 or 0

@@ -344,7 +344,7 @@ typedef struct t3r_plan_info {
     t3r_plan_buffer buffers[T3R_BUFFER_COUNT];
 } t3r_plan_info;
 
-/* What a keyframe did to the map of a stream. */
+/* The changes of a stream's map by one keyframe. */
 typedef struct t3r_stream_report {
     /* The number of keyframes so far, including this one. */
     uint32_t keyframes;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a library may be built without, to save flash. Each switch is 1 unless the compiler's command says otherwise, as
- * -DT3R_FEATURE_STEREO=0 does: for the library, and for the programs that use it. A library without a feature refuses
- * it with T3R_ERR_UNSUPPORTED. docs/library.md lists the bytes that each saves. */
+/* Features that a library may be built without, to save flash. Each switch is 1 unless the compiler's command says
+ * otherwise, as -DT3R_FEATURE_STEREO=0 does: for the library, and for the programs that use it. A library without a
+ * feature refuses it with T3R_ERR_UNSUPPORTED. docs/library.md lists the bytes that each saves. */
 #ifndef TRIM3R_FEATURES_H
 #define TRIM3R_FEATURES_H
 

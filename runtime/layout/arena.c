@@ -30,13 +30,13 @@ typedef struct buffer_row {
 #define ROW(with, NAME, text, buffer_bytes, first_stage, last_stage)                                                   \
     rows[T3R_BUFFER_##NAME] = (buffer_row){buffer_bytes, (t3r_stage)(first_stage), (t3r_stage)(last_stage)};
 
-/* What the public table says of a configuration; bytes are rounded up. */
+/* The public table of a configuration; bytes are rounded up. */
 typedef struct buffer_table {
     buffer_row row[T3R_BUFFER_COUNT];
     size_t full_lists, full_refine; /* bytes with which they save all the passes that they can */
 } buffer_table;
 
-/* Of a configuration `c`. What is left out no configuration asks for, and the compiler knows. */
+/* The sizes that a configuration `c` needs. The compiler removes those of features that are left out. */
 #define SHAPE                                                                                                          \
     T3R_SHAPE_(                                                                                                        \
         c->width, c->height, c->views, c->max_gaussians, t3r_cluster_count(c), c->render_width, c->render_height,      \

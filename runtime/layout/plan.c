@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a configuration needs, and which configuration an arena can hold. */
+/* Plans: the bytes that a configuration needs, and the configuration that an arena can hold. */
 #include "arena.h"
 #include "core/config.h"
 #include "core/fixed.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How much work a build is worth, as settings. */
+/* Presets: settings for an amount of work. */
 #include "core/features.h"
 #include "state/state.h"
 

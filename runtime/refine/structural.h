@@ -14,7 +14,7 @@
  */
 void t3r_structural_residuals(t3r_wanted *tile);
 
-/* How a view's residuals are weighted. */
+/* Weights of a view's residuals. */
 typedef struct t3r_structure {
     t3r_view_levels levels; /* differences of level from the other views, which don't count */
     bool contrast;          /* whether structural similarity counts */

@@ -7,20 +7,20 @@
 
 #define FAR_STEPS 60000
 #define STEPS_MOST (1u << 22)
-/* Of pictures of different places two or three in a hundred pixels match surely, by chance: less than 1/25 is nothing.
- */
+/* Pictures of different places match with confidence at 2 or 3 % of their pixels, by chance: below 1/25 nothing
+ * matches. */
 #define LEAST_SHARE 25
-/* One in so many matched pixels may be too far for the depth unit. */
+/* 1/TOO_FAR of the matched pixels may be too far for the depth unit. */
 #define TOO_FAR 64
 /* The unit is chosen from every second pixel of every second row, by eighths of octaves of baselines in Q16. */
 #define SAMPLING 2
 #define BINS 384
-/* Nor is anything resolved beyond 64 times the median. */
+/* Bins above the median: distances beyond 64 times the median are not resolved. */
 #define FARTHEST 48
-/* Less than half a pixel from where infinity is, a place is not known. */
+/* A pixel with less parallax has no known distance. */
 #define NO_PARALLAX_Q16 32768
 
-/* How far a view's pixel is: along z, in baselines = numerator / denominator. */
+/* Distance of a view's pixel along z, in baselines: numerator / denominator. */
 typedef struct distance {
     int64_t numerator_q24, denominator_q30; /* both positive */
     int32_t disparity_q16;                  /* pixels from where infinity is */
@@ -51,7 +51,7 @@ static void look_at(const t3r_kernels *kernels, const t3r_stereo_planes *planes,
     kernels->disparity_at(&plane, &seen->places, columns->count, &seen->found);
 }
 
-/* What is at one of them. */
+/* Measures the distance of sample i; false: it has none. */
 static bool see(bool polar, uint32_t side, const sight *seen, uint32_t i, distance *s)
 {
     s->confidence = (uint8_t)seen->found.confidence[i];
@@ -75,7 +75,7 @@ static bool see(bool polar, uint32_t side, const sight *seen, uint32_t i, distan
     return true;
 }
 
-/* What every second pixel of every second row shows. */
+/* Statistics of every second pixel of every second row. */
 typedef struct sample {
     uint32_t pixels, matched, still; /* matched: surely; still: of these, without parallax */
     uint32_t histogram[BINS];        /* the others, by how far they are */

@@ -502,7 +502,7 @@ static double height_of(const scene_file *scene)
     return high - low;
 }
 
-/* Where floats have steps of a half, the detail stays, and formats that can say where they are do so. */
+/* A scene whose place floats resolve to a half keeps its detail; formats with an origin keep its place, too. */
 TEST(far_from_the_origin)
 {
     for (int k = 0; k < FORMATS; k++) {

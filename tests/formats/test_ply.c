@@ -31,7 +31,8 @@ static int noise(uint32_t *seed, int most)
     return (int)(*seed % (2 * (uint32_t)most + 1)) - most;
 }
 
-/* Of every kind: full, flat, needle-like, no extent at all; all opacities and colours from end to end. */
+/* Makes Gaussians of every kind: full, flat, needle-like, no extent at all; all opacities and colours from end to end.
+ */
 static void make_gaussian(uint32_t index, t3r_gaussian *g)
 {
     uint32_t seed = index * 7919;

@@ -97,7 +97,7 @@ TEST(counts_what_is_asked_for_beyond)
     }
 }
 
-/* What does not fit at once is refined in slices, each of which draws the views. */
+/* A small arena refines the Gaussians in slices, each of which draws the views. */
 TEST(small_arenas_draw_more_often)
 {
     const t3r_config c = config_of(4000);

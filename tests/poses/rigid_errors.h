@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How far two rigid transforms are apart. */
+/* Measures the difference of two rigid transforms. */
 #ifndef TRIM3R_TESTS_RIGID_ERRORS_H
 #define TRIM3R_TESTS_RIGID_ERRORS_H
 

@@ -256,7 +256,7 @@ static void refuse(shot *shots, poses_source source, const char *why)
     }
 }
 
-/* What the camera sees when it only turns by q: new pixels look the picture up along the turned ray. */
+/* Turns the camera by q alone: each new pixel takes the picture's colour along the turned ray. */
 static void turn_picture(shot *s, const double q[4])
 {
     uint8_t *out = malloc(SIDE * SIDE * 3);

@@ -90,7 +90,7 @@ TEST(test_resection)
     assert_non_null(strstr(error, "do not lie on the pixels' rays"));
 }
 
-/* What is stored is the pose to a rounding, in the world of the first camera's own. */
+/* The stored pose equals the given one but for rounding, in the world of the first camera. */
 TEST(test_storing)
 {
     for (int trial = 0; trial < 200; trial++) {

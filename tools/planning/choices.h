@@ -13,7 +13,7 @@
 #define CHOICES_MOST 48u /* of one head */
 #define CHOICES_ANY_REFINE UINT32_MAX
 
-/* What a build may take, and what is given. */
+/* Limits of a build, and settings that are fixed. */
 typedef struct choice_limits {
     size_t bytes;              /* bytes of the arena; 0 = any */
     double most;               /* price of a build; 0 = any */

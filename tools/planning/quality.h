@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a new view loses against the best settings measured, in 1/16 dB of PSNR, by head, passes of refinement and
+/* Loss of a new view against the best settings measured, in 1/16 dB of PSNR, by head, passes of refinement and
  * percent of the points kept: docs/study/cost.md. tools/study/scripts/cost --write makes this file. */
 #ifndef TRIM3R_TOOLS_QUALITY_H
 #define TRIM3R_TOOLS_QUALITY_H

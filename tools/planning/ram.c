@@ -22,7 +22,7 @@ typedef struct ram_row {
 static const ram_row rows[] = {RAM_ROWS(ROW)};
 enum { ROWS = sizeof rows / sizeof rows[0] };
 
-/* What takes RAM, in the order of the tables. */
+/* Users of RAM, in the order of the tables. */
 enum { ARENA, STRIP, TARGET, STACK, PROGRAM, LEFT, PARTS };
 static const struct {
     const char *key, *name;

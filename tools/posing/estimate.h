@@ -14,7 +14,7 @@
 
 #define POSES_WHY_BYTES 256
 
-/* What an estimate rests on, or why there is none. */
+/* Evidence of an estimate, or the reason why there is none. */
 typedef struct pose_account {
     char why[POSES_WHY_BYTES];              /* why the view has no pose; "" = it has one */
     uint32_t from;                          /* the view that it was made from, or could not be; its own number: none */

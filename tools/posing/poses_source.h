@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where poses come from, and how the option --poses names it. */
+/* Sources of poses, and their names in the option --poses. */
 #ifndef TRIM3R_TOOLS_POSES_SOURCE_H
 #define TRIM3R_TOOLS_POSES_SOURCE_H
 

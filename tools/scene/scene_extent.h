@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where the Gaussians of a scene are. All values are medians, so that a few Gaussians far away change nothing. */
+/* Place and size of a scene. All values are medians, so that a few Gaussians far away change nothing. */
 #ifndef TRIM3R_TOOLS_SCENE_EXTENT_H
 #define TRIM3R_TOOLS_SCENE_EXTENT_H
 

@@ -11,7 +11,7 @@
 
 #define SCENE_FILE_SUFFIXES_BYTES 96
 
-/* What reading changed. */
+/* Changes that reading made. */
 typedef struct scene_remarks {
     uint32_t pulled;  /* Gaussians beyond the fixed point, moved to its end (scene_pull()) */
     uint32_t clipped; /* Gaussians with harmonics beyond 8, which are 8 now */

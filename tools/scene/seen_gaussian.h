@@ -9,7 +9,7 @@
 #include "core/scene_frame.h"
 #include "trim3r.h"
 
-/* What the Gaussians of a scene have beside those of the runtime. */
+/* Traits that Gaussians of the runtime lack. */
 typedef struct seen_traits {
     uint32_t degree; /* of the harmonics, 0..3; 0: the colour is the Gaussian's */
     /* Opacities are those of mip-splatting ("antialiased"): a Gaussian that is widened to the size of a pixel is made

@@ -17,7 +17,7 @@ static double clamped(double x, double limit)
     return x < -limit ? -limit : x > limit ? limit : x;
 }
 
-/* What the forward and the backward pass share. */
+/* Values that the forward and the backward pass share. */
 typedef struct projection {
     double t[3];         /* camera coordinates */
     double axes[9];      /* R(q), row-major */

@@ -9,7 +9,7 @@
 #include "host/little_floats.h"
 #include "host/reason.h"
 
-/* What is left of the file's rows. */
+/* The file's rows that are still to be read. */
 typedef struct rows_left {
     const uint8_t *at, *end;
 } rows_left;
