@@ -15,8 +15,9 @@ except ImportError:
     print("skipped: numpy is not there")
     sys.exit(77)
 
-from common import check, done, run  # noqa: E402
+from checks import check, done  # noqa: E402
 import frames  # noqa: E402
+from program import run  # noqa: E402
 import ros_bag as ros  # noqa: E402
 from ros_bag import Bag, SECOND  # noqa: E402
 
