@@ -90,6 +90,37 @@ static int read_colour(const reading *r, t3r_frame *frame)
     return wrong == NULL ? 0 : fail(r, stream, message, wrong);
 }
 
+/* Whether depth that is taken to be of colour's lens has another aspect, by more than a pixel. trim3r's own recordings
+ * hold what was captured. */
+static bool is_stretched(const reading *r, const t3r_frame *frame)
+{
+    const t3r_recording *recording = r->recording;
+    const t3r_text depth = recording->streams[recording->depth].frame_id,
+                   colour = recording->streams[recording->colour].frame_id;
+    if (recording->bits_epoch != 0 || recording->depth_camera_info != T3R_NO_STREAM ||
+        (depth.count > 0 && !t3r_text_same(depth, colour))) {
+        return false;
+    }
+    const int64_t difference =
+        (int64_t)frame->depth_width * frame->height - (int64_t)frame->depth_height * frame->width;
+    return llabs(difference) > (frame->width > frame->height ? frame->width : frame->height);
+}
+
+/* Checks the sides of depth beside those of colour. */
+static int check_aspect(const reading *r, size_t link, const t3r_frame *frame)
+{
+    const t3r_stream *stream = &r->recording->streams[r->recording->depth];
+    if (!is_stretched(r, frame)) {
+        return 0;
+    }
+    char what[192];
+    t3r_reason(what, sizeof what,
+               "depth is %" PRIu32 "x%" PRIu32 " and colour %" PRIu32 "x%" PRIu32
+               ": another aspect needs intrinsics of its own (--depth-camera-info-topic)",
+               frame->depth_width, frame->depth_height, frame->width, frame->height);
+    return fail(r, stream, &stream->messages[link], what);
+}
+
 static int read_depth(const reading *r, size_t link, t3r_frame *frame)
 {
     const t3r_stream *stream = &r->recording->streams[r->recording->depth];
@@ -192,7 +223,7 @@ static int read_frame(const reading *r, t3r_capture_frame *frame, char *lost, si
     }
     if (links->depth != T3R_NO_MESSAGE) {
         result.depth_stamp_ns = recording->streams[recording->depth].messages[links->depth].stamp_ns;
-        if (read_depth(r, links->depth, &result.frame) != 0) {
+        if (read_depth(r, links->depth, &result.frame) != 0 || check_aspect(r, links->depth, &result.frame) != 0) {
             if (lost == NULL) {
                 return T3R_CAPTURE_FAILED;
             }

@@ -275,6 +275,9 @@ def depth_of_another_aspect_needs_its_own_lens():
             check(imported(bag)["depth_frames"] == 1, f"{size}")
             continue
         check("--depth-camera-info-topic" in imported(bag, status=1), f"{size}")
+        for command in (("build", "bag.mcap", "--context", "0,0", "--gaussians", "9", "-o", "s.ply"), ("info", "bag.mcap")):
+            code, _, error = run(*command)
+            check(code == 1 and "another aspect" in error, f"{command[0]}, {size}: {error}")
         bag.put("/other/info", ros.INFO, SECOND, ros.info(SECOND, "cam", size=(size[1], size[0])))
         check(imported(bag, "--depth-camera-info-topic", "/other/info")["registered"] == 1, f"{size}, registered")
 

@@ -320,13 +320,6 @@ static bool put_registered(bag_frames *b, uint32_t index, t3r_frame *f, const le
     return true;
 }
 
-/* Whether depth of colour's lens has colour's aspect, to a pixel. */
-static bool has_aspect(const t3r_frame *f)
-{
-    const int64_t difference = (int64_t)f->depth_width * f->height - (int64_t)f->depth_height * f->width;
-    return llabs(difference) < (f->width > f->height ? f->width : f->height);
-}
-
 static int make_depth(bag_frames *b, uint32_t index, t3r_capture_frame *frame, char *error, size_t error_bytes)
 {
     t3r_frame *f = &frame->frame;
@@ -341,12 +334,6 @@ static int make_depth(bag_frames *b, uint32_t index, t3r_capture_frame *frame, c
         if (!same_frame) {
             remark(b, "depth has no camera_info of its own, so none is registered", from, b->camera);
             drop_depth(b, f);
-        } else if (!own_lens && !has_aspect(f)) {
-            return t3r_reason(error, error_bytes,
-                              "depth is %" PRIu32 "x%" PRIu32 " and colour %" PRIu32 "x%" PRIu32
-                              ": another aspect needs a camera_info of depth's own, which --depth-camera-info-topic "
-                              "names",
-                              f->depth_width, f->depth_height, f->width, f->height);
         }
         return 0;
     }
