@@ -15,16 +15,21 @@ static int by_stamp(const void *left, const void *right)
     if (a->stamp_ns != b->stamp_ns) {
         return a->stamp_ns < b->stamp_ns ? -1 : 1;
     }
+    if (a->log_ns != b->log_ns) {
+        return a->log_ns < b->log_ns ? -1 : 1;
+    }
     return a->order < b->order ? -1 : a->order > b->order;
 }
 
-/* Returns the first message not before `stamp` in a stream sorted by stamp; the stream's count if there is none. */
-static size_t first_from(const t3r_stream *stream, int64_t stamp)
+/* Returns the first message not before `stamp` and, of those of that stamp, not logged before `log`, in a stream sorted
+ * by both; the stream's count if there is none. */
+static size_t first_from(const t3r_stream *stream, int64_t stamp, int64_t log)
 {
     size_t low = 0, high = stream->kept;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
-        if (stream->messages[middle].stamp_ns < stamp) {
+        const t3r_indexed_message *message = &stream->messages[middle];
+        if (message->stamp_ns < stamp || (message->stamp_ns == stamp && message->log_ns < log)) {
             low = middle + 1;
         } else {
             high = middle;
@@ -33,19 +38,24 @@ static size_t first_from(const t3r_stream *stream, int64_t stamp)
     return low;
 }
 
-/* Returns the message of the same stamp, else the nearest; of two equally near the earlier. */
-static size_t nearest(const t3r_stream *stream, int64_t stamp)
+/* Returns the message of the same stamp, of several the one logged nearest to `of`; else the message of the nearest
+ * stamp; of two equally near the earlier. */
+static size_t nearest(const t3r_stream *stream, const t3r_indexed_message *of)
 {
-    size_t after = first_from(stream, stamp);
+    size_t after = first_from(stream, of->stamp_ns, of->log_ns);
     if (after == 0) {
         return stream->kept > 0 ? 0 : T3R_NO_MESSAGE;
     }
     if (after == stream->kept) {
         return after - 1;
     }
-    int64_t gap_after = stream->messages[after].stamp_ns - stamp;
-    int64_t gap_before = stamp - stream->messages[after - 1].stamp_ns;
-    return gap_after == 0 || gap_after < gap_before ? after : after - 1;
+    const t3r_indexed_message *next = &stream->messages[after], *last = next - 1;
+    int64_t gap_after = next->stamp_ns - of->stamp_ns, gap_before = of->stamp_ns - last->stamp_ns;
+    if (gap_after == 0 && gap_before == 0) {
+        gap_after = next->log_ns - of->log_ns;
+        gap_before = of->log_ns - last->log_ns;
+    }
+    return gap_after < gap_before ? after : after - 1;
 }
 
 static int by_value(const void *left, const void *right)
@@ -138,14 +148,14 @@ static int64_t *usable_stamps(t3r_recording *recording, char *error, size_t erro
 
 /* Returns the nearest message within near_ns, unless its stamp is exactly another colour image's; widens *worst_ns to
  * its distance. */
-static size_t pair_near(const t3r_stream *stream, int64_t stamp, const int64_t *taken, size_t taken_count,
-                        int64_t near_ns, int64_t *worst_ns)
+static size_t pair_near(const t3r_stream *stream, const t3r_indexed_message *of, const int64_t *taken,
+                        size_t taken_count, int64_t near_ns, int64_t *worst_ns)
 {
-    size_t found = nearest(stream, stamp);
+    size_t found = nearest(stream, of);
     if (found == T3R_NO_MESSAGE) {
         return found;
     }
-    int64_t gap = stream->messages[found].stamp_ns - stamp;
+    int64_t gap = stream->messages[found].stamp_ns - of->stamp_ns;
     gap = gap < 0 ? -gap : gap;
     if (gap > near_ns ||
         (gap > 0 && bsearch(&stream->messages[found].stamp_ns, taken, taken_count, sizeof *taken, by_value) != NULL)) {
@@ -159,7 +169,7 @@ static size_t pair_near(const t3r_stream *stream, int64_t stamp, const int64_t *
  * first. */
 static size_t pair_standing(const t3r_stream *stream, int64_t stamp)
 {
-    size_t after = first_from(stream, stamp);
+    size_t after = first_from(stream, stamp, INT64_MIN);
     if (stream->kept == 0) {
         return T3R_NO_MESSAGE;
     }
@@ -206,11 +216,11 @@ int t3r_recording_pair(t3r_recording *recording, char *error, size_t error_bytes
     pairing->frames = (uint32_t)colour->kept;
     for (size_t i = 0; i < colour->kept; i++) {
         t3r_frame_links *links = &recording->links[i];
-        int64_t stamp = colour->messages[i].stamp_ns;
-        links->depth = pair_near(depth, stamp, taken, colour->kept, recording->pair_ns, &pairing->worst_depth_gap_ns);
-        links->pose = pair_near(pose, stamp, taken, colour->kept, recording->pair_ns, &pairing->worst_pose_gap_ns);
-        links->camera_info = pair_standing(camera_info, stamp);
-        links->depth_camera_info = pair_standing(depth_info, stamp);
+        const t3r_indexed_message *image = &colour->messages[i];
+        links->depth = pair_near(depth, image, taken, colour->kept, recording->pair_ns, &pairing->worst_depth_gap_ns);
+        links->pose = pair_near(pose, image, taken, colour->kept, recording->pair_ns, &pairing->worst_pose_gap_ns);
+        links->camera_info = pair_standing(camera_info, image->stamp_ns);
+        links->depth_camera_info = pair_standing(depth_info, image->stamp_ns);
         pairing->with_depth += links->depth != T3R_NO_MESSAGE;
         pairing->with_pose += links->pose != T3R_NO_MESSAGE;
         pairing->with_intrinsics += links->camera_info != T3R_NO_MESSAGE;

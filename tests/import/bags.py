@@ -178,6 +178,13 @@ def clocks_that_begin_again():
         check("log times" in report["note"] and "log times" in info()["note"], f"{name}: {report['note']}")
     check(run("replay", "out.mcap", "--gaussians", "9")[0] == 0, "what is written replays")
     bag = Bag()
+    for i, stamp in enumerate((1, 1, 2, 2)):
+        ns, log = stamp * SECOND, (i + 1) * SECOND
+        bag.put("/cam/depth", ros.IMAGE, log, ros.image(ns, "cam", "16UC1", ros.steps(1000 + i)))
+        bag.put("/cam/image", ros.IMAGE, log, ros.image(ns, "cam", "rgb8", ros.colour(i)))
+    depths = [z[0, 0] for z in imported(bag)["read"]["depth"]]
+    check(depths == list(range(1000, 1004)), f"repeated stamps are paired by log times: {depths}")
+    bag = Bag()
     for stamp in (1, 2, 1, 2):
         bag.put("/cam/image", ros.IMAGE, stamp * SECOND, ros.image(stamp * SECOND, "cam", "rgb8", ros.colour(stamp)))
     check(imported(bag)["frames"] == 4, "images alone need no pairing")
