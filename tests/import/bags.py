@@ -15,7 +15,9 @@ except ImportError:
     print("skipped: numpy is not there")
     sys.exit(77)
 
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../capture/vm"))
 from checks import check, done  # noqa: E402
+import flat_jpeg  # noqa: E402
 import frames  # noqa: E402
 from program import run  # noqa: E402
 import ros_bag as ros  # noqa: E402
@@ -244,6 +246,23 @@ def bad_images_are_left_out():
     check("/cam/depth" in imported(bag, status=1), "a bag whose depth is all bad is refused")
 
 
+def jpegs_without_their_end():
+    whole = flat_jpeg.jpeg(ros.WIDTH, ros.HEIGHT, [[(120, 120, 100, 160)] * (ros.WIDTH // 16)] * (ros.HEIGHT // 8))
+    rows = flat_jpeg.rgb(120, 100, 160) * (ros.WIDTH * ros.HEIGHT)
+    for name, data, good in (("no end marker", whole[:-2], True), ("half", whole[:-(len(whole) // 20) - 2], False),
+                             ("empty", b"", False)):
+        bag = Bag()
+        for i, jpeg in enumerate((whole, data, whole)):
+            ns = (i + 1) * SECOND
+            bag.put("/cam/image/compressed", ros.COMPRESSED, ns, ros.compressed(ns, "cam", "jpeg", jpeg))
+        report = imported(bag)
+        check(report["frames"] == 2 + good and report["frames_left_out"] == (not good), f"{name}: {report['frames']}")
+        check(all(picture.tobytes() == rows for picture in report["read"]["image"]), f"{name}: pixels")
+        check(info()["frames"] == 3, f"{name}: info")
+        if not good:
+            check("frame 1, /cam/image/compressed" in imported(bag, "--strict", status=1), f"{name}: --strict")
+
+
 def triplets_follow_the_frames():
     """Triplets without the frame that is left out are kept, with new numbers."""
     bag = camera(Bag(), count=1)
@@ -371,7 +390,7 @@ with tempfile.TemporaryDirectory() as work:
     os.chdir(work)
     for case in (depth_is_chosen_by_name_and_type, poses_are_not_goals, colour_is_chosen_by_votes, intrinsics_are_of_the_same_frame,
                  channels_of_a_topic_are_one_stream, clocks_that_begin_again, bad_poses_are_left_out, bad_images_are_left_out,
-                 triplets_follow_the_frames, rectified_images_have_the_lens_of_p, depth_of_another_aspect_needs_its_own_lens, encodings, depth_units, other_files,
+                 jpegs_without_their_end, triplets_follow_the_frames, rectified_images_have_the_lens_of_p, depth_of_another_aspect_needs_its_own_lens, encodings, depth_units, other_files,
                  folders_of_rosbag2):
         case()
     done()
