@@ -117,6 +117,30 @@ bool t3r_mcap_pair_of(t3r_mcap_fields *pairs, t3r_text *key, t3r_text *value)
     return !pairs->failed;
 }
 
+/* Returns what another file is, by its first bytes, and what turns it into a recording; NULL if it is not known. */
+static const char *other_file(const uint8_t *bytes, size_t count)
+{
+    static const struct {
+        size_t at, bytes;
+        const char *start, *what;
+    } files[] = {
+        {0, 7, "SQLite ", "a bag in SQLite (.db3): mcap convert FILE.db3 FILE.mcap makes an MCAP file of it"},
+        {0, 7, "#ROSBAG", "a bag of ROS 1: " T3R_MCAP_FROM_ROS1},
+        {0, 7, "rosbag2", "the list of a bag's files: name its folder"},
+        {0, 4, "\x28\xb5\x2f\xfd", "packed with zstd: zstd -d unpacks it"},
+        {0, 2, "\x1f\x8b", "packed with gzip: gzip -d unpacks it"},
+        {0, 4, "PK\3\4", "a ZIP archive: unzip it, and import the folder"},
+        {4, 4, "ftyp", "a video or HEIC picture: ffmpeg -i FILE FOLDER/%05d.png makes a folder of pictures"},
+        {0, 4, "\x1a\x45\xdf\xa3", "a video: ffmpeg -i FILE FOLDER/%05d.png makes a folder of pictures"},
+    };
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+        if (count >= files[i].at + files[i].bytes && memcmp(bytes + files[i].at, files[i].start, files[i].bytes) == 0) {
+            return files[i].what;
+        }
+    }
+    return NULL;
+}
+
 const char *t3r_mcap_magic_error(const uint8_t *bytes, size_t count)
 {
     size_t compared = count < T3R_MCAP_MAGIC_BYTES ? count : T3R_MCAP_MAGIC_BYTES;
@@ -126,7 +150,10 @@ const char *t3r_mcap_magic_error(const uint8_t *bytes, size_t count)
     if (memcmp(bytes, T3R_MCAP_MAGIC, compared) != 0) {
         bool other_version = count >= T3R_MCAP_MAGIC_BYTES && memcmp(bytes, T3R_MCAP_MAGIC, 5) == 0 &&
                              memcmp(bytes + 6, &T3R_MCAP_MAGIC[6], 2) == 0;
-        return other_version ? "byte 5: an MCAP version other than 0" : "byte 0: not an MCAP file";
+        const char *other = other_file(bytes, count);
+        return other_version   ? "byte 5: an MCAP version other than 0"
+               : other != NULL ? other
+                               : "byte 0: not an MCAP file";
     }
     return count < T3R_MCAP_MAGIC_BYTES ? "cut off inside the magic of its first 8 bytes" : NULL;
 }

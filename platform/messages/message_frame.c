@@ -85,7 +85,7 @@ const char *t3r_message_depth(const t3r_ros_image *image, t3r_frame *frame)
 
 /* Converts metres, a float's bits, to steps of the unit: to Q40, then divided, both round-half-even. 0 = no
  * measurement: NaN, infinity, zero, behind the camera, or more than 65535 steps. */
-static uint16_t steps_of_metres(uint32_t bits, uint64_t unit_q40)
+static uint16_t steps_of_metres(uint32_t bits, uint64_t unit_q40, uint32_t *beyond)
 {
     int64_t depth_q40;
     if (t3r_fixed_from_float(bits, 40, &depth_q40) != 0 || depth_q40 <= 0) {
@@ -93,6 +93,7 @@ static uint16_t steps_of_metres(uint32_t bits, uint64_t unit_q40)
     }
     uint64_t steps = (uint64_t)depth_q40 / unit_q40, rest = (uint64_t)depth_q40 % unit_q40;
     steps += rest > unit_q40 - rest || (rest == unit_q40 - rest && (steps & 1) != 0);
+    *beyond += steps > UINT16_MAX;
     return steps <= UINT16_MAX ? (uint16_t)steps : 0;
 }
 
@@ -108,17 +109,20 @@ static uint32_t load32(const t3r_ros_image *image, const uint8_t *sample)
     return image->is_bigendian ? __builtin_bswap32(value) : value;
 }
 
-void t3r_message_to_z16(const t3r_ros_image *image, uint64_t unit_q40, uint8_t *out)
+uint32_t t3r_message_to_z16(const t3r_ros_image *image, uint64_t unit_q40, uint8_t *out)
 {
     const bool metres = t3r_message_is_metres(image);
+    uint32_t beyond = 0;
     for (uint32_t y = 0; y < image->height; y++) {
         const uint8_t *row = image->data + (size_t)y * image->step;
         for (uint32_t x = 0; x < image->width;
              x++, out += 2) { /* in place: a sample is read before it is overwritten */
             const uint8_t *sample = row + (size_t)x * (metres ? 4 : 2);
-            t3r_store_le16(out, metres ? steps_of_metres(load32(image, sample), unit_q40) : load16(image, sample));
+            t3r_store_le16(out,
+                           metres ? steps_of_metres(load32(image, sample), unit_q40, &beyond) : load16(image, sample));
         }
     }
+    return beyond;
 }
 
 static bool is_zero(uint64_t f64)
@@ -190,6 +194,60 @@ const char *t3r_message_intrinsics(const t3r_ros_camera_info *info, t3r_camera *
         return "K[5] (cy)" CENTRE_RANGE;
     }
     return read_distortion(info, camera);
+}
+
+const char *t3r_message_rectify(t3r_ros_camera_info *info)
+{
+    bool distorted = false;
+    for (uint32_t i = 0; i < info->d_count; i++) {
+        distorted = distorted || !is_zero(info->d_f64[i]);
+    }
+    if (is_zero(info->p_f64[0])) { /* P is not filled in */
+        return distorted ? "P is 0, but images of a rectified topic need it" : NULL;
+    }
+    for (uint32_t i = 0; i < 9; i++) {
+        info->k_f64[i] = info->p_f64[i / 3 * 4 + i % 3];
+    }
+    info->d_count = 0;
+    info->distortion_model = (t3r_text){"", 0};
+    return NULL;
+}
+
+/* Whether a quaternion's largest part is between 2^-20 and 2^19, so that it can be normalised. */
+static bool has_direction(const uint64_t rotation_f64[4])
+{
+    int64_t largest = 0;
+    for (uint32_t i = 0; i < 4; i++) {
+        int64_t part;
+        if (t3r_fixed_from_double(rotation_f64[i], 30, &part) != 0) {
+            return false;
+        }
+        part = part < 0 ? -part : part;
+        largest = part > largest ? part : largest;
+    }
+    return largest >= INT64_C(1) << 10 && largest <= INT64_C(1) << 49;
+}
+
+const char *t3r_message_pose_error(const t3r_ros_pose *pose)
+{
+    for (uint32_t i = 0; i < 3; i++) {
+        int64_t part;
+        if (t3r_fixed_from_double(pose->position_f64[i], 32, &part) != 0) {
+            return "a position is not a number within -2^31..2^31";
+        }
+    }
+    return has_direction(pose->rotation_f64) ? NULL : "a rotation has no direction: it is zero or not a number";
+}
+
+const char *t3r_message_transform_error(const t3r_ros_pose *transform)
+{
+    if (transform->header.frame_id.count == 0 || transform->child_frame_id.count == 0) {
+        return "a frame has no name";
+    }
+    if (t3r_text_same(transform->header.frame_id, transform->child_frame_id)) {
+        return "a frame is above itself";
+    }
+    return t3r_message_pose_error(transform);
 }
 
 const char *t3r_message_pose(const t3r_ros_pose *pose, t3r_camera *camera)

@@ -21,11 +21,18 @@ bool t3r_message_is_z16(const t3r_ros_image *image);
  * t3r_message_to_z16() then, with rows of depth_stride_bytes. */
 const char *t3r_message_depth(const t3r_ros_image *image, t3r_frame *frame);
 /* Converts the samples of such an image to steps of the unit, width x height x 2 bytes; `out` may be the start of the
- * samples. */
-void t3r_message_to_z16(const t3r_ros_image *image, uint64_t unit_q40, uint8_t *out);
+ * samples. Returns how many lie beyond 65535 steps, which become 0. */
+uint32_t t3r_message_to_z16(const t3r_ros_image *image, uint64_t unit_q40, uint8_t *out);
 
 /* Fills in focal lengths, centre and distortion; the caller must compare the size in `info`. */
 const char *t3r_message_intrinsics(const t3r_ros_camera_info *info, t3r_camera *camera);
+/* Replaces K and D by what holds for rectified images: the left part of P, and no distortion. */
+const char *t3r_message_rectify(t3r_ros_camera_info *info);
+/* Checks that a pose is one: a position of numbers and a rotation with a direction. Drivers send others while they do
+ * not know the pose. */
+const char *t3r_message_pose_error(const t3r_ros_pose *pose);
+/* Checks the same of a transform, and that its two frames have names, and different ones. */
+const char *t3r_message_transform_error(const t3r_ros_pose *transform);
 /* Fills in position and rotation. */
 const char *t3r_message_pose(const t3r_ros_pose *pose, t3r_camera *camera);
 

@@ -23,6 +23,19 @@ bool t3r_pixel_format_of(t3r_text encoding, t3r_pixel_format *format)
             return true;
         }
     }
+    *format = T3R_PIXEL_BGR24;
+    return t3r_text_is(encoding, "8UC3"); /* OpenCV's three channels are blue, green and red */
+}
+
+bool t3r_pixel_is_converted(t3r_text encoding)
+{
+    static const char *const names[] = {"rgba8",       "bgra8",       "8UC4",       "bayer_rggb8",
+                                        "bayer_bggr8", "bayer_gbrg8", "bayer_grbg8"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (t3r_text_is(encoding, names[i])) {
+            return true;
+        }
+    }
     return false;
 }
 

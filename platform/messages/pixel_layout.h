@@ -14,6 +14,9 @@ const char *t3r_pixel_encoding(t3r_pixel_format format);
 /* Finds the format of an encoding, also by V4L2's names. False if it is none of trim3r's colour formats. */
 bool t3r_pixel_format_of(t3r_text encoding, t3r_pixel_format *format);
 
+/* Whether an encoding of ROS is one of colour that only import converts: rgba8, bgra8, 8UC4, bayer in 8 bits. */
+bool t3r_pixel_is_converted(t3r_text encoding);
+
 /* Returns the bytes of a row of plane 0 without padding. */
 uint32_t t3r_pixel_row_bytes(t3r_pixel_format format, uint32_t width);
 /* Returns the rows of plane 0 or plane 1 (0 except for NV12). */

@@ -18,6 +18,15 @@ bool t3r_ros_is_named(t3r_ros_type type, t3r_text name)
 }
 
 static const char *const bad_encapsulation = "the encapsulation is not plain CDR";
+
+/* Returns why a message is not plain CDR. */
+static const char *encapsulation_error(const uint8_t *bytes, size_t count)
+{
+    return count >= 4 && memcmp(bytes, "\x28\xb5\x2f\xfd", 4) == 0
+               ? "each message is packed with zstd: ros2 bag convert unpacks them"
+               : bad_encapsulation;
+}
+
 static const char *const data_cut_short = "data is cut short";
 
 static const char *get_header(t3r_cdr_reader *in, t3r_ros_header *header)
@@ -35,7 +44,7 @@ static const char *get_header(t3r_cdr_reader *in, t3r_ros_header *header)
 static const char *open_message(t3r_cdr_reader *in, const uint8_t *bytes, size_t count, t3r_ros_header *header)
 {
     t3r_cdr_open(in, bytes, count);
-    return in->failed ? bad_encapsulation : get_header(in, header);
+    return in->failed ? encapsulation_error(bytes, count) : get_header(in, header);
 }
 
 static void get_f64s(t3r_cdr_reader *in, uint64_t *values, uint32_t count)

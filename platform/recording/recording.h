@@ -12,6 +12,7 @@
 #include "host/text.h"
 #include "mcap/packer.h"
 #include "messages/fixed_camera.h"
+#include "messages/ros_messages.h"
 
 typedef struct t3r_triplet {
     uint32_t context[2];
@@ -21,21 +22,26 @@ typedef struct t3r_triplet {
 /* ---- reading ------------------------------------------------------------------------------------- */
 
 /* The contents that are read, whatever program wrote the file:
- *   colour  the first sensor_msgs/Image topic in rgb8, bgr8, yuv422_yuy2 (yuyv), yuv422 (uyvy) or nv12 (Y plane, then
- *           UV, rows of `step` bytes), else the first sensor_msgs/CompressedImage topic, else the first in mono8
+ *   colour  sensor_msgs/Image in rgb8, bgr8 (8UC3), mono8, yuv422_yuy2 (yuyv), yuv422 (uyvy) or nv12 (Y plane, then UV,
+ *           rows of `step` bytes); with a decoder also rgba8, bgra8, 8UC4, bayer, and sensor_msgs/CompressedImage
  *   depth   16UC1 or mono16: steps of the unit in metadata "trim3r", else of 0.001; 32FC1 metres become steps of
  *           that unit: to Q40, then divided, both round-half-even; NaN, infinity, zero, what lies behind the
  *           camera or beyond 65535 steps is 0
  *   intrinsics  sensor_msgs/CameraInfo: K and D; plumb_bob, equidistant, and rational_polynomial when its terms beyond
- *           the fifth are 0; all D zero and not equidistant is T3R_DISTORTION_NONE
+ *           the fifth are 0; all D zero and not equidistant is T3R_DISTORTION_NONE. A topic with the word "rect" has
+ *           rectified images: P and no distortion
  *   pose    geometry_msgs/PoseStamped, TransformStamped (child to frame), PoseWithCovarianceStamped or
  *           nav_msgs/Odometry: camera to world
- * Depth, intrinsics and pose come from the topic below the colour topic's prefix ("/camera/"), else from the only one
- * in the file. Of several depth topics, the ones that share the longest prefix with the colour topic are candidates:
- * the first in colour's frame, else the first; uncompressed before compressed. A t3r_recording_choice names topics
- * instead. A colour image is paired with the depth and pose of the same header.stamp, else with the nearest within
+ * For each of these, types, names, frames and intrinsics vote (recording_choice.c); a t3r_recording_choice names topics
+ * instead. camera_info must share the frame of its images. Topics whose names say infrared, confidence or the like are
+ * no depth, and goals are no poses. If topics of several cameras are equally good, none is used; of colour the first
+ * one is, and t3r_recording_asks() lists them. Several channels of one topic are one stream. A message or transform
+ * that cannot be read is left out and counted, unless the choice is strict.
+ *
+ * A colour image is paired with the depth and pose of the same header.stamp, else with the nearest within
  * 20 ms, unless they have exactly another colour image's stamp. Intrinsics hold from their stamp on, the first ones
- * also before. A stamp of 0 means the log time.
+ * also before. A stamp of 0 means the log time. If the stamps of the colour images go back, log times replace all
+ * stamps.
  *
  * Doubles become fixed point by t3r_fixed_from_double(): intrinsics Q16, distortion Q24, position Q32, rotation Q30;
  * the depth unit is decimal text, to Q40. NaN and values outside the ranges of t3r_camera are refused. */
@@ -52,7 +58,10 @@ t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *err
 typedef struct t3r_recording_choice {
     const char *colour, *depth, *pose, *camera_info;
     const char *depth_camera_info; /* NULL: the one below depth's prefix, if this is not colour's */
+    const t3r_camera *intrinsics;  /* of all colour images; NULL: those of camera_info */
+    bool strict;                   /* refuse a recording with a message that cannot be read */
     int64_t pair_ns;               /* largest distance of depth and pose from colour; 0: 20 ms */
+    uint64_t depth_unit_q40;       /* a step of 16-bit depth where the file does not state it; 0: 0.001 */
 } t3r_recording_choice;
 /* Opens a recording by a choice; fails if a name is no topic of that kind. */
 t3r_recording *t3r_recording_open_chosen(const char *path, const t3r_recording_choice *choice, char *error,
@@ -69,6 +78,8 @@ typedef struct t3r_decoded_image {
 typedef struct t3r_image_decoder {
     int (*decode)(void *user, t3r_text format, const uint8_t *bytes, size_t count, bool depth, uint64_t unit_q40,
                   t3r_decoded_image *out, char *error, size_t error_bytes);
+    /* Converts an image of an encoding for which t3r_pixel_is_converted() holds. */
+    int (*convert)(void *user, const t3r_ros_image *image, t3r_decoded_image *out, char *error, size_t error_bytes);
     void *user;
 } t3r_image_decoder;
 void t3r_recording_set_decoder(t3r_recording *recording, t3r_image_decoder decoder);
@@ -80,6 +91,11 @@ uint32_t t3r_recording_frame_count(const t3r_recording *recording);
  * read at the same time. */
 int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capture_frame *frame, char *error,
                         size_t error_bytes);
+
+/* Does the same, but leaves out depth or a pose that cannot be read, with the reasons in lost[] ("" if nothing is left
+ * out). */
+int t3r_recording_frame_readable(const t3r_recording *recording, uint32_t index, t3r_capture_frame *frame, char *lost,
+                                 size_t lost_bytes, char *error, size_t error_bytes);
 
 /* Gives frame `index` this pose, replacing the file's if there is one: for estimated poses. Camera to world, as in
  * t3r_camera. Returns 0, or -1 when memory is out or there is no such frame. */
@@ -101,6 +117,9 @@ t3r_recording_cut t3r_recording_cut_of(const t3r_recording *recording);
 /* Returns why the frames of a bag from elsewhere need import, or "": its images are compressed, its depth is from
  * another camera, or its poses are transforms or belong to another frame, unless t3r_recording_set_pose() set some. */
 const char *t3r_recording_import_reason(const t3r_recording *recording);
+/* Returns "", or which topics are equally good for the colour images: "..., name one with --colour-topic". The first
+ * one is taken then, for a look at the recording. */
+const char *t3r_recording_asks(const t3r_recording *recording);
 /* Returns "" or a remark such as "cut off after 12 of its messages". */
 const char *t3r_recording_note(const t3r_recording *recording);
 /* Returns the bits epoch of the recording; 0 = not written by trim3r. */
@@ -123,7 +142,10 @@ extern const char *const t3r_stream_use_names[T3R_USE_COUNT];
 typedef struct t3r_stream_info {
     t3r_stream_use use;
     const char *unused; /* why it is not read, or "" */
-    bool compressed;    /* its images are JPEG or PNG files */
+    bool compressed;    /* its images are files of JPEG or PNG, or in an encoding that import converts */
+    bool rectified;     /* its images have no distortion: P of camera_info holds for them */
+    uint64_t left_out;  /* messages, or transforms, that cannot be read */
+    const char *fault;  /* "at byte N: what is wrong" of the first of them, or "" */
     const char *topic, *schema;
     uint64_t messages;
     int64_t first_ns, last_ns; /* log times */
@@ -148,6 +170,7 @@ t3r_recorded_message t3r_recording_frame_message(const t3r_recording *recording,
 /* Counts of the pairing of depth, pose and camera_info with the colour images. */
 typedef struct t3r_pairing_info {
     uint32_t frames, with_depth, with_pose, with_intrinsics;
+    bool by_log; /* stamps go back, so that log times stand in their place */
     int64_t worst_depth_gap_ns, worst_pose_gap_ns;
 } t3r_pairing_info;
 t3r_pairing_info t3r_recording_pairing(const t3r_recording *recording);
@@ -155,6 +178,10 @@ t3r_pairing_info t3r_recording_pairing(const t3r_recording *recording);
 const char *t3r_recording_clock(const t3r_recording *recording);
 /* Returns a step of its 16-bit depth in world units, Q40. */
 uint64_t t3r_recording_depth_unit_q40(const t3r_recording *recording);
+
+/* Returns how many samples of depth in metres, in the frames read so far, lie beyond 65535 steps of that unit. They
+ * count as no measurement. */
+uint64_t t3r_recording_depth_beyond(const t3r_recording *recording);
 
 /* A pose message of the file: camera (or whatever carries the frame) to world. */
 typedef struct t3r_recorded_pose {

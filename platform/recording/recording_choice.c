@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Chooses the streams that make up the frames, and gives reasons for the others. */
-#include <stdio.h>
 #include <string.h>
 
 #include "host/reason.h"
 #include "recording_index.h"
 
 #define NO_STREAM T3R_NO_STREAM
+#define MOST_COMPARED                                                                                                  \
+    4096u              /* streams that each image stream is compared with: bounds the cost of files full of topics */
 #define MOST_LEVELS 8u /* levels of a topic that are compared: bounds the cost of names full of slashes */
 
 const char *const t3r_stream_use_names[T3R_USE_COUNT] = {
@@ -37,44 +38,66 @@ static bool has_role(const t3r_recording *recording, size_t i, t3r_stream_role r
     return recording->streams[i].role == role;
 }
 
-/* Chooses the first stream that is neither compressed nor mono, else the first not mono, else the first. */
-static size_t choose_colour(const t3r_recording *recording)
+/* Whether both streams name their frames, and the same one. */
+static bool same_frame(const t3r_stream *a, const t3r_stream *b)
 {
-    size_t best = NO_STREAM;
-    uint32_t best_rank = 3;
-    for (size_t i = 0; i < recording->stream_count; i++) {
-        const t3r_stream *stream = &recording->streams[i];
-        uint32_t rank = stream->mono ? 2 : stream->compressed ? 1 : 0;
-        if (stream->role == T3R_STREAM_COLOUR && rank < best_rank) {
-            best = i;
-            best_rank = rank;
-        }
-    }
-    return best;
+    return a->frame_id.count > 0 && t3r_text_same(a->frame_id, b->frame_id);
 }
 
-/* Chooses the first stream of this role below another stream's prefix, else the only one in the file. */
-static size_t choose_companion(const t3r_recording *recording, t3r_stream_role role, size_t of)
+static bool other_frame(const t3r_stream *a, const t3r_stream *b)
 {
-    const t3r_stream *camera = &recording->streams[of];
-    size_t prefix = prefix_bytes(camera), only = NO_STREAM, count = 0;
-    for (size_t i = 0; i < recording->stream_count; i++) {
-        if (has_role(recording, i, role)) {
-            if (is_below(&recording->streams[i], camera, prefix)) {
-                return i;
-            }
-            only = i;
-            count++;
-        }
-    }
-    return count == 1 ? only : NO_STREAM;
+    return a->frame_id.count > 0 && b->frame_id.count > 0 && !t3r_text_same(a->frame_id, b->frame_id);
 }
 
-/* Ranks a depth stream among those below a prefix. */
-static uint32_t depth_rank(const t3r_recording *recording, size_t i)
+/* ---- votes ---- */
+
+/* Returns the votes for stream `i` as the companion of stream `of`; 0: it is none. */
+typedef uint32_t vote(const t3r_recording *recording, size_t i, size_t of);
+
+/* Counts the votes for a stream as camera_info of an image stream: both must share the frame. */
+static uint32_t votes_for_info(const t3r_recording *recording, size_t i, size_t of)
 {
-    const t3r_stream *stream = &recording->streams[i], *colour = &recording->streams[recording->colour];
-    return 1 + (stream->compressed ? 0u : 1u) + (t3r_text_same(stream->frame_id, colour->frame_id) ? 2u : 0u);
+    const t3r_stream *info = &recording->streams[i], *images = &recording->streams[of];
+    if (info->role != T3R_STREAM_CAMERA_INFO || other_frame(info, images)) {
+        return 0;
+    }
+    const size_t prefix = prefix_bytes(images);
+    const bool below = is_below(info, images, prefix);
+    const bool usual_name = below && strcmp(info->topic + prefix, "camera_info") == 0;
+    return 1u + (usual_name ? 1u : 0u) + (same_frame(info, images) ? 2u : 0u) + (below ? 4u : 0u);
+}
+
+static bool depth_is_of(const t3r_recording *recording, const t3r_stream *colour)
+{
+    for (size_t i = 0; i < recording->stream_count && i < MOST_COMPARED; i++) {
+        if (has_role(recording, i, T3R_STREAM_DEPTH) && !t3r_topic_is_no_depth(recording->streams[i].topic) &&
+            same_frame(&recording->streams[i], colour)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Whether an image stream has a camera_info beside it. */
+static bool has_info(const t3r_recording *recording, size_t of)
+{
+    for (size_t i = 0; i < recording->stream_count && i < MOST_COMPARED; i++) {
+        if (votes_for_info(recording, i, of) >= 4) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static uint32_t votes_for_colour(const t3r_recording *recording, size_t i, size_t of)
+{
+    (void)of;
+    const t3r_stream *stream = &recording->streams[i];
+    if (stream->role != T3R_STREAM_COLOUR) {
+        return 0;
+    }
+    return 1u + (stream->compressed ? 0u : 1u) + (depth_is_of(recording, stream) ? 1u : 0u) + (stream->mono ? 0u : 2u) +
+           (has_info(recording, i) ? 3u : 0u) + (t3r_topic_is_no_colour(stream->topic) ? 0u : 4u);
 }
 
 static size_t prefix_above(const t3r_stream *stream, size_t prefix)
@@ -85,44 +108,104 @@ static size_t prefix_above(const t3r_stream *stream, size_t prefix)
     return prefix;
 }
 
-/* Chooses depth below the longest prefix of the colour topic that has any; if that is the root, only a single
- * stream. */
-static size_t choose_depth(const t3r_recording *recording)
+/* Returns how many levels of its topic's prefix a stream shares with another. */
+static uint32_t shared_levels(const t3r_stream *stream, const t3r_stream *of)
 {
-    const t3r_stream *colour = &recording->streams[recording->colour];
-    size_t prefix = prefix_bytes(colour);
-    for (uint32_t levels = 0; prefix > 1 && levels < MOST_LEVELS; levels++, prefix = prefix_above(colour, prefix)) {
-        size_t best = NO_STREAM;
-        uint32_t best_rank = 0;
-        for (size_t i = 0; i < recording->stream_count; i++) {
-            bool candidate =
-                has_role(recording, i, T3R_STREAM_DEPTH) && is_below(&recording->streams[i], colour, prefix);
-            if (candidate && depth_rank(recording, i) > best_rank) {
-                best = i;
-                best_rank = depth_rank(recording, i);
-            }
-        }
-        if (best != NO_STREAM) {
-            return best;
+    uint32_t levels = MOST_LEVELS;
+    for (size_t prefix = prefix_bytes(of); prefix > 1 && levels > 0; prefix = prefix_above(of, prefix), levels--) {
+        if (is_below(stream, of, prefix)) {
+            return levels;
         }
     }
-    return choose_companion(recording, T3R_STREAM_DEPTH, recording->colour);
+    return 0;
 }
 
-/* Chooses the depth camera's own camera_info: the one below depth's prefix, if this is not colour's. */
+static uint32_t votes_for_depth(const t3r_recording *recording, size_t i, size_t of)
+{
+    const t3r_stream *stream = &recording->streams[i], *colour = &recording->streams[of];
+    if (stream->role != T3R_STREAM_DEPTH || t3r_topic_is_no_depth(stream->topic)) {
+        return 0;
+    }
+    return 1u + (stream->compressed ? 0u : 1u) + (t3r_topic_is_depth(stream->topic) ? 2u : 0u) +
+           (same_frame(stream, colour) ? 4u : 0u) + 8u * shared_levels(stream, colour) + (stream->mono ? 0u : 128u);
+}
+
+/* Whether poses are in the frame of the camera, and not of the camera: of things that it sees. */
+static bool is_seen_by(const t3r_stream *poses, const t3r_stream *colour)
+{
+    return same_frame(poses, colour) && !t3r_text_same(poses->child_frame_id, colour->frame_id);
+}
+
+static uint32_t votes_for_pose(const t3r_recording *recording, size_t i, size_t of)
+{
+    const t3r_stream *stream = &recording->streams[i], *colour = &recording->streams[of];
+    if (stream->role != T3R_STREAM_POSE || t3r_topic_is_goal(stream->topic) || is_seen_by(stream, colour)) {
+        return 0;
+    }
+    const bool of_camera = stream->child_frame_id.count > 0 && t3r_text_same(stream->child_frame_id, colour->frame_id);
+    return 1u + (is_below(stream, colour, prefix_bytes(colour)) ? 2u : 0u) + (of_camera ? 4u : 0u);
+}
+
+/* Returns the stream with the most votes, the first of several of one camera. *tied: as many votes are for a stream of
+ * another camera. */
+static size_t elect(const t3r_recording *recording, vote *votes, size_t of, bool *tied)
+{
+    size_t best = NO_STREAM;
+    uint32_t most = 0;
+    *tied = false;
+    for (size_t i = 0; i < recording->stream_count; i++) {
+        const uint32_t count = votes(recording, i, of);
+        if (count > most) {
+            best = i;
+            most = count;
+            *tied = false;
+        } else if (count > 0 && count == most) {
+            *tied = *tied || votes == votes_for_pose || !same_frame(&recording->streams[i], &recording->streams[best]);
+        }
+    }
+    return best;
+}
+
+static size_t elect_one(const t3r_recording *recording, vote *votes, size_t of)
+{
+    bool tied;
+    const size_t best = elect(recording, votes, of, &tied);
+    return tied ? NO_STREAM : best;
+}
+
+/* Takes the first of equally good colour topics, and notes that one must be named. */
+static size_t elect_colour(t3r_recording *recording)
+{
+    bool tied;
+    const size_t best = elect(recording, votes_for_colour, 0, &tied);
+    if (!tied) {
+        return best;
+    }
+    const uint32_t most = votes_for_colour(recording, best, 0);
+    t3r_reason(recording->asks, sizeof recording->asks, "several topics may be the colour camera's:");
+    for (size_t i = 0; i < recording->stream_count; i++) {
+        const size_t used = strlen(recording->asks);
+        if (votes_for_colour(recording, i, 0) == most && used + 96 < sizeof recording->asks) {
+            t3r_reason(recording->asks + used, sizeof recording->asks - used, "%s %.64s", i == best ? "" : ",",
+                       recording->streams[i].topic);
+        }
+    }
+    const size_t used = strlen(recording->asks);
+    t3r_reason(recording->asks + used, sizeof recording->asks - used, "; name one with --colour-topic");
+    return best;
+}
+
+/* Chooses the depth camera's own camera_info, if that is not colour's. */
 static size_t choose_depth_info(const t3r_recording *recording)
 {
     if (recording->depth == NO_STREAM) {
         return NO_STREAM;
     }
-    const t3r_stream *depth = &recording->streams[recording->depth];
-    for (size_t i = 0; i < recording->stream_count; i++) {
-        if (has_role(recording, i, T3R_STREAM_CAMERA_INFO) &&
-            is_below(&recording->streams[i], depth, prefix_bytes(depth))) {
-            return i == recording->camera_info ? NO_STREAM : i;
-        }
-    }
-    return NO_STREAM;
+    const size_t info = elect_one(recording, votes_for_info, recording->depth);
+    return info == recording->camera_info ||
+                   (info != NO_STREAM && votes_for_info(recording, info, recording->depth) < 3)
+               ? NO_STREAM
+               : info;
 }
 
 /* Finds the topic of that name and role. *found is unchanged without a name. */
@@ -135,6 +218,10 @@ static int find_named(const t3r_recording *recording, const char *topic, t3r_str
         there = there || named;
         if (named && has_role(recording, i, role)) {
             *found = i;
+            return 0;
+        }
+        if (named && role == T3R_STREAM_POSE && has_role(recording, i, T3R_STREAM_TF)) {
+            *found = NO_STREAM; /* poses are composed of transforms */
             return 0;
         }
     }
@@ -166,6 +253,30 @@ static bool needs_transforms(const t3r_recording *recording)
            (recording->depth != NO_STREAM && !t3r_text_same(recording->streams[recording->depth].frame_id, camera));
 }
 
+/* Returns why a stream of a role without a use is not taken, though no other one is. */
+static const char *why_not(const t3r_recording *recording, const t3r_stream *stream)
+{
+    const t3r_stream *colour = recording->colour == NO_STREAM ? NULL : &recording->streams[recording->colour];
+    if (colour == NULL) {
+        return "there are no colour images";
+    }
+    switch (stream->role) {
+    case T3R_STREAM_DEPTH:
+        return t3r_topic_is_no_depth(stream->topic) ? "its name is not one of depth: --depth-topic takes it"
+                                                    : "several are equally near to colour: --depth-topic names one";
+    case T3R_STREAM_CAMERA_INFO:
+        return recording->intrinsics_given   ? "intrinsics are given"
+               : other_frame(stream, colour) ? "its frame is not that of the images: --camera-info-topic takes it"
+                                             : "several are equally near to colour: --camera-info-topic names one";
+    case T3R_STREAM_POSE:
+        return t3r_topic_is_goal(stream->topic) ? "its name is one of goals: --pose-topic takes it"
+               : is_seen_by(stream, colour)     ? "its poses are in the camera's own frame: --pose-topic takes it"
+                                                : "several may be the camera's: --pose-topic names one";
+    default:
+        return "poses come from another topic";
+    }
+}
+
 static void say_why(t3r_recording *recording, t3r_stream *stream)
 {
     static const t3r_stream_use uses[] = {[T3R_STREAM_COLOUR] = T3R_USE_COLOUR,
@@ -177,8 +288,10 @@ static void say_why(t3r_recording *recording, t3r_stream *stream)
         return;
     }
     if (stream->role == T3R_STREAM_OTHER) {
-        const char *why = stream->type == T3R_ROS_TYPE_COUNT ? "its type is not read" : "it has no messages";
-        snprintf(stream->unused, sizeof stream->unused, "%s", why);
+        const char *why = stream->type == T3R_ROS_TYPE_COUNT ? "its type is not read"
+                          : stream->left_out > 0             ? "none of its messages can be read"
+                                                             : "it has no messages";
+        t3r_reason(stream->unused, sizeof stream->unused, "%s", why);
         return;
     }
     size_t other = t3r_recording_stream_for(recording, uses[stream->role]);
@@ -186,9 +299,7 @@ static void say_why(t3r_recording *recording, t3r_stream *stream)
         t3r_reason(stream->unused, sizeof stream->unused, "%s comes from %.64s",
                    t3r_stream_use_names[uses[stream->role]], recording->streams[other].topic);
     } else {
-        t3r_reason(stream->unused, sizeof stream->unused, "%s",
-                   recording->colour == NO_STREAM ? "there are no colour images"
-                                                  : "there are several, and none is near the colour topic: name one");
+        t3r_reason(stream->unused, sizeof stream->unused, "%s", why_not(recording, stream));
     }
 }
 
@@ -233,6 +344,10 @@ static void remark_import(t3r_recording *recording)
     if (depth != NULL && !t3r_text_same(depth->frame_id, colour->frame_id)) {
         remark_reason(recording, &recording->import_reason, "depth is of another frame than colour", "registers it");
     }
+    if (colour->converted) {
+        remark_reason(recording, &recording->import_reason, "images are in an encoding that replay does not read",
+                      "converts them");
+    }
     if (colour->compressed || (depth != NULL && depth->compressed)) {
         remark_reason(recording, &recording->import_reason, "images are compressed", "decodes them");
     }
@@ -247,19 +362,25 @@ static void remark_import(t3r_recording *recording)
 
 int t3r_recording_choose(t3r_recording *recording, const t3r_recording_choice *choice, char *error, size_t error_bytes)
 {
-    recording->colour = choose_colour(recording);
+    recording->colour = elect_colour(recording);
     if (find_named(recording, choice->colour, T3R_STREAM_COLOUR, "colour images", &recording->colour, error,
                    error_bytes) != 0) {
         return -1;
+    }
+    if (choice->colour != NULL) {
+        recording->asks[0] = '\0';
     }
     if (recording->colour == NO_STREAM) {
         t3r_recording_remark(recording, "holds no colour images in a format that can be read");
         mark_all(recording);
         return 0;
     }
-    recording->depth = choose_depth(recording);
-    recording->pose = choose_companion(recording, T3R_STREAM_POSE, recording->colour);
-    recording->camera_info = choose_companion(recording, T3R_STREAM_CAMERA_INFO, recording->colour);
+    if (recording->asks[0] != '\0') {
+        t3r_recording_remark(recording, "%s", recording->asks);
+    }
+    recording->depth = elect_one(recording, votes_for_depth, recording->colour);
+    recording->pose = elect_one(recording, votes_for_pose, recording->colour);
+    recording->camera_info = elect_one(recording, votes_for_info, recording->colour);
     if (find_named(recording, choice->depth, T3R_STREAM_DEPTH, "depth images", &recording->depth, error, error_bytes) !=
             0 ||
         find_named(recording, choice->pose, T3R_STREAM_POSE, "poses", &recording->pose, error, error_bytes) != 0 ||
@@ -268,6 +389,11 @@ int t3r_recording_choose(t3r_recording *recording, const t3r_recording_choice *c
         return -1;
     }
     recording->depth_camera_info = choose_depth_info(recording);
+    if (choice->intrinsics != NULL) {
+        recording->intrinsics = *choice->intrinsics;
+        recording->intrinsics_given = true;
+        recording->camera_info = NO_STREAM;
+    }
     if (find_named(recording, choice->depth_camera_info, T3R_STREAM_CAMERA_INFO, "intrinsics",
                    &recording->depth_camera_info, error, error_bytes) != 0) {
         return -1;

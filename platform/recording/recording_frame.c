@@ -46,13 +46,35 @@ static int decode(const reading *r, const t3r_stream *stream, const t3r_indexed_
     return wrong == NULL ? 0 : fail(r, stream, message, wrong);
 }
 
+/* Converts an image of an encoding that is no pixel format, with the recording's decoder. */
+static int convert(const reading *r, const t3r_stream *stream, const t3r_indexed_message *message,
+                   t3r_decoded_image *out)
+{
+    const t3r_image_decoder *decoder = &r->recording->decoder;
+    t3r_ros_image image;
+    const char *wrong = t3r_ros_read_image(message->data, message->bytes, &image);
+    char what[160];
+    if (wrong == NULL && !t3r_pixel_is_converted(image.encoding)) {
+        wrong = "the encoding is another one than that of the first image";
+    }
+    if (wrong == NULL && decoder->convert == NULL) {
+        wrong = "images of this encoding are converted by trim3r import";
+    }
+    if (wrong == NULL && decoder->convert(decoder->user, &image, out, what, sizeof what) != 0) {
+        wrong = what;
+    }
+    return wrong == NULL ? 0 : fail(r, stream, message, wrong);
+}
+
 static int read_colour(const reading *r, t3r_frame *frame)
 {
     const t3r_stream *stream = &r->recording->streams[r->recording->colour];
     const t3r_indexed_message *message = &stream->messages[r->index];
-    if (stream->compressed) {
+    if (stream->compressed || stream->converted) {
         t3r_decoded_image decoded;
-        if (decode(r, stream, message, false, &decoded) != 0) {
+        const int status =
+            stream->compressed ? decode(r, stream, message, false, &decoded) : convert(r, stream, message, &decoded);
+        if (status != 0) {
             return -1;
         }
         frame->format = decoded.format;
@@ -66,6 +88,37 @@ static int read_colour(const reading *r, t3r_frame *frame)
     const char *wrong = t3r_ros_read_image(message->data, message->bytes, &image);
     wrong = wrong != NULL ? wrong : t3r_message_colour(&image, frame);
     return wrong == NULL ? 0 : fail(r, stream, message, wrong);
+}
+
+/* Whether depth that is taken to be of colour's lens has another aspect, by more than a pixel. trim3r's own recordings
+ * hold what was captured. */
+static bool is_stretched(const reading *r, const t3r_frame *frame)
+{
+    const t3r_recording *recording = r->recording;
+    const t3r_text depth = recording->streams[recording->depth].frame_id,
+                   colour = recording->streams[recording->colour].frame_id;
+    if (recording->bits_epoch != 0 || recording->depth_camera_info != T3R_NO_STREAM ||
+        (depth.count > 0 && !t3r_text_same(depth, colour))) {
+        return false;
+    }
+    const int64_t difference =
+        (int64_t)frame->depth_width * frame->height - (int64_t)frame->depth_height * frame->width;
+    return llabs(difference) > (frame->width > frame->height ? frame->width : frame->height);
+}
+
+/* Checks the sides of depth beside those of colour. */
+static int check_aspect(const reading *r, size_t link, const t3r_frame *frame)
+{
+    const t3r_stream *stream = &r->recording->streams[r->recording->depth];
+    if (!is_stretched(r, frame)) {
+        return 0;
+    }
+    char what[192];
+    t3r_reason(what, sizeof what,
+               "depth is %" PRIu32 "x%" PRIu32 " and colour %" PRIu32 "x%" PRIu32
+               ": another aspect needs intrinsics of its own (--depth-camera-info-topic)",
+               frame->depth_width, frame->depth_height, frame->width, frame->height);
+    return fail(r, stream, &stream->messages[link], what);
 }
 
 static int read_depth(const reading *r, size_t link, t3r_frame *frame)
@@ -99,7 +152,7 @@ static int read_depth(const reading *r, size_t link, t3r_frame *frame)
         if (*z16 == NULL) {
             return fail(r, stream, message, "out of memory");
         }
-        t3r_message_to_z16(&image, r->recording->depth_unit_q40, *z16);
+        *r->recording->depth_beyond += t3r_message_to_z16(&image, r->recording->depth_unit_q40, *z16);
     }
     frame->depth = *z16;
     return 0;
@@ -111,6 +164,9 @@ static int read_intrinsics(const reading *r, size_t link, const t3r_frame *frame
     const t3r_indexed_message *message = &stream->messages[link];
     t3r_ros_camera_info info;
     const char *wrong = t3r_ros_read_camera_info(message->data, message->bytes, &info);
+    if (wrong == NULL && r->recording->streams[r->recording->colour].rectified) {
+        wrong = t3r_message_rectify(&info);
+    }
     if (wrong == NULL && (info.width != frame->width || info.height != frame->height)) {
         char what[96];
         t3r_reason(what, sizeof what,
@@ -132,42 +188,80 @@ static int read_pose(const reading *r, size_t link, t3r_camera *camera)
     return wrong == NULL ? 0 : fail(r, stream, message, wrong);
 }
 
-int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capture_frame *frame, char *error,
-                        size_t error_bytes)
+/* Adds the last reason to lost[]. */
+static void add_lost(char *lost, size_t lost_bytes, const char *error)
 {
-    if (index >= recording->pairing.frames) {
-        t3r_reason(error, error_bytes, "frame %" PRIu32 ": the recording holds %" PRIu32, index,
+    const size_t used = strlen(lost);
+    t3r_reason(lost + used, lost_bytes - used, "%s%s", used > 0 ? "; " : "", error);
+}
+
+/* Reads a frame. With `lost`, it goes without depth or pose where these cannot be read. */
+static int read_frame(const reading *r, t3r_capture_frame *frame, char *lost, size_t lost_bytes)
+{
+    const t3r_recording *recording = r->recording;
+    if (r->index >= recording->pairing.frames) {
+        t3r_reason(r->error, r->error_bytes, "frame %" PRIu32 ": the recording holds %" PRIu32, r->index,
                    recording->pairing.frames);
         return T3R_CAPTURE_FAILED;
     }
     t3r_spill_rest(&recording->spill); /* of frames that were read before; their addresses stay valid */
-    const reading r = {recording, index, error, error_bytes};
-    const t3r_frame_links *links = &recording->links[index];
+    const t3r_frame_links *links = &recording->links[r->index];
     const t3r_set_pose *set =
-        recording->set_poses != NULL && recording->set_poses[index].set ? &recording->set_poses[index] : NULL;
+        recording->set_poses != NULL && recording->set_poses[r->index].set ? &recording->set_poses[r->index] : NULL;
+    const int64_t stamp_ns = recording->streams[recording->colour].messages[r->index].stamp_ns;
     t3r_capture_frame result = {
-        .index = index,
-        .sequence = index,
-        .stamp_ns = recording->streams[recording->colour].messages[index].stamp_ns,
-        .depth_stamp_ns = recording->streams[recording->colour].messages[index].stamp_ns,
+        .index = r->index,
+        .sequence = r->index,
+        .stamp_ns = stamp_ns,
+        .depth_stamp_ns = stamp_ns,
         .has_pose = links->pose != T3R_NO_MESSAGE || set != NULL,
-        .has_intrinsics = links->camera_info != T3R_NO_MESSAGE,
+        .has_intrinsics = links->camera_info != T3R_NO_MESSAGE || recording->intrinsics_given,
+        .camera = recording->intrinsics,
     };
-    if (read_colour(&r, &result.frame) != 0 ||
-        (links->depth != T3R_NO_MESSAGE && read_depth(&r, links->depth, &result.frame) != 0) ||
-        (result.has_intrinsics && read_intrinsics(&r, links->camera_info, &result.frame, &result.camera) != 0) ||
-        (result.has_pose && set == NULL && read_pose(&r, links->pose, &result.camera) != 0)) {
+    if (read_colour(r, &result.frame) != 0) {
         return T3R_CAPTURE_FAILED;
     }
     if (links->depth != T3R_NO_MESSAGE) {
         result.depth_stamp_ns = recording->streams[recording->depth].messages[links->depth].stamp_ns;
+        if (read_depth(r, links->depth, &result.frame) != 0 || check_aspect(r, links->depth, &result.frame) != 0) {
+            if (lost == NULL) {
+                return T3R_CAPTURE_FAILED;
+            }
+            add_lost(lost, lost_bytes, r->error);
+            result.depth_stamp_ns = stamp_ns;
+            result.frame.depth = NULL;
+            result.frame.depth_width = result.frame.depth_height = 0;
+        }
+    }
+    if (links->camera_info != T3R_NO_MESSAGE &&
+        read_intrinsics(r, links->camera_info, &result.frame, &result.camera) != 0) {
+        return T3R_CAPTURE_FAILED;
     }
     if (set != NULL) {
         memcpy(result.camera.position_q32, set->position_q32, sizeof set->position_q32);
         memcpy(result.camera.rotation_q30, set->rotation_q30, sizeof set->rotation_q30);
+    } else if (result.has_pose && read_pose(r, links->pose, &result.camera) != 0) {
+        if (lost == NULL) {
+            return T3R_CAPTURE_FAILED;
+        }
+        add_lost(lost, lost_bytes, r->error);
+        result.has_pose = false;
     }
     *frame = result;
     return T3R_CAPTURE_FRAME;
+}
+
+int t3r_recording_frame(const t3r_recording *recording, uint32_t index, t3r_capture_frame *frame, char *error,
+                        size_t error_bytes)
+{
+    return read_frame(&(reading){recording, index, error, error_bytes}, frame, NULL, 0);
+}
+
+int t3r_recording_frame_readable(const t3r_recording *recording, uint32_t index, t3r_capture_frame *frame, char *lost,
+                                 size_t lost_bytes, char *error, size_t error_bytes)
+{
+    lost[0] = '\0';
+    return read_frame(&(reading){recording, index, error, error_bytes}, frame, lost, lost_bytes);
 }
 
 int t3r_recording_set_pose(t3r_recording *recording, uint32_t index, const int64_t position_q32[3],

@@ -12,13 +12,15 @@
 
 #define T3R_NO_MESSAGE SIZE_MAX
 #define T3R_NOTE_BYTES 512
-#define T3R_UNUSED_BYTES 128
+#define T3R_UNUSED_BYTES 192
+#define T3R_ASKS_BYTES 512
 
 typedef struct t3r_indexed_message {
     const uint8_t *data;
     size_t bytes;
     int64_t stamp_ns; /* header.stamp, or the log time if that is 0 ("unset"); |stamp_ns| <= 2^62 */
-    size_t order;     /* in its stream */
+    int64_t log_ns;
+    size_t order; /* in its stream */
     t3r_mcap_place place;
 } t3r_indexed_message;
 
@@ -35,14 +37,20 @@ typedef enum t3r_stream_role {
 typedef struct t3r_stream {
     t3r_text name;        /* the topic as the file holds it; points into its bytes */
     char *topic, *schema; /* printable copies */
-    uint16_t schema_id;
+    t3r_text schema_name;
     t3r_ros_type type; /* T3R_ROS_TYPE_COUNT = not read by trim3r */
     t3r_stream_role role;
-    bool compressed, mono;             /* of images */
-    t3r_text frame_id, child_frame_id; /* of the first message that is kept; point into the file's bytes */
+    bool compressed;                   /* images are JPEG or PNG files */
+    bool converted;                    /* images are in an encoding that only import converts */
+    bool rectified;                    /* the topic's name says that its images have no distortion any more */
+    bool mono;                         /* colour is grey, or depth is mono16, in which infrared images come */
+    t3r_text frame_id, child_frame_id; /* of the first message that is kept, without a leading slash; point into the
+                                          file's bytes */
     t3r_stream_use use;
     char unused[T3R_UNUSED_BYTES]; /* why it is not read */
     uint64_t count;
+    uint64_t left_out;            /* messages, or transforms, that cannot be read */
+    char fault[T3R_UNUSED_BYTES]; /* where the first of them is, and what is wrong with it */
     int64_t first_ns, last_ns;
     t3r_indexed_message *messages;
     size_t kept, capacity;
@@ -77,29 +85,52 @@ struct t3r_recording {
     t3r_frame_links *links; /* one per message of the colour stream */
     uint8_t **depth_z16;    /* one per message of the depth stream: its samples as Z16 from the first request on, if the
                                file holds another format */
+    uint64_t *depth_beyond; /* samples of all images in depth_z16 that lie beyond 65535 steps */
     t3r_set_pose *set_poses; /* one per message of the colour stream; NULL until one is set */
     t3r_pairing_info pairing;
 
     uint32_t bits_epoch;
+    bool intrinsics_given;
+    t3r_camera intrinsics; /* of all frames, if given */
     uint64_t depth_unit_q40;
+    bool states_unit; /* the file's metadata have the depth unit */
     char clock[64];
     t3r_triplet *triplets;
     uint32_t triplet_count;
     char note[T3R_NOTE_BYTES];
+    char asks[T3R_ASKS_BYTES];                      /* the topics of which one must be named, or "" */
     const char *import_reason, *import_pose_reason; /* static texts; NULL: none */
 };
 
 void t3r_recording_remark(t3r_recording *recording, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* recording_inspect.c: reads a message of a known type: its stamp, and from the first messages the role and frames of
- * their stream. Returns NULL, or what is wrong. *usable: it may belong to a frame. */
+ * their stream. Returns NULL, or what is wrong with the message. *usable: it may belong to a frame. *bad_transforms:
+ * the transforms in it that cannot be used, the first of them for the reason *transform_error. */
+typedef struct t3r_inspection {
+    int64_t stamp_ns;
+    bool usable;
+    uint32_t bad_transforms;
+    const char *transform_error;
+} t3r_inspection;
 const char *t3r_recording_inspect(t3r_recording *recording, t3r_stream *stream, const uint8_t *bytes, size_t count,
-                                  int64_t *stamp_ns, bool *usable);
+                                  t3r_inspection *out);
+
+/* recording_names.c: what the words of a topic's name say. */
+bool t3r_topic_is_rectified(const char *topic);
+/* Whether it names images that are no camera's: overlays, masks, infrared, depth in colours. */
+bool t3r_topic_is_no_colour(const char *topic);
+/* Whether it names depth, and whether it names images in depth's encodings that hold no depth: infrared, confidence. */
+bool t3r_topic_is_depth(const char *topic);
+bool t3r_topic_is_no_depth(const char *topic);
+/* Whether it names poses where nothing is yet: goals, commands. */
+bool t3r_topic_is_goal(const char *topic);
 
 /* recording_choice.c: chooses the streams. Returns 0, or -1 with a reason if a named topic is missing. */
 int t3r_recording_choose(t3r_recording *recording, const t3r_recording_choice *choice, char *error, size_t error_bytes);
 
-/* recording_pairing.c: links each colour image to its companions. Returns 0, or -1 when memory is out. */
-int t3r_recording_pair(t3r_recording *recording);
+/* recording_pairing.c: links each colour image to its companions. Returns 0, or -1 with a reason: memory is out, or
+ * stamps and log times both go back. */
+int t3r_recording_pair(t3r_recording *recording, char *error, size_t error_bytes);
 
 #endif

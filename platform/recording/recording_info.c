@@ -22,7 +22,15 @@ t3r_triplet t3r_recording_triplet(const t3r_recording *recording, uint32_t index
 const char *t3r_recording_import_reason(const t3r_recording *recording)
 {
     const char *poses = recording->set_poses == NULL ? recording->import_pose_reason : NULL;
-    return recording->import_reason != NULL ? recording->import_reason : poses != NULL ? poses : "";
+    return recording->asks[0] != '\0'         ? recording->asks
+           : recording->import_reason != NULL ? recording->import_reason
+           : poses != NULL                    ? poses
+                                              : "";
+}
+
+const char *t3r_recording_asks(const t3r_recording *recording)
+{
+    return recording->asks;
 }
 
 const char *t3r_recording_note(const t3r_recording *recording)
@@ -43,12 +51,15 @@ uint32_t t3r_recording_stream_count(const t3r_recording *recording)
 t3r_stream_info t3r_recording_stream(const t3r_recording *recording, uint32_t index)
 {
     if (index >= recording->stream_count) {
-        return (t3r_stream_info){.unused = "", .topic = "", .schema = ""};
+        return (t3r_stream_info){.unused = "", .fault = "", .topic = "", .schema = ""};
     }
     const t3r_stream *stream = &recording->streams[index];
     return (t3r_stream_info){.use = stream->use,
                              .unused = stream->unused,
-                             .compressed = stream->compressed,
+                             .compressed = stream->compressed || stream->converted,
+                             .rectified = stream->rectified,
+                             .left_out = stream->left_out,
+                             .fault = stream->fault,
                              .topic = stream->topic,
                              .schema = stream->schema,
                              .messages = stream->count,
@@ -69,6 +80,11 @@ const char *t3r_recording_clock(const t3r_recording *recording)
 uint64_t t3r_recording_depth_unit_q40(const t3r_recording *recording)
 {
     return recording->depth_unit_q40;
+}
+
+uint64_t t3r_recording_depth_beyond(const t3r_recording *recording)
+{
+    return recording->depth_beyond == NULL ? 0 : *recording->depth_beyond;
 }
 
 uint32_t t3r_recording_pose_count(const t3r_recording *recording, uint32_t stream)

@@ -14,9 +14,11 @@
 #include "host/reason.h"
 #include "mcap/reader_limits.h"
 #include "messages/pixel_layout.h"
+#include "recording_folder.h"
 #include "recording_index.h"
 
 #define IDS 65536u                                  /* schema and channel ids have 16 bits */
+#define SLOTS (2u * IDS)                            /* at least half stay free */
 #define DEFAULT_DEPTH_UNIT_Q40 UINT64_C(1099511628) /* a millimetre in metres (REP 118) */
 #define MAX_DEPTH_UNIT_Q40 ((uint64_t)T3R_LIMIT_DEPTH_UNIT << 40)
 #define MAX_LOG_NS ((uint64_t)1 << 62)
@@ -30,6 +32,8 @@ typedef struct indexing {
     t3r_mcap_schema_record *schemas;
     size_t schema_count, schema_capacity;
     uint32_t *schema_of, *stream_of; /* by id: index + 1, 0 = none */
+    uint32_t *slots;                 /* hash table of the streams by topic: index + 1, 0 = free */
+    bool strict;
     char *error;
     size_t error_bytes;
 } indexing;
@@ -79,21 +83,55 @@ static t3r_ros_type type_of(t3r_text name)
     return (t3r_ros_type)type;
 }
 
+/* Returns the slot of the stream with that topic and schema, or the free one for it (FNV-1a). */
+static uint32_t *slot_of(indexing *x, t3r_text topic, t3r_text schema)
+{
+    uint32_t hash = 2166136261u;
+    for (size_t i = 0; i < topic.count; i++) {
+        hash = (hash ^ (uint8_t)topic.chars[i]) * 16777619u;
+    }
+    uint32_t at = hash % SLOTS;
+    for (; x->slots[at] != 0; at = (at + 1) % SLOTS) {
+        const t3r_stream *stream = &x->recording->streams[x->slots[at] - 1];
+        if (t3r_text_same(stream->name, topic) && t3r_text_same(stream->schema_name, schema)) {
+            break;
+        }
+    }
+    return &x->slots[at];
+}
+
+/* Says why messages in an encoding other than CDR are not read. */
+static void say_encoding(t3r_stream *stream, t3r_text encoding)
+{
+    char name[32];
+    t3r_text_copy(name, sizeof name, encoding);
+    if (t3r_text_is(encoding, "ros1")) {
+        t3r_reason(stream->unused, sizeof stream->unused, "its messages are of ROS 1: " T3R_MCAP_FROM_ROS1);
+    } else if (!t3r_text_is(encoding, "cdr")) {
+        t3r_reason(stream->unused, sizeof stream->unused, "its messages are in '%s', not in the CDR of ROS 2", name);
+    }
+}
+
 static int on_channel(void *user, const t3r_mcap_channel_record *channel, t3r_mcap_place place)
 {
     indexing *x = user;
     t3r_recording *recording = x->recording;
-    if (x->stream_of[channel->id] != 0) {
-        const t3r_stream *old = &recording->streams[x->stream_of[channel->id] - 1];
-        bool same = old->schema_id == channel->schema && t3r_text_same(old->name, channel->topic);
-        return same ? 0 : fail(x, "channel", place, "its id is taken by another channel");
-    }
     t3r_text schema = {"", 0};
     if (channel->schema != 0) {
         if (x->schema_of[channel->schema] == 0) {
             return fail(x, "channel", place, "its schema was not defined before it");
         }
         schema = x->schemas[x->schema_of[channel->schema] - 1].name;
+    }
+    if (x->stream_of[channel->id] != 0) {
+        const t3r_stream *old = &recording->streams[x->stream_of[channel->id] - 1];
+        bool same = t3r_text_same(old->schema_name, schema) && t3r_text_same(old->name, channel->topic);
+        return same ? 0 : fail(x, "channel", place, "its id is taken by another channel");
+    }
+    uint32_t *slot = slot_of(x, channel->topic, schema);
+    if (*slot != 0) {
+        x->stream_of[channel->id] = *slot; /* each publisher of a topic has a channel of its own */
+        return 0;
     }
     t3r_stream *grown =
         t3r_grow(recording->streams, recording->stream_count, &recording->stream_capacity, sizeof *grown);
@@ -106,14 +144,68 @@ static int on_channel(void *user, const t3r_mcap_channel_record *channel, t3r_mc
         .name = channel->topic,
         .topic = printable(channel->topic),
         .schema = printable(schema),
-        .schema_id = channel->schema,
+        .schema_name = schema,
         .type = t3r_text_is(channel->encoding, "cdr") ? type_of(schema) : T3R_ROS_TYPE_COUNT,
     };
-    x->stream_of[channel->id] = (uint32_t)recording->stream_count;
-    return stream->topic != NULL && stream->schema != NULL ? T3R_MCAP_KEPT : fail(x, "channel", place, "out of memory");
+    x->stream_of[channel->id] = *slot = (uint32_t)recording->stream_count;
+    if (stream->topic == NULL || stream->schema == NULL) {
+        return fail(x, "channel", place, "out of memory");
+    }
+    stream->rectified = t3r_topic_is_rectified(stream->topic);
+    say_encoding(stream, channel->encoding);
+    return T3R_MCAP_KEPT;
 }
 
 /* ---- messages ---- */
+
+/* Counts messages, or transforms, that are left out; the first is named. */
+static void leave_out(t3r_stream *stream, uint32_t count, t3r_mcap_place place, const char *wrong)
+{
+    char text[T3R_MCAP_PLACE_BYTES];
+    if (stream->left_out == 0) {
+        t3r_reason(stream->fault, sizeof stream->fault, "at %s: %s", t3r_mcap_place_text(place, text), wrong);
+    }
+    stream->left_out += count;
+}
+
+static bool keep(t3r_stream *stream, const t3r_indexed_message *message)
+{
+    t3r_indexed_message *grown =
+        stream->kept == UINT32_MAX ? NULL : t3r_grow(stream->messages, stream->kept, &stream->capacity, sizeof *grown);
+    if (grown == NULL) {
+        return false;
+    }
+    stream->messages = grown;
+    stream->messages[stream->kept++] = *message;
+    return true;
+}
+
+/* Inspects a message of a type that is read. Returns 0, T3R_MCAP_KEPT or -1. */
+static int inspect(indexing *x, t3r_stream *stream, const t3r_mcap_message_record *message, int64_t log_ns,
+                   t3r_mcap_place place)
+{
+    t3r_inspection found;
+    const char *wrong = t3r_recording_inspect(x->recording, stream, message->data, message->bytes, &found);
+    const char *first = wrong != NULL ? wrong : found.transform_error;
+    if (first != NULL && x->strict) {
+        char what[256];
+        t3r_reason(what, sizeof what, "%s (%.64s)", first, stream->topic);
+        return fail(x, "message", place, what);
+    }
+    if (first != NULL) {
+        leave_out(stream, wrong != NULL ? 1 : found.bad_transforms, place, first);
+    }
+    if (!found.usable) {
+        return 0;
+    }
+    const t3r_indexed_message kept = {.data = message->data,
+                                      .bytes = message->bytes,
+                                      .stamp_ns = found.stamp_ns != 0 ? found.stamp_ns : log_ns,
+                                      .log_ns = log_ns,
+                                      .order = stream->kept,
+                                      .place = place};
+    return keep(stream, &kept) ? T3R_MCAP_KEPT : fail(x, "message", place, "out of memory");
+}
 
 static int on_message(void *user, const t3r_mcap_message_record *message, t3r_mcap_place place)
 {
@@ -122,36 +214,24 @@ static int on_message(void *user, const t3r_mcap_message_record *message, t3r_mc
         return fail(x, "message", place, "its channel was not defined before it");
     }
     t3r_stream *stream = &x->recording->streams[x->stream_of[message->channel] - 1];
-    int kept = 0;
     int64_t log_ns = (int64_t)(message->log_ns < MAX_LOG_NS ? message->log_ns : MAX_LOG_NS);
-    if (stream->type != T3R_ROS_TYPE_COUNT) {
-        int64_t stamp_ns = 0;
-        bool usable = false;
-        const char *wrong =
-            t3r_recording_inspect(x->recording, stream, message->data, message->bytes, &stamp_ns, &usable);
-        if (wrong != NULL) {
-            char what[128];
-            snprintf(what, sizeof what, "%s (%.64s)", wrong, stream->topic);
-            return fail(x, "message", place, what);
-        }
-        if (usable) {
-            t3r_indexed_message *grown =
-                stream->kept == UINT32_MAX ? NULL
-                                           : t3r_grow(stream->messages, stream->kept, &stream->capacity, sizeof *grown);
-            if (grown == NULL) {
-                return fail(x, "message", place, "out of memory");
-            }
-            stream->messages = grown;
-            stream->messages[stream->kept] = (t3r_indexed_message){
-                message->data, message->bytes, stamp_ns != 0 ? stamp_ns : log_ns, stream->kept, place};
-            stream->kept++;
-            kept = T3R_MCAP_KEPT;
-        }
-    }
+    int kept = stream->type == T3R_ROS_TYPE_COUNT ? 0 : inspect(x, stream, message, log_ns, place);
     stream->first_ns = stream->count == 0 || log_ns < stream->first_ns ? log_ns : stream->first_ns;
     stream->last_ns = stream->count == 0 || log_ns > stream->last_ns ? log_ns : stream->last_ns;
     stream->count++;
     return kept;
+}
+
+static void remark_left_out(t3r_recording *recording)
+{
+    for (size_t i = 0; i < recording->stream_count; i++) {
+        const t3r_stream *stream = &recording->streams[i];
+        if (stream->left_out > 0) {
+            t3r_recording_remark(recording, "%s: %" PRIu64 " of its %s are left out, the first %s", stream->topic,
+                                 stream->left_out, stream->role == T3R_STREAM_TF ? "transforms" : "messages",
+                                 stream->fault);
+        }
+    }
 }
 
 /* ---- metadata ---- */
@@ -222,6 +302,7 @@ static int on_metadata(void *user, t3r_text name, t3r_text key, t3r_text value, 
     } else if (t3r_text_is(name, "trim3r") && t3r_text_is(key, "depth_unit")) {
         bool good = t3r_q40_from_text(value, &recording->depth_unit_q40) == 0 && recording->depth_unit_q40 > 0 &&
                     recording->depth_unit_q40 < MAX_DEPTH_UNIT_Q40;
+        recording->states_unit = true;
         wrong = good ? NULL : "depth_unit is not a decimal number such as 0.001, above 0 and below 128";
     } else if (t3r_text_is(name, "trim3r") && t3r_text_is(key, "clock")) {
         t3r_text_copy(recording->clock, sizeof recording->clock, value);
@@ -260,25 +341,34 @@ static int index_bytes(t3r_recording *recording, const uint8_t *bytes, size_t co
     indexing x = {.recording = recording, .error = error, .error_bytes = error_bytes};
     x.schema_of = calloc(IDS, sizeof *x.schema_of);
     x.stream_of = calloc(IDS, sizeof *x.stream_of);
+    x.slots = calloc(SLOTS, sizeof *x.slots);
+    x.strict = choice->strict;
     const t3r_mcap_visitor visitor = {&x, on_schema, on_channel, on_message, on_metadata};
     t3r_mcap_end end;
-    int status = x.schema_of == NULL || x.stream_of == NULL
+    int status = x.schema_of == NULL || x.stream_of == NULL || x.slots == NULL
                      ? t3r_reason(error, error_bytes, "out of memory")
                      : t3r_mcap_read(bytes, count, &visitor, &recording->chunks, &end, error, error_bytes);
     free(x.schemas);
     free(x.schema_of);
     free(x.stream_of);
+    free(x.slots);
     recording->file_bytes = count;
     recording->cut = status == 0 ? end : (t3r_mcap_end){0};
     if (status == 0 && end.cut) {
         remark_cut(recording, &end);
     }
+    if (status == 0) {
+        remark_left_out(recording);
+    }
+    if (status == 0 && choice->depth_unit_q40 != 0 && recording->states_unit) {
+        status = t3r_reason(error, error_bytes, "the recording states its own depth unit");
+    }
     recording->pair_ns = choice->pair_ns > 0 ? choice->pair_ns : DEFAULT_PAIR_NS;
     if (status == 0) {
         status = t3r_recording_choose(recording, choice, error, error_bytes);
     }
-    if (status == 0 && t3r_recording_pair(recording) != 0) {
-        status = t3r_reason(error, error_bytes, "out of memory");
+    if (status == 0) {
+        status = t3r_recording_pair(recording, error, error_bytes);
     }
     if (status == 0) {
         check_triplets(recording);
@@ -297,7 +387,7 @@ static t3r_recording *parse(const uint8_t *bytes, size_t count, t3r_spill *spill
     }
     recording->colour = recording->depth = recording->pose = T3R_NO_STREAM;
     recording->camera_info = recording->depth_camera_info = recording->transforms = T3R_NO_STREAM;
-    recording->depth_unit_q40 = DEFAULT_DEPTH_UNIT_Q40;
+    recording->depth_unit_q40 = choice->depth_unit_q40 != 0 ? choice->depth_unit_q40 : DEFAULT_DEPTH_UNIT_Q40;
     memcpy(recording->clock, "unknown", sizeof "unknown");
     if (spill != NULL) {
         recording->spill = *spill;
@@ -362,8 +452,7 @@ static const uint8_t *read_file(const char *path, uint8_t **heap, t3r_spill *spi
     return bytes;
 }
 
-t3r_recording *t3r_recording_open_chosen(const char *path, const t3r_recording_choice *choice, char *error,
-                                         size_t error_bytes)
+static t3r_recording *open_file(const char *path, const t3r_recording_choice *choice, char *error, size_t error_bytes)
 {
     size_t count;
     uint8_t *heap;
@@ -380,6 +469,18 @@ t3r_recording *t3r_recording_open_chosen(const char *path, const t3r_recording_c
         return NULL;
     }
     recording->file = heap;
+    return recording;
+}
+
+t3r_recording *t3r_recording_open_chosen(const char *path, const t3r_recording_choice *choice, char *error,
+                                         size_t error_bytes)
+{
+    if (!t3r_recording_is_folder(path)) {
+        return open_file(path, choice, error, error_bytes);
+    }
+    char *file = t3r_recording_folder_file(path, error, error_bytes);
+    t3r_recording *recording = file == NULL ? NULL : open_file(file, choice, error, error_bytes);
+    free(file);
     return recording;
 }
 
@@ -406,6 +507,7 @@ void t3r_recording_close(t3r_recording *recording)
     free(recording->streams);
     free(recording->links);
     free(recording->depth_z16);
+    free(recording->depth_beyond);
     free(recording->set_poses);
     free(recording->triplets);
     t3r_mcap_chunks_free(&recording->chunks);

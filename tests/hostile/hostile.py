@@ -40,7 +40,7 @@ def commands(kind, path, out):
                       ("render", scene, path, "--view", "0", "-o", f"{out}.png"),
                       ("capture", "--source", f"replay:{path}", "--quiet", "-o", f"{out}.mcap"),
                       ("capture", "--source", f"replay:{room}", "--poses", path, "--quiet", "-o", f"{out}.mcap")],
-        "bag": [("import", path, "-o", f"{out}.mcap"), ("build", path, *context, "-o", f"{out}.ply"), ("info", path)],
+        "bag": [("import", path, "--strict", "-o", f"{out}.mcap"), ("import", path, "-o", f"{out}.mcap"), ("build", path, *context, "-o", f"{out}.ply"), ("info", path)],
         "path": [("info", path), ("build", path, *context, "-o", f"{out}.ply")],
         "scene": [("info", path), ("render", path, room, "--view", "1", "-o", f"{out}.png"), ("diff", path, scene),
                   ("convert", path, "-o", f"{out}.spz"),

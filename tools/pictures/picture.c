@@ -209,10 +209,13 @@ static void jpeg_on_error(j_common_ptr jpeg)
 }
 
 /* Treats warnings as errors: for truncated or damaged data the library only warns, and fills in grey. Stray bytes
- * before a marker, which some cameras write, are harmless. */
+ * before a marker, which some cameras write, are harmless. So is an end marker that is missing after the last row:
+ * before it, the library warns of missing data as well. In a progressive file whole scans may be missing. */
 static void jpeg_on_message(j_common_ptr jpeg, int level)
 {
-    if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) {
+    const bool end_missing =
+        jpeg->err->msg_code == JWRN_JPEG_EOF && !((const jpeg_work *)jpeg->err)->jpeg.progressive_mode;
+    if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA && !end_missing) {
         jpeg_on_error(jpeg);
     }
 }

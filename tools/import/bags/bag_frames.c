@@ -11,6 +11,7 @@
 #include "import/depth/register_depth.h"
 #include "messages/fixed_camera.h"
 #include "messages/fixed_double.h"
+#include "messages/message_frame.h"
 #include "messages/ros_messages.h"
 
 /* ---- reading ---- */
@@ -22,37 +23,31 @@ static double number(uint64_t f64)
     return value;
 }
 
-/* Returns NULL, or what is wrong. */
-static const char *rigid_of(const t3r_ros_pose *pose, rigid *out)
+/* Converts a pose that t3r_message_pose_error() accepts. */
+static rigid rigid_of(const t3r_ros_pose *pose)
 {
+    rigid out;
     for (int i = 0; i < 3; i++) {
-        out->position[i] = number(pose->position_f64[i]);
-        if (!isfinite(out->position[i])) {
-            return "a position is not a number";
-        }
+        out.position[i] = number(pose->position_f64[i]);
     }
     for (int i = 0; i < 4; i++) {
-        out->rotation[(i + 1) % 4] = number(pose->rotation_f64[i]); /* x y z w */
+        out.rotation[(i + 1) % 4] = number(pose->rotation_f64[i]); /* x y z w */
     }
-    const double norm = quaternion_norm(out->rotation);
-    if (!(norm > 1e-6 && norm < 1e6)) {
-        return "a rotation has no direction";
-    }
-    quaternion_normalise(out->rotation);
-    return NULL;
+    quaternion_normalise(out.rotation);
+    return out;
 }
 
 static const char *add_transforms(bag_frames *b, const t3r_recorded_message *message, bool standing)
 {
+    const bool by_log = t3r_recording_pairing(b->recording).by_log;
     t3r_ros_tf tf;
     const char *wrong = t3r_ros_open_tf(message->data, message->bytes, &tf);
     while (wrong == NULL && tf.left > 0) {
         t3r_ros_pose transform;
-        rigid place = rigid_identity;
         wrong = t3r_ros_next_tf(&tf, &transform);
-        wrong = wrong != NULL ? wrong : rigid_of(&transform, &place);
-        if (wrong == NULL) {
-            int64_t stamp = transform.header.stamp_ns != 0 ? transform.header.stamp_ns : message->stamp_ns;
+        if (wrong == NULL && t3r_message_transform_error(&transform) == NULL) { /* others were counted on indexing */
+            const rigid place = rigid_of(&transform);
+            int64_t stamp = transform.header.stamp_ns != 0 && !by_log ? transform.header.stamp_ns : message->stamp_ns;
             wrong = transform_tree_add(&b->tree, transform.header.frame_id, transform.child_frame_id, standing, stamp,
                                        &place);
         }
@@ -108,9 +103,8 @@ static int read_poses(bag_frames *b, char *error, size_t error_bytes)
     for (uint32_t i = 0; i < count; i++) {
         t3r_recorded_message message = t3r_recording_message(b->recording, stream, i);
         t3r_ros_pose pose;
-        rigid place;
         const char *wrong = t3r_ros_read_pose(type, message.data, message.bytes, &pose);
-        wrong = wrong != NULL ? wrong : rigid_of(&pose, &place);
+        const rigid place = wrong == NULL ? rigid_of(&pose) : rigid_identity;
         if (wrong == NULL && !pose_track_add(&b->poses, message.stamp_ns, &place)) {
             wrong = "out of memory";
         }
@@ -285,7 +279,11 @@ static int depth_lens(const bag_frames *b, uint32_t index, const t3r_frame *fram
     if (!*there) {
         return 0;
     }
+    const size_t depth = t3r_recording_stream_for(b->recording, T3R_USE_DEPTH);
     const char *wrong = t3r_ros_read_camera_info(message.data, message.bytes, &info);
+    if (wrong == NULL && t3r_recording_stream(b->recording, (uint32_t)depth).rectified) {
+        wrong = t3r_message_rectify(&info);
+    }
     wrong = wrong != NULL ? wrong : lens_of_info(&info, out);
     if (wrong == NULL && (info.width != frame->depth_width || info.height != frame->depth_height)) {
         wrong = "width x height is not that of the depth image";
@@ -359,6 +357,12 @@ int bag_frames_make(bag_frames *b, uint32_t index, t3r_capture_frame *frame, cha
         return -1;
     }
     return frame->frame.depth == NULL ? 0 : make_depth(b, index, frame, error, error_bytes);
+}
+
+void bag_frames_count_anew(bag_frames *b)
+{
+    b->interpolated = b->composed = b->unposed = b->registered = b->unregistered = 0;
+    b->remark[0] = '\0';
 }
 
 void bag_frames_close(bag_frames *b)

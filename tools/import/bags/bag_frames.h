@@ -40,6 +40,8 @@ int bag_frames_open(bag_frames *b, const t3r_recording *recording, const bag_fra
 /* Changes the pose and depth that t3r_recording_frame() gave frame `index`; they stay valid until the next call. A pose
  * that the recording holds for exactly that time, in the requested frames, is kept. Returns 0, or -1 with a reason. */
 int bag_frames_make(bag_frames *b, uint32_t index, t3r_capture_frame *frame, char *error, size_t error_bytes);
+/* Sets the counts and the remark back, before frames are made a second time. */
+void bag_frames_count_anew(bag_frames *b);
 void bag_frames_close(bag_frames *b);
 
 #endif

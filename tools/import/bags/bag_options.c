@@ -11,27 +11,33 @@ enum {
     KEY_DEPTH_CAMERA_INFO,
     KEY_FIXED_FRAME,
     KEY_CAMERA_FRAME,
-    KEY_PAIR
+    KEY_PAIR,
+    KEY_STRICT
 };
 
 static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "What is read of a bag or a recording:", BAG_GROUP},
-    {"colour-topic", KEY_COLOUR, "TOPIC", 0, "topic of the colour images (the first one)", BAG_GROUP},
-    {"depth-topic", KEY_DEPTH, "TOPIC", 0, "topic of the depth images (the one nearest to the colour topic by name)",
+    {"colour-topic", KEY_COLOUR, "TOPIC", 0,
+     "topic of the colour images (by type, name and intrinsics; of equally good ones one must be named)", BAG_GROUP},
+    {"depth-topic", KEY_DEPTH, "TOPIC", 0,
+     "topic of the depth images (the one nearest to the colour topic by name and frame, and none named after "
+     "infrared, confidence or the like)",
      BAG_GROUP},
     {"pose-topic", KEY_POSE, "TOPIC", 0,
-     "topic of the poses: PoseStamped, PoseWithCovarianceStamped, TransformStamped or Odometry (the only one, else "
-     "those of /tf and /tf_static)",
+     "topic of the poses: PoseStamped, PoseWithCovarianceStamped, TransformStamped, Odometry, or /tf (the only one "
+     "that is no goal, else /tf and /tf_static)",
      BAG_GROUP},
-    {"camera-info-topic", KEY_CAMERA_INFO, "TOPIC", 0, "topic of colour's intrinsics (the one next to its images)",
-     BAG_GROUP},
+    {"camera-info-topic", KEY_CAMERA_INFO, "TOPIC", 0,
+     "topic of colour's intrinsics (the one next to its images, of the same frame)", BAG_GROUP},
     {"depth-camera-info-topic", KEY_DEPTH_CAMERA_INFO, "TOPIC", 0,
-     "topic of depth's intrinsics (the one next to its images)", BAG_GROUP},
+     "topic of depth's intrinsics (the one next to its images, of the same frame)", BAG_GROUP},
     {"fixed-frame", KEY_FIXED_FRAME, "FRAME", 0,
      "fixed frame of the written poses (the poses' own, or the root above the camera)", BAG_GROUP},
     {"camera-frame", KEY_CAMERA_FRAME, "FRAME", 0, "frame of the colour camera (its images')", BAG_GROUP},
     {"pair", KEY_PAIR, "MS", 0,
      "milliseconds that depth, and a pose that is not between two others, may be from colour, 1..1000 (20)", BAG_GROUP},
+    {"strict", KEY_STRICT, NULL, 0,
+     "refuse a bag with a message or frame that cannot be read (it is left out, counted and named)", BAG_GROUP},
     {0},
 };
 
@@ -57,6 +63,11 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     }
     if (key == ARGP_KEY_INIT) {
         o->frames.near_ns = INT64_C(20000000);
+        return 0;
+    }
+    if (key == KEY_STRICT) {
+        o->topics.strict = true;
+        o->given = "--strict";
         return 0;
     }
     if (key != KEY_PAIR) {

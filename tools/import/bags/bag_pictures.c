@@ -3,10 +3,12 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "host/little_floats.h"
 #include "host/reason.h"
+#include "messages/pixel_layout.h"
 
 /* Precedes the picture of compressedDepth: how it was made, and two floats a and b. */
 #define DEPTH_HEADER_BYTES 12u
@@ -78,9 +80,76 @@ static int decode(void *user, t3r_text format, const uint8_t *bytes, size_t coun
     return 0;
 }
 
+/* ---- encodings that are no pixel formats ---- */
+
+/* Copies the first three of four channels, in the order red, green, blue. */
+static void take_colours(const t3r_ros_image *image, bool blue_first, uint8_t *out)
+{
+    for (uint32_t y = 0; y < image->height; y++) {
+        const uint8_t *in = image->data + (size_t)y * image->step;
+        for (uint32_t x = 0; x < image->width; x++, in += 4, out += 3) {
+            out[0] = in[blue_first ? 2 : 0];
+            out[1] = in[1];
+            out[2] = in[blue_first ? 0 : 2];
+        }
+    }
+}
+
+/* Fills in each colour of a pixel with the mean of the samples of that colour in the 3x3 pixels around it. `pattern`
+ * has the colours of the first two rows: "rggb". */
+static void demosaic(const t3r_ros_image *image, const char *pattern, uint8_t *out)
+{
+    for (uint32_t y = 0; y < image->height; y++) {
+        for (uint32_t x = 0; x < image->width; x++, out += 3) {
+            uint32_t sums[3] = {0, 0, 0}, counts[3] = {0, 0, 0};
+            for (uint32_t v = y == 0 ? 0 : y - 1; v <= y + 1 && v < image->height; v++) {
+                for (uint32_t u = x == 0 ? 0 : x - 1; u <= x + 1 && u < image->width; u++) {
+                    const char colour = pattern[(v & 1) * 2 + (u & 1)];
+                    const int c = colour == 'r' ? 0 : colour == 'g' ? 1 : 2;
+                    sums[c] += image->data[(size_t)v * image->step + u];
+                    counts[c]++;
+                }
+            }
+            const int own = pattern[(y & 1) * 2 + (x & 1)] == 'r' ? 0 : pattern[(y & 1) * 2 + (x & 1)] == 'g' ? 1 : 2;
+            for (int c = 0; c < 3; c++) {
+                out[c] = (uint8_t)((sums[c] + counts[c] / 2) / counts[c]);
+            }
+            out[own] = image->data[(size_t)y * image->step + x];
+        }
+    }
+}
+
+static int convert(void *user, const t3r_ros_image *image, t3r_decoded_image *out, char *error, size_t error_bytes)
+{
+    bag_pictures *pictures = user;
+    picture *p = &pictures->colour;
+    const bool bayer = begins_with(image->encoding, "bayer_");
+    const char *wrong = t3r_pixel_size_error(T3R_PIXEL_RGB24, image->width, image->height);
+    if (wrong == NULL &&
+        (image->step < image->width * (bayer ? 1 : 4) || (uint64_t)image->step * image->height > image->data_bytes)) {
+        wrong = "data hold fewer than step x rows bytes";
+    }
+    if (wrong != NULL) {
+        return t3r_reason(error, error_bytes, "%s", wrong);
+    }
+    picture_free(p);
+    *p = (picture){.width = image->width, .height = image->height, .channels = 3, .bits = 8};
+    p->samples = malloc((size_t)image->width * image->height * 3);
+    if (p->samples == NULL) {
+        return t3r_reason(error, error_bytes, "out of memory");
+    }
+    if (bayer) {
+        demosaic(image, image->encoding.chars + strlen("bayer_"), p->samples);
+    } else {
+        take_colours(image, !t3r_text_is(image->encoding, "rgba8"), p->samples);
+    }
+    *out = (t3r_decoded_image){p->width, p->height, T3R_PIXEL_RGB24, p->samples};
+    return 0;
+}
+
 t3r_image_decoder bag_pictures_decoder(bag_pictures *pictures)
 {
-    return (t3r_image_decoder){decode, pictures};
+    return (t3r_image_decoder){decode, convert, pictures};
 }
 
 void bag_pictures_free(bag_pictures *pictures)

@@ -2,6 +2,7 @@
 #include "import/bags/recording_import.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -17,55 +18,88 @@
 
 #define ERROR_BYTES 1024
 
+/* Estimated poses: frames[] of them, and the account of each. */
+typedef struct estimation {
+    uint32_t *frames, *place; /* place: a frame's number in frames[] */
+    uint32_t count;
+    pose_account *accounts; /* NULL: poses were not estimated */
+} estimation;
+
 typedef struct made_frames {
     bag_frames *frames;
-    const pose_account *accounts; /* NULL: poses were not estimated */
+    const estimation *estimated;
 } made_frames;
 
 /* Makes the frame to write, with its estimated pose if poses were estimated. */
 static int make(void *user, uint32_t index, t3r_capture_frame *frame, char *error, size_t error_bytes)
 {
     const made_frames *made = user;
+    const estimation *e = made->estimated;
     int status = bag_frames_make(made->frames, index, frame, error, error_bytes);
-    if (made->accounts != NULL && made->accounts[index].why[0] != '\0') {
+    if (e->accounts != NULL && e->accounts[e->place[index]].why[0] != '\0') {
         frame->has_pose = false; /* a recorded pose would be in another world than the estimated ones */
     }
     return status;
 }
 
-static int write_new(const recording_import_request *r, const t3r_recording *recording, made_frames *frames,
-                     posed_recording_totals *totals)
+/* Writes the file once. Returns 0, POSED_RECORDING_AGAIN or -1. */
+static int write_once(const recording_import_request *r, const t3r_recording *recording, made_frames *frames,
+                      posed_recording_losses *losses, posed_recording_totals *totals, char *error)
 {
     whole_file file;
-    char error[ERROR_BYTES] = "", reason[ERROR_BYTES / 2] = "";
-    int status = whole_file_begin(&file, r->output, error, sizeof error);
-    if (status == 0) {
-        status = posed_recording_write(recording, r->source, r->stored, &(posed_recording_change){make, frames},
-                                       file.stream, totals, reason, sizeof reason);
-        if (status == 0) {
-            status = whole_file_commit(&file, &totals->bytes, error, sizeof error);
-        } else {
-            whole_file_abandon(&file);
-            t3r_reason(error, sizeof error, "%.400s: %s", r->input, reason);
-        }
+    char reason[ERROR_BYTES / 2] = "";
+    bag_frames_count_anew(frames->frames);
+    if (whole_file_begin(&file, r->output, error, ERROR_BYTES) != 0) {
+        return -1;
     }
+    int status = posed_recording_write(recording, r->source, r->stored, &(posed_recording_change){make, frames},
+                                       file.stream, losses, totals, reason, sizeof reason);
+    if (status == 0) {
+        return whole_file_commit(&file, &totals->bytes, error, ERROR_BYTES);
+    }
+    whole_file_abandon(&file);
+    if (status < 0) {
+        t3r_reason(error, ERROR_BYTES, "%.400s: %s", r->input, reason);
+    }
+    return status;
+}
+
+static int write_new(const recording_import_request *r, const t3r_recording *recording, made_frames *frames,
+                     posed_recording_losses *losses, posed_recording_totals *totals)
+{
+    char error[ERROR_BYTES] = "";
+    int status;
+    do {
+        status = write_once(r, recording, frames, losses, totals, error);
+    } while (status == POSED_RECORDING_AGAIN);
     cli_progress_end();
     return status == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
-static int estimate_all(t3r_recording *recording, const recording_import_request *r, uint32_t count,
-                        pose_account *accounts)
+/* Estimates the poses of all frames that can be read. */
+static int estimate_all(t3r_recording *recording, const recording_import_request *r, posed_recording_losses *losses,
+                        estimation *e)
 {
-    uint32_t *frames = malloc((count + 1) * sizeof *frames);
-    if (frames == NULL) {
+    const uint32_t count = t3r_recording_frame_count(recording);
+    *e = (estimation){.frames = malloc(((size_t)count + 1) * sizeof *e->frames),
+                      .place = calloc((size_t)count + 1, sizeof *e->place),
+                      .accounts = calloc((size_t)count + 1, sizeof *e->accounts)};
+    if (e->frames == NULL || e->place == NULL || e->accounts == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
     for (uint32_t i = 0; i < count; i++) {
-        frames[i] = i;
+        t3r_capture_frame frame;
+        char why[400] = "", lost[400], error[ERROR_BYTES / 2];
+        e->place[i] = e->count;
+        if (t3r_recording_frame_readable(recording, i, &frame, lost, sizeof lost, why, sizeof why) ==
+            T3R_CAPTURE_FRAME) {
+            e->frames[e->count++] = i;
+        } else if (posed_recording_lose(losses, i, why, error, sizeof error) != 0) {
+            return cli_error(CLI_BAD_INPUT, "%s: %s", r->input, error);
+        }
     }
-    int code = recording_estimate_poses(recording, r->input, frames, count, r->poses, accounts);
-    free(frames);
-    return code;
+    return e->count == 0 ? cli_error(CLI_BAD_INPUT, "%s: %s", r->input, losses->frames.lines[0])
+                         : recording_estimate_poses(recording, r->input, e->frames, e->count, r->poses, e->accounts);
 }
 
 /* Describes what was lost by a cut; "" without one. */
@@ -111,28 +145,64 @@ static cJSON *topics_json(const t3r_recording *recording, const bag_frames *fram
     return list;
 }
 
-static void print_json(const t3r_recording *recording, const bag_frames *frames, const posed_recording_totals *totals,
-                       const pose_account *accounts)
+/* What a report is made of. */
+typedef struct report {
+    const t3r_recording *recording;
+    const bag_frames *frames;
+    const posed_recording_totals *totals;
+    const posed_recording_losses *losses;
+    const estimation *estimated;
+} report;
+
+/* Lists the topics of which messages, or transforms, cannot be read. */
+static cJSON *unreadable_json(const t3r_recording *recording)
 {
+    cJSON *list = cJSON_CreateArray();
+    for (uint32_t i = 0; i < t3r_recording_stream_count(recording); i++) {
+        const t3r_stream_info info = t3r_recording_stream(recording, i);
+        if (info.left_out > 0) {
+            cJSON *item = cJSON_CreateObject();
+            cJSON_AddStringToObject(item, "topic", info.topic);
+            json_add_integer(item, "left_out", (int64_t)info.left_out);
+            cJSON_AddStringToObject(item, "first", info.fault);
+            cJSON_AddItemToArray(list, item);
+        }
+    }
+    return list;
+}
+
+static void print_json(const report *r)
+{
+    const t3r_recording *recording = r->recording;
+    const bag_frames *frames = r->frames;
+    const posed_recording_totals *totals = r->totals;
     char lost[200];
     say_lost(recording, lost, sizeof lost);
     cJSON *json = cJSON_CreateObject();
     cJSON_AddNumberToObject(json, "frames", totals->frames);
     cJSON_AddNumberToObject(json, "depth_frames", totals->depth_frames);
     cJSON_AddNumberToObject(json, "posed_frames", totals->posed_frames);
-    cJSON_AddNumberToObject(json, "triplets", t3r_recording_triplet_count(recording));
+    cJSON_AddNumberToObject(json, "triplets", totals->triplets);
     json_add_integer(json, "bytes", (int64_t)totals->bytes);
     cJSON_AddNumberToObject(json, "interpolated", frames->interpolated);
     cJSON_AddNumberToObject(json, "composed", frames->composed);
     cJSON_AddNumberToObject(json, "registered", frames->registered);
     cJSON_AddNumberToObject(json, "unregistered", frames->unregistered);
+    json_add_integer(json, "depth_beyond", (int64_t)t3r_recording_depth_beyond(recording));
     cJSON_AddStringToObject(json, "remark", frames->remark);
     cJSON_AddStringToObject(json, "lost", lost);
+    cJSON_AddStringToObject(json, "note", t3r_recording_note(recording));
+    cJSON_AddNumberToObject(json, "frames_left_out", r->losses->gone_count);
+    text_list_add_json(&r->losses->frames, json, "left_out");
+    cJSON_AddNumberToObject(json, "parts_left_out", r->losses->part_count);
+    text_list_add_json(&r->losses->parts, json, "left_out_parts");
+    cJSON_AddItemToObject(json, "unreadable", unreadable_json(recording));
     cJSON_AddItemToObject(json, "topics", topics_json(recording, frames, true));
     cJSON_AddItemToObject(json, "unused", topics_json(recording, frames, false));
-    cJSON *poses = accounts != NULL ? cJSON_AddArrayToObject(json, "poses") : NULL;
-    for (uint32_t i = 0; poses != NULL && i < totals->frames; i++) {
-        cJSON_AddItemToArray(poses, pose_account_json(NULL, i, accounts));
+    const estimation *e = r->estimated;
+    cJSON *poses = e->accounts != NULL ? cJSON_AddArrayToObject(json, "poses") : NULL;
+    for (uint32_t i = 0; poses != NULL && i < e->count; i++) {
+        cJSON_AddItemToArray(poses, pose_account_json(e->frames, i, e->accounts));
     }
     json_print(json);
 }
@@ -155,17 +225,43 @@ static void print_topics(const t3r_recording *recording, const bag_frames *frame
     }
 }
 
-static void print_text(const recording_import_request *r, const t3r_recording *recording, const bag_frames *frames,
-                       const posed_recording_totals *totals, const pose_account *accounts)
+static void print_losses(const report *r)
+{
+    const posed_recording_losses *losses = r->losses;
+    for (uint32_t i = 0; i < t3r_recording_stream_count(r->recording); i++) {
+        const t3r_stream_info info = t3r_recording_stream(r->recording, i);
+        if (info.left_out > 0) {
+            printf("left out: %" PRIu64 " of the %s of %s, the first %s\n", info.left_out,
+                   t3r_ros_is_named(T3R_ROS_TF, t3r_text_of(info.schema)) ? "transforms" : "messages", info.topic,
+                   info.fault);
+        }
+    }
+    if (losses->gone_count > 0) {
+        printf("left out: %u of %u frames\n", losses->gone_count, t3r_recording_frame_count(r->recording));
+        text_list_print(&losses->frames, "left out");
+    }
+    if (losses->part_count > 0) {
+        printf("left out: depth or pose of %u of %u frames\n", losses->part_count, r->totals->frames);
+        text_list_print(&losses->parts, "left out");
+    }
+}
+
+static void print_text(const char *output, const report *r)
 {
     char lost[200];
-    say_lost(recording, lost, sizeof lost);
-    printf("%s: %u frames (%u with depth, %u with a pose), %u triplets, %" PRIu64 " bytes\n", r->output, totals->frames,
-           totals->depth_frames, totals->posed_frames, t3r_recording_triplet_count(recording), totals->bytes);
+    const bag_frames *frames = r->frames;
+    const posed_recording_totals *totals = r->totals;
+    say_lost(r->recording, lost, sizeof lost);
+    printf("%s: %u frames (%u with depth, %u with a pose), %u triplets, %" PRIu64 " bytes\n", output, totals->frames,
+           totals->depth_frames, totals->posed_frames, totals->triplets, totals->bytes);
     if (lost[0] != '\0') {
         printf("lost: %s\n", lost);
     }
-    print_topics(recording, frames);
+    print_losses(r);
+    print_topics(r->recording, frames);
+    if (t3r_recording_pairing(r->recording).by_log) {
+        printf("stamps: those of the colour images go back, so log times are used\n");
+    }
     if (frames->interpolated > 0 || frames->composed > 0) {
         printf("poses: %u between two of their topic, %u composed of transforms\n", frames->interpolated,
                frames->composed);
@@ -173,41 +269,71 @@ static void print_text(const recording_import_request *r, const t3r_recording *r
     if (frames->registered > 0 || frames->unregistered > 0) {
         printf("depth: %u registered to colour, %u left out\n", frames->registered, frames->unregistered);
     }
+    const uint64_t beyond = t3r_recording_depth_beyond(r->recording);
+    if (beyond > 0) {
+        const double unit = ldexp((double)t3r_recording_depth_unit_q40(r->recording), -40);
+        printf("depth: %" PRIu64 " samples beyond %g have none; --depth-unit %g doubles the range\n", beyond,
+               unit * UINT16_MAX, 2 * unit);
+    }
     if (frames->remark[0] != '\0') {
         printf("remark: %s\n", frames->remark);
     }
-    if (accounts != NULL) {
-        poses_print(NULL, totals->frames, accounts);
+    if (r->estimated->accounts != NULL) {
+        poses_print(r->estimated->frames, r->estimated->count, r->estimated->accounts);
     }
+}
+
+/* Says why there are no frames: the reasons of topics that could hold them, else the note. */
+static int no_frames(const recording_import_request *r, const t3r_recording *recording)
+{
+    for (uint32_t i = 0; i < t3r_recording_stream_count(recording); i++) {
+        const t3r_stream_info info = t3r_recording_stream(recording, i);
+        if (t3r_ros_is_named(T3R_ROS_IMAGE, t3r_text_of(info.schema)) ||
+            t3r_ros_is_named(T3R_ROS_COMPRESSED_IMAGE, t3r_text_of(info.schema))) {
+            return cli_error(CLI_BAD_INPUT, "%s: no frames: %s: %s; %s", r->input, info.topic, info.unused,
+                             t3r_recording_note(recording));
+        }
+    }
+    return cli_error(CLI_BAD_INPUT, "%s: no frames: %s", r->input, t3r_recording_note(recording));
 }
 
 static int import_opened(const recording_import_request *r, t3r_recording *recording)
 {
     uint32_t count = t3r_recording_frame_count(recording);
-    if (count == 0) {
-        return cli_error(CLI_BAD_INPUT, "%s: no frames: %s", r->input, t3r_recording_note(recording));
+    if (t3r_recording_asks(recording)[0] != '\0') {
+        return cli_error(CLI_BAD_INPUT, "%s: %s", r->input, t3r_recording_asks(recording));
     }
-    pose_account *accounts = r->poses == POSES_GIVEN ? NULL : calloc(count, sizeof *accounts);
+    if (count == 0) {
+        return no_frames(r, recording);
+    }
     bag_frames frames;
     bag_frames_options how = r->bag->frames;
     how.keep_poses = r->poses != POSES_GIVEN;
     posed_recording_totals totals = {0};
+    posed_recording_losses losses;
+    estimation estimated = {0};
     char error[ERROR_BYTES / 2] = "";
-    int code = CLI_OK;
+    int code = posed_recording_losses_open(&losses, count, r->bag->topics.strict) == 0
+                   ? CLI_OK
+                   : cli_error(CLI_BAD_INPUT, "out of memory");
     if (bag_frames_open(&frames, recording, &how, error, sizeof error) != 0) {
         code = cli_error(CLI_BAD_INPUT, "%s: %s", r->input, error);
-    } else if (r->poses != POSES_GIVEN) {
-        code =
-            accounts == NULL ? cli_error(CLI_BAD_INPUT, "out of memory") : estimate_all(recording, r, count, accounts);
     }
-    code = code == CLI_OK ? write_new(r, recording, &(made_frames){&frames, accounts}, &totals) : code;
+    if (code == CLI_OK && r->poses != POSES_GIVEN) {
+        code = estimate_all(recording, r, &losses, &estimated);
+    }
+    code = code == CLI_OK ? write_new(r, recording, &(made_frames){&frames, &estimated}, &losses, &totals) : code;
+    const report made = {recording, &frames, &totals, &losses, &estimated};
     if (code == CLI_OK && r->json) {
-        print_json(recording, &frames, &totals, accounts);
+        print_json(&made);
     } else if (code == CLI_OK) {
-        print_text(r, recording, &frames, &totals, accounts);
+        print_text(r->output, &made);
     }
     bag_frames_close(&frames);
-    free(accounts);
+    posed_recording_losses_close(&losses);
+    free(estimated.frames);
+    free(estimated.place);
+    free(estimated.accounts);
     return code;
 }
 
@@ -215,7 +341,10 @@ int recording_import(const recording_import_request *request)
 {
     char error[ERROR_BYTES] = "";
     bag_pictures pictures = {0};
-    t3r_recording *recording = t3r_recording_open_chosen(request->input, &request->bag->topics, error, sizeof error);
+    t3r_recording_choice choice = request->bag->topics;
+    choice.intrinsics = request->intrinsics;
+    choice.depth_unit_q40 = request->depth_unit_q40;
+    t3r_recording *recording = t3r_recording_open_chosen(request->input, &choice, error, sizeof error);
     if (recording == NULL) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }

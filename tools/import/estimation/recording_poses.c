@@ -20,7 +20,9 @@ static int look_at(const t3r_recording *recording, const char *path, uint32_t in
         return cli_error(CLI_BAD_INPUT, "%s: there is no frame %" PRIu32 ": the recording holds %" PRIu32, path, index,
                          frames);
     }
-    if (t3r_recording_frame(recording, index, &frame, error, sizeof error) != T3R_CAPTURE_FRAME) {
+    char lost[ERROR_BYTES]; /* depth or a pose that cannot be read is not needed */
+    if (t3r_recording_frame_readable(recording, index, &frame, lost, sizeof lost, error, sizeof error) !=
+        T3R_CAPTURE_FRAME) {
         return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, index, error);
     }
     if (!frame.has_intrinsics) {

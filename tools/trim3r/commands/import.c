@@ -24,6 +24,7 @@
 #include "import/frames/unreadable.h"
 #include "import/pointmaps/import_pointmaps.h"
 #include "recording/recording.h"
+#include "recording/recording_folder.h"
 #include "trim3r.h"
 
 #define ERROR_BYTES 1024
@@ -118,7 +119,7 @@ static const struct argp_option argp_options[] = {
      "area average and depth by the pixel at the centre of each box (as the pictures are)",
      0},
     {"intrinsics", KEY_INTRINSICS, "LIST", 0,
-     "colour camera of a TUM RGB-D folder, of a folder of pose texts or of pictures alone: "
+     "colour camera of a TUM RGB-D folder, of a folder of pose texts, of pictures alone or of a bag: "
      "fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels, (0, 0) being "
      "the centre of the top-left pixel (known where the name of the folder has freiburg1, freiburg2 or freiburg3 in "
      "it)",
@@ -133,9 +134,8 @@ static const struct argp_option argp_options[] = {
     {"min-confidence", KEY_CONFIDENCE, "C", 0,
      "least confidence of a pointmap's point; points below it get no depth (all points are kept)", 0},
     {"depth-unit", KEY_UNIT, "U", 0,
-     "length of one step of depth: of depth beside a model of COLMAP (needed), of depth in floats (0.001), or of depth "
-     "made from "
-     "pointmaps "
+     "length of one step of depth: of depth beside a model of COLMAP (needed), of depth in floats or in a bag (0.001), "
+     "or of depth made from pointmaps "
      "(integer_depth_scale of the folder, else a power of two with which the median has 4096 to 8192 steps)",
      0},
     {"json", OPTION_TO(options, json), NULL, 0, "print one JSON object on stdout", 0},
@@ -187,8 +187,9 @@ static const struct argp parser = {
         "\n"
         "Of a bag (MCAP) the frames are written anew: compressed images (JPEG, PNG, compressedDepth) decoded, poses "
         "interpolated between two of their topic or composed of /tf and /tf_static, depth of another camera "
-        "registered to colour. A recording that lost its end is read as far as it goes. Topics that were not used "
-        "are named with the reason.\n\n"
+        "registered to colour. DIR may be a folder of rosbag2: metadata.yaml with one MCAP file. A recording that lost "
+        "its end is read as far as it goes. Messages and frames that cannot be read are left out, counted and named. "
+        "Topics that were not used are named with the reason.\n\n"
         "Examples:\n"
         "  trim3r import scene --size 256x256 -o scene.mcap\n"
         "  trim3r import rgbd_dataset_freiburg1_desk -o desk.mcap\n"
@@ -342,12 +343,6 @@ static void print_text(const options *o, const material *m, const totals *t)
     }
 }
 
-/* Returns a given option that only pointmaps use, or NULL. */
-static const char *pointmap_option(const pointmap_options *o)
-{
-    return o->confidence_least != -HUGE_VAL ? "--min-confidence" : o->depth_unit != 0 ? "--depth-unit" : NULL;
-}
-
 /* Reads the folder's lists, then applies the options: pointmaps, poses. */
 static int prepare(const options *o, material *m, char *error)
 {
@@ -423,12 +418,36 @@ static int make_of_what_can_be_read(const options *o, material *m, totals *t, ch
 
 /* ---- a recording or a bag --------------------------------------------------------------------------------------- */
 
+/* Makes the lens of --intrinsics for all colour images. Returns 0, or -1 with a reason. */
+static int given_lens(const options *o, t3r_camera *camera, char *error)
+{
+    const double *n = o->intrinsics;
+    const t3r_recorded_camera given = {
+        .fx = n[0],
+        .fy = n[1],
+        .cx = n[2],
+        .cy = n[3],
+        .distortion = o->intrinsics_count == 9 ? T3R_DISTORTION_RADTAN : T3R_DISTORTION_NONE,
+        .coefficients = {n[4], n[5], n[6], n[7], n[8]},
+        .rotation = {1, 0, 0, 0},
+    };
+    const char *wrong = t3r_fixed_camera(&given, camera);
+    return wrong == NULL ? 0 : t3r_reason(error, ERROR_BYTES, "--intrinsics: %s", wrong);
+}
+
 static int import_recording(const options *o)
 {
-    if (o->width != 0 || o->intrinsics_count != 0 || o->pointmaps.file != NULL ||
-        pointmap_option(&o->pointmaps) != NULL) {
-        return cli_error(CLI_BAD_USAGE, "%s is a recording: --size, --intrinsics and pointmaps belong to folders",
-                         o->directory);
+    if (o->width != 0 || o->pointmaps.file != NULL || o->pointmaps.confidence_least != -HUGE_VAL) {
+        return cli_error(CLI_BAD_USAGE, "%s is a recording: --size and pointmaps belong to folders", o->directory);
+    }
+    char error[ERROR_BYTES];
+    t3r_camera camera;
+    uint64_t unit_q40 = 0;
+    if (o->intrinsics_count != 0 && given_lens(o, &camera, error) != 0) {
+        return cli_error(CLI_BAD_USAGE, "%s", error);
+    }
+    if (o->pointmaps.depth_unit != 0 && !t3r_fixed_depth_unit(o->pointmaps.depth_unit, &unit_q40)) {
+        return cli_error(CLI_BAD_USAGE, "--depth-unit %g is out of range", o->pointmaps.depth_unit);
     }
     char *source = source_name(o->directory, "recording");
     if (source == NULL) {
@@ -438,6 +457,8 @@ static int import_recording(const options *o)
                                                             .output = o->output,
                                                             .source = source,
                                                             .poses = o->poses,
+                                                            .intrinsics = o->intrinsics_count != 0 ? &camera : NULL,
+                                                            .depth_unit_q40 = unit_q40,
                                                             .bag = &o->bag,
                                                             .stored = &o->stored,
                                                             .json = o->json});
@@ -456,7 +477,7 @@ int command_import(int argc, char **argv)
     options o = {0};
     o.pointmaps.confidence_least = -HUGE_VAL;
     file_options_parse(&parser, argc, argv, &o);
-    if (is_file(o.directory)) {
+    if (is_file(o.directory) || t3r_recording_is_folder(o.directory)) {
         return import_recording(&o);
     }
     if (o.bag.given != NULL) {

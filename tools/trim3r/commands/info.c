@@ -11,6 +11,7 @@
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
+#include "host/reason.h"
 #include "import/bags/bag_pictures.h"
 #include "recording/recording.h"
 #include "scene/scene_file.h"
@@ -36,6 +37,8 @@ typedef struct frame_summary {
     double depth_unit; /* world units a step; 0 = no depth */
     t3r_distortion distortion;
     bool mixed;
+    uint32_t unreadable;      /* frames */
+    char reason[ERROR_BYTES]; /* of the first of them */
 } frame_summary;
 
 enum { KEY_VIEW = 0x100 };
@@ -119,7 +122,7 @@ static const char *distortion_name(t3r_distortion distortion)
     return distortion == T3R_DISTORTION_NONE ? "none" : distortion == T3R_DISTORTION_RADTAN ? "radtan" : "fisheye";
 }
 
-/* Returns the number of frames to read: of compressed images only the first is decoded, as a sample. */
+/* Returns the number of frames to read: of images to decode only the first that can be read, as a sample. */
 static uint32_t frames_to_see(const t3r_recording *recording)
 {
     uint32_t count = t3r_recording_frame_count(recording);
@@ -133,13 +136,17 @@ static uint32_t frames_to_see(const t3r_recording *recording)
 static int summarise(const t3r_recording *recording, frame_summary *out, char *error)
 {
     *out = (frame_summary){0};
-    uint32_t count = frames_to_see(recording);
-    for (uint32_t i = 0; i < count; i++) {
+    const uint32_t count = t3r_recording_frame_count(recording), enough = frames_to_see(recording);
+    uint32_t seen = 0;
+    for (uint32_t i = 0; i < count && seen < enough; i++) {
         t3r_capture_frame f;
         if (t3r_recording_frame(recording, i, &f, error, ERROR_BYTES) != T3R_CAPTURE_FRAME) {
-            return -1;
+            if (out->unreadable++ == 0) {
+                t3r_reason(out->reason, sizeof out->reason, "%s", error);
+            }
+            continue;
         }
-        if (i == 0) {
+        if (seen++ == 0) {
             out->width = f.frame.width;
             out->height = f.frame.height;
             out->format = f.frame.format;
@@ -155,7 +162,7 @@ static int summarise(const t3r_recording *recording, frame_summary *out, char *e
         out->mixed = out->mixed || (f.frame.depth != NULL && (f.frame.depth_width != out->depth_width ||
                                                               f.frame.depth_height != out->depth_height));
     }
-    return 0;
+    return count > 0 && seen == 0 ? t3r_reason(error, ERROR_BYTES, "%s", out->reason) : 0;
 }
 
 static cJSON *streams_json(const t3r_recording *recording)
@@ -214,6 +221,7 @@ static void print_json(const t3r_recording *recording, const frame_summary *s)
     cJSON_AddNumberToObject(json, "depth_unit", s->depth_unit);
     cJSON_AddStringToObject(json, "distortion", distortion_name(s->distortion));
     cJSON_AddBoolToObject(json, "mixed_sizes", s->mixed);
+    cJSON_AddNumberToObject(json, "unreadable_frames", s->unreadable);
     cJSON_AddStringToObject(json, "clock", t3r_recording_clock(recording));
     cJSON_AddNumberToObject(json, "bits_epoch", t3r_recording_bits_epoch(recording));
     cJSON_AddStringToObject(json, "note", t3r_recording_note(recording));
@@ -252,6 +260,9 @@ static void print_text(const t3r_recording *recording, const frame_summary *s, c
     putchar('\n');
     if (s->depth_width != 0) {
         printf("depth:    %ux%u, %.9g world units a step\n", s->depth_width, s->depth_height, s->depth_unit);
+    }
+    if (s->unreadable > 0) {
+        printf("unreadable: %u frames, the first: %s\n", s->unreadable, s->reason);
     }
     printf("clock:    %s\n", t3r_recording_clock(recording));
     uint32_t epoch = t3r_recording_bits_epoch(recording);

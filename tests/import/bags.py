@@ -1,0 +1,396 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bags as drivers and robots write them: which topics are chosen, which messages are left out, which files are named.
+
+bags.py TRIM3R
+"""
+import json
+import os
+import sqlite3
+import sys
+import tempfile
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: numpy is not there")
+    sys.exit(77)
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../capture/vm"))
+from checks import check, done  # noqa: E402
+import flat_jpeg  # noqa: E402
+import frames  # noqa: E402
+from program import run  # noqa: E402
+import ros_bag as ros  # noqa: E402
+from ros_bag import Bag, SECOND  # noqa: E402
+
+NAN = float("nan")
+
+
+def imported(bag, *options, status=0):
+    """Imports a bag. Returns its report, with the frames that were written, or the error."""
+    if isinstance(bag, Bag):
+        bag.write("bag.mcap")
+    code, out, error = run("import", bag if isinstance(bag, str) else "bag.mcap", *options, "--json", "-o", "out.mcap")
+    check(code == status, f"{options}: status {code}: {error}")
+    if code != 0:
+        return error
+    report = json.loads(out)
+    report["read"] = frames.read("out.mcap")
+    report["use"] = {topic["topic"]: topic["use"] for topic in report["topics"]}
+    report["why"] = {topic["topic"]: topic["unused"] for topic in report["unused"]}
+    return report
+
+
+def info(path="bag.mcap"):
+    code, out, error = run("info", path, "--json")
+    check(code == 0, f"info: {error}")
+    return json.loads(out)
+
+
+def positions(report):
+    return [tuple(np.round(pose[:3, 3], 6)) for pose in report["read"]["pose"]]
+
+
+def camera(bag, count=2, topic="/cam/image_raw", frame="cam", poses="/pose", first=0):
+    """Adds pictures, intrinsics and poses of a camera, a second apart."""
+    for i in range(first, first + count):
+        ns = (i + 1) * SECOND
+        bag.put(os.path.dirname(topic) + "/camera_info", ros.INFO, ns, ros.info(ns, frame))
+        if poses is not None:
+            bag.put(poses, ros.POSE, ns, ros.pose(ns, "map", (i, 0, 0)))
+        bag.put(topic, ros.IMAGE, ns, ros.image(ns, frame, "rgb8", ros.colour(10 * i)))
+    return bag
+
+
+def depth(bag, topic, encoding, value, frame="cam", count=2, kind="<f4"):
+    for i in range(count):
+        ns = (i + 1) * SECOND
+        bag.put(topic, ros.IMAGE, ns, ros.image(ns, frame, encoding, np.full((ros.HEIGHT, ros.WIDTH), value, kind)))
+    return bag
+
+
+# --- topics ----------------------------------------------------------------------------------------------------------
+
+
+def depth_is_chosen_by_name_and_type():
+    for other, encoding, kind in (("/cam/confidence/confidence_map", "32FC1", "<f4"), ("/cam/ir/image_raw", "mono16", "<u2"),
+                                  ("/cam/amplitude", "16UC1", "<u2"), ("/cam/second", "mono16", "<u2")):
+        bag = depth(Bag(), other, encoding, 37, kind=kind)
+        report = imported(camera(depth(bag, "/cam/registered/depth", "32FC1", 1.5)))
+        check(report["use"].get("/cam/registered/depth") == "depth", f"{other}: {report['use']}")
+        check((report["read"]["depth"][0] == 1500).all(), f"{other}: {report['read']['depth'][0]}")
+    bag = camera(depth(Bag(), "/cam/confidence", "32FC1", 37.0))
+    report = imported(bag)
+    check(report["depth_frames"] == 0 and "--depth-topic" in report["why"]["/cam/confidence"], f"alone: {report['why']}")
+    check(imported(bag, "--depth-topic", "/cam/confidence")["depth_frames"] == 2, "a named topic is taken")
+    check(info()["depth_frames"] == 0, "info takes no confidence as depth")
+    bag = camera(Bag())
+    for topic, frame in (("/one/depth", "one"), ("/two/depth", "two")):
+        depth(bag, topic, "16UC1", 1, frame=frame, kind="<u2")
+    check("--depth-topic" in imported(bag)["why"]["/two/depth"], "of two equally good ones one must be named")
+
+
+def poses_are_not_goals():
+    for topic in ("/goal_pose", "/move_base_simple/goal", "/cmd/target_pose", "/initialpose"):
+        bag = camera(Bag(), count=3, poses=None)
+        for i in (0, 2):
+            bag.put(topic, ros.POSE, (i + 1) * SECOND, ros.pose((i + 1) * SECOND, "map", (50, 60, 0)))
+        check(imported(bag)["posed_frames"] == 0, f"{topic} alone")
+        for i in range(3):
+            bag.put("/tf", ros.TF, (i + 1) * SECOND, ros.transforms(((i + 1) * SECOND, "map", "cam", (i, 0, 0), ros.UPRIGHT)))
+        report = imported(bag)
+        check(positions(report) == [(0, 0, 0), (1, 0, 0), (2, 0, 0)], f"{topic}: {positions(report)}")
+        check("--pose-topic" in report["why"][topic], f"{report['why']}")
+        check(positions(imported(bag, "--pose-topic", topic))[0] == (50, 60, 0), f"{topic} by name")
+    bag = camera(Bag(), count=2)
+    for i in range(2):
+        bag.put("/tf", ros.TF, (i + 1) * SECOND, ros.transforms(((i + 1) * SECOND, "map", "cam", (0, i, 0), ros.UPRIGHT)))
+    check(positions(imported(bag)) == [(0, 0, 0), (1, 0, 0)], "the pose topic, if there is one")
+    check(positions(imported(bag, "--pose-topic", "/tf")) == [(0, 0, 0), (0, 1, 0)], "--pose-topic /tf")
+    bag = camera(Bag(), poses=None)
+    bag.put("/marker", ros.POSE, SECOND, ros.pose(SECOND, "cam", (0, 0, 1)))
+    check("own frame" in imported(bag)["why"]["/marker"], "a pose in the camera's frame is of a thing that it sees")
+
+
+def colour_is_chosen_by_votes():
+    grey, rgb = ros.colour(7)[..., 0].copy(), ros.colour(9)
+    for topic, encoding, rows in (("/cam/infra1/image", "mono8", grey), ("/cam/overlay", "rgb8", rgb), ("/cam/depth/colours", "rgb8", rgb),
+                                  ("/foo/image", "rgb8", rgb)):
+        bag = Bag()
+        for i in range(2):
+            bag.put(topic, ros.IMAGE, (i + 1) * SECOND, ros.image((i + 1) * SECOND, "other", encoding, rows))
+        report = imported(camera(bag, topic="/cam/colour/image"))
+        check(report["use"].get("/cam/colour/image") == "colour", f"{topic}: {report['use']}")
+    bag = camera(camera(Bag(), topic="/left/image_raw", frame="left"), topic="/right/image_raw", frame="right", poses=None)
+    error = imported(bag, status=1)
+    check(all(word in error for word in ("/left/image_raw", "/right/image_raw", "--colour-topic")), error)
+    check("--colour-topic" in info()["note"], "info asks, too")
+    for command in (("build", "bag.mcap", "--context", "0,1", "--gaussians", "9", "-o", "s.ply"), ("replay", "bag.mcap")):
+        code, _, error = run(*command)
+        check(code == 1 and "--colour-topic" in error, f"{command[0]}: {error}")
+    check(imported(bag, "--colour-topic", "/right/image_raw")["use"]["/right/camera_info"] == "camera_info", "and takes a name")
+
+
+def intrinsics_are_of_the_same_frame():
+    bag = Bag()
+    for i in range(2):
+        ns = (i + 1) * SECOND
+        bag.put("/rig/left", ros.IMAGE, ns, ros.image(ns, "left", "rgb8", ros.colour(1)))
+        bag.put("/rig/camera_info", ros.INFO, ns, ros.info(ns, "right", lens=(44, 44, 12, 9)))
+    report = imported(bag)
+    check("camera_info" not in report["read"] and "--camera-info-topic" in report["why"]["/rig/camera_info"], f"{report['why']}")
+    check(info()["pairing"]["with_intrinsics"] == 0, "info, too")
+    for i in range(2):
+        bag.put("/rig/left_info", ros.INFO, SECOND, ros.info(SECOND, "/left", lens=(20, 20, 12, 9)))
+    check(imported(bag)["read"]["camera_info"][0][0, 0] == 20, "one of the frame, with a slash")
+    check(imported(bag, "--camera-info-topic", "/rig/camera_info")["read"]["camera_info"][0][0, 0] == 44, "a named one")
+    lens = imported(bag, "--intrinsics", "25,26,15,11")["read"]["camera_info"][0]
+    check((lens[0, 0], lens[1, 1], lens[0, 2], lens[1, 2]) == (25, 26, 15, 11), f"--intrinsics: {lens}")
+
+
+def channels_of_a_topic_are_one_stream():
+    bag = Bag()
+    for i in range(6):
+        ns = (i + 1) * SECOND
+        for topic, kind, message in (("/cam/image", ros.IMAGE, ros.image(ns, "cam", "rgb8", ros.colour(i))),
+                                     ("/cam/depth", ros.IMAGE, ros.image(ns, "cam", "16UC1", ros.steps(1000 + i))),
+                                     ("/pose", ros.POSE, ros.pose(ns, "map", (i, 0, 0)))):
+            bag.put(topic, kind, ns, message, key=i // 2)
+    report = imported(bag)
+    check(report["frames"] == report["depth_frames"] == report["posed_frames"] == 6, f"{report['frames']}")
+    check([z[0, 0] for z in report["read"]["depth"]] == list(range(1000, 1006)), "depth of every publisher")
+    check(len(info()["streams"]) == 3 and info()["frames"] == 6, "info lists three streams")
+
+
+# --- time ------------------------------------------------------------------------------------------------------------
+
+
+def clocks_that_begin_again():
+    for name, stamps in (("again", [1, 2, 3, 1, 2, 3]), ("earlier", [5, 6, 7, 1.5, 2.5, 3.5])):
+        bag = Bag()
+        for i, stamp in enumerate(stamps):
+            ns, log = int(stamp * SECOND), (i + 1) * SECOND
+            bag.put("/cam/camera_info", ros.INFO, log, ros.info(ns, "cam"))
+            bag.put("/cam/depth", ros.IMAGE, log, ros.image(ns, "cam", "16UC1", ros.steps(1000 + i)))
+            bag.put("/tf", ros.TF, log, ros.transforms((ns, "map", "cam", (i, 0, 0), ros.UPRIGHT)))
+            bag.put("/cam/image", ros.IMAGE, log, ros.image(ns, "cam", "rgb8", ros.colour(i)))
+        report = imported(bag)
+        check([z[0, 0] for z in report["read"]["depth"]] == list(range(1000, 1006)), f"{name}: depth of its own pass")
+        check(positions(report) == [(i, 0, 0) for i in range(6)], f"{name}: {positions(report)}")
+        check("log times" in report["note"] and "log times" in info()["note"], f"{name}: {report['note']}")
+    check(run("replay", "out.mcap", "--gaussians", "9")[0] == 0, "what is written replays")
+    bag = Bag()
+    for i, stamp in enumerate((1, 1, 2, 2)):
+        ns, log = stamp * SECOND, (i + 1) * SECOND
+        bag.put("/cam/depth", ros.IMAGE, log, ros.image(ns, "cam", "16UC1", ros.steps(1000 + i)))
+        bag.put("/cam/image", ros.IMAGE, log, ros.image(ns, "cam", "rgb8", ros.colour(i)))
+    depths = [z[0, 0] for z in imported(bag)["read"]["depth"]]
+    check(depths == list(range(1000, 1004)), f"repeated stamps are paired by log times: {depths}")
+    bag = Bag()
+    for stamp in (1, 2, 1, 2):
+        bag.put("/cam/image", ros.IMAGE, stamp * SECOND, ros.image(stamp * SECOND, "cam", "rgb8", ros.colour(stamp)))
+    check(imported(bag)["frames"] == 4, "images alone need no pairing")
+    bag.put("/cam/depth", ros.IMAGE, SECOND, ros.image(SECOND, "cam", "16UC1", ros.steps(1)))
+    check("go back" in imported(bag, status=1), "log times that go back, too, are refused")
+
+
+# --- messages --------------------------------------------------------------------------------------------------------
+
+
+def bad_poses_are_left_out():
+    for message in (ros.pose(3 * SECOND, "map", (NAN, 0, 0)), ros.pose(3 * SECOND, "map", (0, 0, 0), (0, 0, 0, 0)),
+                    ros.pose(3 * SECOND, "map", (0, 0, 0), (0, NAN, 0, 1)), b"", b"\0\1\0\0\1"):
+        bag = camera(Bag())
+        bag.put("/pose", ros.POSE, 3 * SECOND, message)
+        report = imported(camera(bag, first=2, count=1, poses=None))
+        check(report["frames"] == 3 and report["posed_frames"] == 2, f"{report['frames']}, {report['posed_frames']}")
+        check(report["unreadable"][0]["topic"] == "/pose" and report["unreadable"][0]["left_out"] == 1, f"{report['unreadable']}")
+        check("/pose" in imported(bag, "--strict", status=1), "--strict refuses")
+        check("1 of its messages are left out" in info()["note"], "info tells")
+    for edge in ((SECOND, "base", "wheel", (NAN, 0, 0), ros.UPRIGHT), (SECOND, "map", "cam", (0, 0, 0), (0, 0, 0, 0)),
+                 (SECOND, "cam", "cam", (0, 0, 0), ros.UPRIGHT), (SECOND, "", "cam", (0, 0, 0), ros.UPRIGHT)):
+        bag = camera(Bag(), poses=None)
+        for i in range(2):
+            bag.put("/tf", ros.TF, SECOND, ros.transforms(((i + 1) * SECOND, "map", "cam", (i, 0, 0), ros.UPRIGHT), edge))
+        report = imported(bag)
+        check(positions(report) == [(0, 0, 0), (1, 0, 0)], f"{edge}: {positions(report)}")
+        check(report["unreadable"] == [report["unreadable"][0]] and report["unreadable"][0]["left_out"] == 2, f"{edge}")
+        check("/tf" in imported(bag, "--strict", status=1), "--strict refuses")
+
+
+def bad_images_are_left_out():
+    whole = ros.image(2 * SECOND, "cam", "rgb8", ros.colour(5))
+    short = ros.Cdr().header(2 * SECOND, "cam").put("I", ros.HEIGHT, ros.WIDTH).text("rgb8").put("B", 0).put("I", 96).rows(b"").done()
+    for name, message, counted in (("empty", b"", False), ("cut", whole[:-100], False), ("short", short, True)):
+        bag = camera(depth(Bag(), "/cam/depth", "16UC1", 1000, count=3, kind="<u2"), count=1)
+        bag.put("/cam/image_raw", ros.IMAGE, 2 * SECOND, message)
+        report = imported(camera(bag, count=1, first=2))
+        check(report["frames"] == 2, f"{name}: {report['frames']}")
+        check([p[0, 0, 0] for p in report["read"]["image"]] == [0, 20], f"{name}: the other two")
+        check(report["frames_left_out"] == counted and len(report["unreadable"]) == (not counted), f"{name}: is counted")
+        check("/cam/image_raw" in imported(bag, "--strict", status=1), f"{name}: --strict refuses")
+        check(info()["frames"] == 2 + counted and info()["unreadable_frames"] == counted, f"{name}: info goes on")
+        text = run("import", "bag.mcap", "-o", "out.mcap")[1]
+        check("left out: 1 of" in text and "/cam/image_raw" in text, f"{name}: {text}")
+        good = str(1 + counted)
+        code, _, error = run("build", "bag.mcap", "--context", f"0,{good}", "--gaussians", "9", "-o", "s.ply")
+        check(code == 0, f"{name}: build goes on: {error}")
+    bag = camera(Bag(), count=3)
+    bag.put("/cam/depth", ros.IMAGE, SECOND, ros.image(SECOND, "cam", "16UC1", ros.steps(1000)))
+    bad = ros.image(2 * SECOND, "cam", "16UC1", ros.steps(1, (2, 9000)))
+    bag.put("/cam/depth", ros.IMAGE, 2 * SECOND, bad)
+    report = imported(bag)
+    check(report["frames"] == 3 and report["depth_frames"] == 1 and report["parts_left_out"] == 1, "bad depth alone is left out")
+    bag = camera(Bag(), count=2)
+    bag.put("/cam/depth", ros.IMAGE, 2 * SECOND, bad)
+    check("/cam/depth" in imported(bag, status=1), "a bag whose depth is all bad is refused")
+
+
+def jpegs_without_their_end():
+    whole = flat_jpeg.jpeg(ros.WIDTH, ros.HEIGHT, [[(120, 120, 100, 160)] * (ros.WIDTH // 16)] * (ros.HEIGHT // 8))
+    rows = flat_jpeg.rgb(120, 100, 160) * (ros.WIDTH * ros.HEIGHT)
+    for name, data, good in (("no end marker", whole[:-2], True), ("half", whole[:-(len(whole) // 20) - 2], False),
+                             ("empty", b"", False)):
+        bag = Bag()
+        for i, jpeg in enumerate((whole, data, whole)):
+            ns = (i + 1) * SECOND
+            bag.put("/cam/image/compressed", ros.COMPRESSED, ns, ros.compressed(ns, "cam", "jpeg", jpeg))
+        report = imported(bag)
+        check(report["frames"] == 2 + good and report["frames_left_out"] == (not good), f"{name}: {report['frames']}")
+        check(all(picture.tobytes() == rows for picture in report["read"]["image"]), f"{name}: pixels")
+        check(info()["frames"] == 3, f"{name}: info")
+        if not good:
+            check("frame 1, /cam/image/compressed" in imported(bag, "--strict", status=1), f"{name}: --strict")
+
+
+def triplets_follow_the_frames():
+    """Triplets without the frame that is left out are kept, with new numbers."""
+    bag = camera(Bag(), count=1)
+    bag.put("/cam/image_raw", ros.IMAGE, 2 * SECOND, ros.image(2 * SECOND, "cam", "rgb8", ros.colour(1)[:, :9]))
+    bag.metadata("trim3r_triplets", "triplets", "0,2,1;0,3,2")
+    report = imported(camera(bag, first=2))
+    check(report["frames"] == 3 and report["triplets"] == 1, f"{report['frames']}, {report['triplets']}")
+    check(info("out.mcap")["triplets"] == [{"context": [0, 2], "target": 1}], f"{info('out.mcap')['triplets']}")
+
+
+# --- geometry --------------------------------------------------------------------------------------------------------
+
+
+def rectified_images_have_the_lens_of_p():
+    p = (27, 28, 15, 11)
+    for topic in ("/cam/image_rect", "/cam/image_rect_color", "/cam/image_raw"):
+        bag = Bag()
+        bag.put("/cam/camera_info", ros.INFO, SECOND, ros.info(SECOND, "cam", d=(-0.3, 0.1, 0, 0, 0), p=p))
+        bag.put("/pose", ros.POSE, SECOND, ros.pose(SECOND, "map", (0, 0, 0)))
+        bag.put(topic, ros.IMAGE, SECOND, ros.image(SECOND, "cam", "rgb8", ros.colour(1)))
+        lens = imported(bag)["read"]["camera_info"][0]
+        raw = topic.endswith("raw")
+        check((lens[0, 0], lens[1, 1]) == ((30, 30) if raw else (27, 28)), f"{topic}: {lens}")
+        check(info()["distortion"] == ("radtan" if raw else "none"), f"{topic}: info reads {info()['distortion']}")
+    bag = Bag()
+    bag.put("/cam/camera_info", ros.INFO, SECOND, ros.info(SECOND, "cam", d=(-0.3, 0.1, 0, 0, 0), p=(0, 0, 0, 0)))
+    bag.put("/cam/image_rect", ros.IMAGE, SECOND, ros.image(SECOND, "cam", "rgb8", ros.colour(1)))
+    check("P is 0" in imported(bag, status=1), "without P")
+
+
+def depth_of_another_aspect_needs_its_own_lens():
+    for size, good in (((ros.HEIGHT, ros.HEIGHT), False), ((12, 16), True), ((11, 15), True), ((20, 32), False)):
+        bag = camera(Bag(), count=1)
+        bag.put("/cam/depth", ros.IMAGE, SECOND, ros.image(SECOND, "cam", "16UC1", ros.steps(1000, size)))
+        if good:
+            check(imported(bag)["depth_frames"] == 1, f"{size}")
+            continue
+        check("--depth-camera-info-topic" in imported(bag, status=1), f"{size}")
+        for command in (("build", "bag.mcap", "--context", "0,0", "--gaussians", "9", "-o", "s.ply"), ("info", "bag.mcap")):
+            code, _, error = run(*command)
+            check(code == 1 and "another aspect" in error, f"{command[0]}, {size}: {error}")
+        bag.put("/other/info", ros.INFO, SECOND, ros.info(SECOND, "cam", size=(size[1], size[0])))
+        check(imported(bag, "--depth-camera-info-topic", "/other/info")["registered"] == 1, f"{size}, registered")
+
+
+# --- encodings and files ---------------------------------------------------------------------------------------------
+
+
+def encodings():
+    rgb = np.zeros((ros.HEIGHT, ros.WIDTH, 3), np.uint8)
+    rgb[:] = (200, 100, 50)
+    alpha = np.full((ros.HEIGHT, ros.WIDTH, 1), 9, np.uint8)
+    bayer = {"rggb": (0, 1, 1, 2), "bggr": (2, 1, 1, 0), "gbrg": (1, 2, 0, 1), "grbg": (1, 0, 2, 1)}
+    cases = {"rgba8": np.concatenate([rgb, alpha], 2), "bgra8": np.concatenate([rgb[..., ::-1], alpha], 2),
+             "8UC4": np.concatenate([rgb[..., ::-1], alpha], 2), "8UC3": rgb[..., ::-1].copy()}
+    for name, channels in bayer.items():
+        rows = np.zeros((ros.HEIGHT, ros.WIDTH), np.uint8)
+        for i, channel in enumerate(channels):
+            rows[i // 2::2, i % 2::2] = rgb[0, 0, channel]
+        cases["bayer_" + name + "8"] = rows
+    for encoding, rows in cases.items():
+        bag = Bag()
+        bag.put("/pose", ros.POSE, SECOND, ros.pose(SECOND, "map", (0, 0, 0)))
+        bag.put("/cam/camera_info", ros.INFO, SECOND, ros.info(SECOND, "cam"))
+        bag.put("/cam/image", ros.IMAGE, SECOND, ros.image(SECOND, "cam", encoding, rows))
+        picture = imported(bag)["read"]["image"][0]
+        expected = rgb[..., ::-1] if encoding == "8UC3" else rgb  # stored as bgr8
+        check(np.array_equal(picture, expected), f"{encoding}: {picture[5, 5]}")
+        check(info()["width"] == ros.WIDTH, f"{encoding}: info")
+        code, _, error = run("build", "bag.mcap", "--context", "0,0", "--gaussians", "9", "-o", "s.ply")
+        check(encoding == "8UC3" or (code == 1 and "trim3r import" in error), f"{encoding}: {error}")
+
+
+def depth_units():
+    bag = camera(depth(Bag(), "/cam/depth", "32FC1", 80.0))
+    report = imported(bag)
+    check(report["depth_beyond"] == 2 * ros.WIDTH * ros.HEIGHT, f"{report['depth_beyond']}")
+    check("--depth-unit 0.002" in run("import", "bag.mcap", "-o", "out.mcap")[1], "the remedy is printed")
+    report = imported(bag, "--depth-unit", "0.002")
+    check((report["read"]["depth"][0] == 40000).all() and report["depth_beyond"] == 0, "metres in other steps")
+    check(abs(info("out.mcap")["depth_unit"] - 0.002) < 1e-9, "the unit is stored")
+    os.rename("out.mcap", "own.mcap")
+    check("states its own depth unit" in imported("own.mcap", "--depth-unit", "0.01", status=1), "a recording has its unit")
+
+
+def other_files():
+    connection = sqlite3.connect("bag.db3")
+    connection.execute("create table topics(id integer)")
+    connection.commit()
+    connection.close()
+    contents = {"old.bag": b"#ROSBAG V2.0\n" + bytes(99), "packed.mcap": b"\x28\xb5\x2f\xfd" + bytes(99), "film.mp4": b"\0\0\0\x18ftypisom" + bytes(64),
+                "scan.r3d": b"PK\3\4" + bytes(99)}
+    for name, content in contents.items():
+        with open(name, "wb") as file:
+            file.write(content)
+    for name, word in (("bag.db3", "mcap convert"), ("old.bag", "rosbags-convert"), ("packed.mcap", "zstd -d"), ("film.mp4", "ffmpeg"),
+                       ("scan.r3d", "unzip")):
+        for command in (("import", name, "-o", "out.mcap"), ("info", name), ("replay", name)):
+            code, _, error = run(*command)
+            check(code == 1 and word in error, f"{command}: {error}")
+    bag = Bag(encoding="ros1")
+    bag.put("/cam/image", "sensor_msgs/Image", SECOND, bytes(40))
+    check("ROS 1" in imported(bag, status=1), "messages of ROS 1")
+    bag = Bag()
+    bag.put("/cam/image", ros.IMAGE, SECOND, b"\x28\xb5\x2f\xfd" + bytes(99))
+    check("packed with zstd" in imported(bag, status=1), "messages packed one by one")
+
+
+def folders_of_rosbag2():
+    def folder(name, *files):
+        os.makedirs(name)
+        for i, file in enumerate(files):
+            camera(Bag(), first=2 * i).write(f"{name}/{file}")
+        with open(f"{name}/metadata.yaml", "w", encoding="utf-8") as text:
+            text.write("rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: mcap\n  relative_file_paths:\n"
+                       + "".join(f"    - {file}\n" for file in files) + "  duration:\n    nanoseconds: 1\n")
+        return name
+    check(imported(folder("one", "one_0.mcap"))["frames"] == 2, "a folder of one file")
+    check("mcap merge" in imported(folder("two", "two_0.mcap", "two_1.mcap"), status=1), "of two")
+    check("mcap convert" in imported(folder("lite", "lite_0.db3"), status=1), "of SQLite")
+    check("zstd -d" in imported(folder("packed", "packed_0.mcap.zstd"), status=1), "of packed files")
+
+
+with tempfile.TemporaryDirectory() as work:
+    os.chdir(work)
+    for case in (depth_is_chosen_by_name_and_type, poses_are_not_goals, colour_is_chosen_by_votes, intrinsics_are_of_the_same_frame,
+                 channels_of_a_topic_are_one_stream, clocks_that_begin_again, bad_poses_are_left_out, bad_images_are_left_out,
+                 jpegs_without_their_end, triplets_follow_the_frames, rectified_images_have_the_lens_of_p, depth_of_another_aspect_needs_its_own_lens, encodings, depth_units, other_files,
+                 folders_of_rosbag2):
+        case()
+    done()
