@@ -206,10 +206,11 @@ def test_options_of_pointmaps_alone(room, _):
     refused(path, ["no_maps", "--min-confidence is for pointmaps"], "--min-confidence", "3")
     refused(path, ["no_maps", "--depth-unit is for pointmaps"], "--depth-unit", "5")
     refused(path, ["no_maps", "--depth-unit is for pointmaps"], "--depth-unit", "5", "--poses", "estimate")
-    for option, value in (("--min-confidence", "3"), ("--depth-unit", "5")):
+    for option, value, code, words in (("--min-confidence", "3", 2, "is a recording"),
+                                       ("--depth-unit", "5", 1, "states its own depth unit")):
         target = f"{work}/refused.mcap"
         status, _, error = run("import", f"{work}/room.mcap", "--poses", "estimate", option, value, "-o", target)
-        check(status == 2 and "is a recording" in error, f"{option} with a recording: {status}, {error}")
+        check(status == code and words in error, f"{option} with a recording: {status}, {error}")
         check(not os.path.exists(target), f"{option} with a recording: left one behind")
 
 
