@@ -12,7 +12,8 @@ int left_out_refuse(const left_out *what, char *error, size_t error_bytes)
         return 0;
     }
     return t3r_reason(error, error_bytes,
-                      "--strict refuses what would be left out (frames: %" PRIu32 ", depth: %" PRIu32 "); the first: %s",
+                      "--strict refuses what would be left out (frames: %" PRIu32 ", depth: %" PRIu32
+                      "); the first: %s",
                       what->frames.count, what->depth.count, first->lines[0]);
 }
 

@@ -121,5 +121,6 @@ int straighten(const lens *l, picture *p, char *error, size_t error_bytes)
     *p = out;
     return 2 * seen >= pixels
                ? 0
-               : t3r_reason(error, error_bytes, "distortion: the coefficients fold, or push out of view, more than half of the picture");
+               : t3r_reason(error, error_bytes,
+                            "distortion: the coefficients fold, or push out of view, more than half of the picture");
 }
