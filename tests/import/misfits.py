@@ -211,6 +211,15 @@ def mark(path, reader, orientation, order=">"):
     return path
 
 
+def pointmaps():
+    """Writes a plane as seen by each of the pictures' cameras."""
+    y, x = np.mgrid[:HEIGHT, :WIDTH]
+    plane = np.stack([(x - WIDTH / 2 + 0.5) / 50, (y - HEIGHT / 2 + 0.5) / 50, np.ones((HEIGHT, WIDTH))], 2)
+    np.savez("plane.npz", pts3d=np.stack([plane] * FRAMES).astype("f4"), poses=np.stack([np.eye(4)] * FRAMES).astype("f4"),
+             focals=np.full(FRAMES, 50, "f4"))
+    return "plane.npz"
+
+
 def test_orientation():
     kinds = readers()
     for name in ("nerfstudio", "record3d"):  # they say the size, which decides
@@ -233,7 +242,7 @@ def test_orientation():
     for orientation in (4, 6):
         reader = Reader(None, "{}.png", None)
         pictures(f"exif_alone{orientation}")
-        report, got = imported(mark(f"exif_alone{orientation}", reader, orientation), *lens_option(), "--poses", "estimate")
+        report, got = imported(mark(f"exif_alone{orientation}", reader, orientation), "--pointmaps", pointmaps())
         check(np.array_equal(got.get("image", []), ROOM["image"]), f"pictures alone, orientation {orientation}: {report}")
     for orientation in (0, 1, 9):  # none, upright, nonsense
         path = transforms(f"exif_{orientation}")
@@ -422,10 +431,10 @@ def test_foreign_files():
         os.makedirs(f"only_{ending}")
         write(f"only_{ending}/a.{ending}", b"x")
         refused(f"only_{ending}", command)
-        refused(f"only_{ending}", f"a.{ending}: ", *lens_option(), "--poses", "estimate")
+        refused(f"only_{ending}", f"a.{ending}: ", "--pointmaps", pointmaps())
     pictures("mixed")
     write("mixed/9.heic", b"\0\0\0\x18ftypheic")
-    report, _ = imported("mixed", *lens_option(), "--poses", "estimate")
+    report, _ = imported("mixed", "--pointmaps", pointmaps())
     check(report.get("frames") == FRAMES and "9.heic: HEIC is not read; heif-convert" in report["left_out"][0], f"mixed: {report}")
     for name, data, command in (("v.mp4", b"\0\0\0\x18ftypisom", "ffmpeg"), ("v.mkv", b"\x1a\x45\xdf\xa3" + bytes(9), "ffmpeg"),
                                 ("p.heic", b"\0\0\0\x18ftypheic", "heif-convert"), ("p.webp", b"RIFF\1\0\0\0WEBP", "dwebp")):

@@ -126,7 +126,7 @@ TEST_WITH(test_bad_lines_are_left_out, scratch_setup, scratch_teardown)
     assert_true(fabs(folder.frames[0].pose.position[0] - 1) < 1e-6); /* between the good neighbours */
     assert_string_equal(folder.frames[0].depth, "depth/a.png");
     static const char *const due[] = {"rgb.txt: lines left out: 1; the first: line 2: no time stamp",
-                                      "groundtruth.txt: lines left out: 2; the first: line 2: not 'time tx",
+                                      "groundtruth.txt: lines left out: 2; the first: line 2: a number is not finite",
                                       "depth.txt: lines left out: 2; the first: line 1: no file name",
                                       "rgb/c.png: no pose near it in time"};
     assert_int_equal(folder.left_out.frames.count, 4);
