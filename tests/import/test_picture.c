@@ -171,7 +171,7 @@ TEST(test_the_end_marker_may_be_missing)
         write_jpeg_as(scratch_path(s, "a.jpg"), 80, 60, progressive != 0);
         assert_int_equal(picture_read(s->path, &whole, error, sizeof error), 0);
         const size_t count = file_bytes(s->path, &bytes);
-        for (size_t lacking = 1; lacking < count - 1; lacking++) {
+        for (size_t lacking = 1; lacking < count - 1; lacking += lacking < 40 ? 1 : 29) {
             assert_int_equal(scratch_write(s, "cut.jpg", bytes, count - lacking), 0);
             const int status = picture_read(s->path, &in, error, sizeof error);
             assert_int_equal(status, lacking <= 2 ? 0 : -1);
