@@ -62,7 +62,7 @@ def test_good_folder():
     check(status == 0, f"good folder: {error}")
     report = json.loads(out)
     expected = {"frames": 3, "depth_frames": 3, "posed_frames": 3, "triplets": 1, "width": 40, "height": 30,
-                "bytes": os.path.getsize(target), "skipped": 0, "left_out": [], "remarks": []}
+                "bytes": os.path.getsize(target), "skipped": 0, "left_out": [], "depth_left_out": [], "remarks": []}
     check(report == expected, f"good folder: {report}")
     status, out, _ = run("info", target, "--json")
     info = json.loads(out)
@@ -120,8 +120,9 @@ def test_bad_folders():
     refused("nan", scene(f"{work}/b3", change=frame(fl_x=float("nan"))), where + ["byte", "not JSON"])
     refused("skewed", scene(f"{work}/b4", change=frame(transform_matrix=[[1, 0.1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0],
                                                                           [0, 0, 0, 1]])),
-            where + ["frames[1]: transform_matrix", "orthonormal"])
-    refused("size", scene(f"{work}/b7", change=frame(w=41)), ["frame 1: c1.png: w: 41", "40 pixels wide"])
+            ["--strict refuses what would be left out (frames: 1, depth: 0)", "frames[1]: transform_matrix", "orthonormal"], "--strict")
+    refused("size", scene(f"{work}/b7", change=frame(w=41)), ["--strict refuses what would be left out (frames: 1, depth: 0)", "c1.png: w: 41", "40 pixels wide"],
+            "--strict")
     folder = scene(f"{work}/b12", change=lambda top: [top.pop(k) for k in ("w", "h", "cx", "cy")])
     write(f"{folder}/c2.png", picture(44, 30))
     refused("sizes_differ", folder, ["frame 2: c2.png: 44x30 pixels, but frame 0 has 40x30; give --size"])

@@ -20,79 +20,11 @@ except ImportError:
     sys.exit(77)
 
 from checks import check, done  # noqa: E402
-from frames import exr, picture, read  # noqa: E402
+from folder_makers import (FRAMES, HEIGHT, ROOM, UNIT, WIDTH, colmap, colmap_binary, colmap_text, imported,  # noqa: E402
+                           lens_option, make_room, matrix_text, pictures, pose_files, record3d, refused, same,
+                           seven_scenes, transforms, write)
+from frames import exr, picture  # noqa: E402
 from program import run  # noqa: E402
-
-WIDTH, HEIGHT, FRAMES = 64, 48, 3
-OPENGL = np.diag([1, -1, -1, 1])  # axes of its cameras in ours
-UNIT = 0.001
-
-
-def write(path, content):
-    os.makedirs(os.path.dirname(path), exist_ok=True)
-    with open(path, "wb" if isinstance(content, bytes) else "w") as file:
-        file.write(content)
-    return path
-
-
-def quaternion(r):
-    """Returns the quaternion w x y z of a rotation, by its largest component."""
-    squares = np.array([1 + r[0, 0] + r[1, 1] + r[2, 2], 1 + r[0, 0] - r[1, 1] - r[2, 2],
-                        1 - r[0, 0] + r[1, 1] - r[2, 2], 1 - r[0, 0] - r[1, 1] + r[2, 2]])
-    products = np.array([[squares[0], r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
-                         [r[2, 1] - r[1, 2], squares[1], r[1, 0] + r[0, 1], r[0, 2] + r[2, 0]],
-                         [r[0, 2] - r[2, 0], r[1, 0] + r[0, 1], squares[2], r[2, 1] + r[1, 2]],
-                         [r[1, 0] - r[0, 1], r[0, 2] + r[2, 0], r[2, 1] + r[1, 2], squares[3]]])
-    row = products[np.argmax(squares)]
-    return row / np.linalg.norm(row)
-
-
-def pictures(path, colour="{}.png", depth=None):
-    for i in range(FRAMES):
-        write(f"{path}/{colour.format(i)}", picture(ROOM["image"][i]))
-        if depth:
-            write(f"{path}/{depth.format(i)}", picture(ROOM["depth"][i]))
-
-
-def imported(path, *options):
-    """Imports the folder; returns the report and the recording."""
-    target = f"{path}.mcap"
-    status, out, error = run("import", path, "-o", target, "--json", *options)
-    check(status == 0, f"{path} {options}: {error}")
-    return (json.loads(out), read(target)) if status == 0 else ({}, {})
-
-
-def refused(path, why, *options):
-    status, out, error = run("import", path, "-o", f"{path}.mcap", *options)
-    check(status == 1 and out == "" and why in error, f"{path}: {status}, {error.strip()!r} does not say {why!r}")
-    check(not os.path.exists(f"{path}.mcap"), f"{path}: a recording is left behind")
-
-
-def same(name, got, depth=True):
-    """Checks that it is the room: poses and intrinsics up to the rounding of the file and of fixed point."""
-    for what in ("image", "depth") if depth else ("image",):
-        check(np.array_equal(got.get(what, []), ROOM[what]), f"{name}: {what}")
-    check(depth or "depth" not in got, f"{name}: there is depth")
-    for what, most in (("pose", 1e-6), ("camera_info", 1e-3)):
-        off = np.abs(np.stack(got[what]) - np.stack(ROOM[what])).max() if what in got else np.inf
-        check(off < most, f"{name}: {what} is off by {off}")
-
-
-
-
-def transforms(path, depth_key="depth_file_path", change=None, **top):
-    """Writes the file as nerfstudio does."""
-    pictures(path, "images/frame_{:05d}.png", "depth/{:05d}.png")
-    k = ROOM["camera_info"][0]
-    frames = [{"file_path": f"images/frame_{i:05d}.png", depth_key: f"depth/{i:05d}.png", "colmap_im_id": i + 1,
-               "transform_matrix": (pose @ OPENGL).tolist()} for i, pose in enumerate(ROOM["pose"])]
-    content = {"camera_model": "OPENCV", "fl_x": k[0, 0], "fl_y": k[1, 1], "cx": k[0, 2] + 0.5, "cy": k[1, 2] + 0.5,
-               "w": WIDTH, "h": HEIGHT, "k1": 0, "k2": 0, "p1": 0, "p2": 0, "applied_transform": np.eye(4)[:3].tolist(),
-               "ply_file_path": "sparse_pc.ply", **top, "frames": frames}
-    if change:
-        change(content)
-    write(f"{path}/transforms.json", json.dumps(content))
-    return path
 
 
 def test_nerfstudio():
@@ -113,56 +45,15 @@ def test_nerfstudio():
 
     report, got = imported(transforms("unread", change=other))
     same("unread fields", got, depth=False)
-    said = "this field is not read, though its name says depth or pose"
+    said = "this field is not read, though its name says depth, pose or mask"
     check(report["remarks"] == [f"poses_bounds: {said}", f"frames[0]: depth_map: {said}",
                                 "no frame has depth: build and replay need --depth stereo"], f"unread fields: {report}")
     refused(transforms("two_units", integer_depth_scale=0.5, depth_unit_scale_factor=UNIT), "integer_depth_scale")
-    refused(transforms("two_paths", change=lambda c: c["frames"][1].update(depth_path="x.png")), "frames[1]: depth_file_path")
+    report, _ = imported(transforms("two_paths", change=lambda c: c["frames"][1].update(depth_path="x.png")))
+    check(report["left_out"] == ["images/frame_00001.png: frames[1]: depth_file_path: there is another depth_path too"],
+          f"two depth pictures: {report}")
     refused(transforms("bad_unit", depth_unit_scale_factor=200), "depth_unit_scale_factor: not between")
     refused(transforms("no_unit", "depth_path"), "integer_depth_scale: missing")
-
-
-
-
-def colmap_lists():
-    """Returns (number, model, sides, parameters) of a camera, and (number, quaternion, translation, camera, name) of
-    images, in another order."""
-    k = ROOM["camera_info"][0]
-    camera = (7, 1, (WIDTH, HEIGHT), (k[0, 0], k[1, 1], k[0, 2] + 0.5, k[1, 2] + 0.5))
-    images = []
-    for i in (2, 0, 1):
-        inverse = np.linalg.inv(ROOM["pose"][i])
-        images.append((i + 5, quaternion(inverse[:3, :3]), inverse[:3, 3], 7, f"view_{i}.png"))
-    return camera, images
-
-
-def colmap_text(path):
-    (number, _, sides, parameters), images = colmap_lists()
-    write(f"{path}/cameras.txt", f"# Camera list\n{number} PINHOLE {sides[0]} {sides[1]} "
-          + " ".join(f"{p:.17g}" for p in parameters) + "\n")
-    lines = ["# Image list with two lines of data per image:"]
-    for number, q, t, camera, name in images:
-        lines.append(f"{number} " + " ".join(f"{v:.17g}" for v in (*q, *t)) + f" {camera} {name}")
-        lines.append("1.5 2.5 -1 30.25 40 12" if number % 2 else "")  # points, or none
-    write(f"{path}/images.txt", "\n".join(lines) + "\n")
-    write(f"{path}/points3D.txt", "# no points\n")
-
-
-def colmap_binary(path):
-    (number, model, sides, parameters), images = colmap_lists()
-    write(f"{path}/cameras.bin", struct.pack("<QIiQQ4d", 1, number, model, *sides, *parameters))
-    data = struct.pack("<Q", len(images))
-    for number, q, t, camera, name in images:
-        points = [(1.5, 2.5, -1)] * (number % 3)
-        data += struct.pack("<I7dI", number, *q, *t, camera) + name.encode() + b"\0" + struct.pack("<Q", len(points))
-        data += b"".join(struct.pack("<ddq", *p) for p in points)
-    write(f"{path}/images.bin", data)
-
-
-def colmap(path, place="sparse/0", lists=colmap_text, depth=None):
-    pictures(path, "images/view_{}.png", depth)
-    lists(f"{path}/{place}")
-    return path
 
 
 def test_colmap():
@@ -229,7 +120,7 @@ def test_colmap_refusals():
     path = changed("fov", "cameras.txt", "7 PINHOLE 64 48", "7 FOV 64 48 1")
     refused(path, "the camera model FOV is not supported")
     refused(changed("unknown", "cameras.txt", "PINHOLE", "WIDE"), "an unknown camera model")
-    refused(changed("no_camera", "cameras.txt", "7 ", "8 "), "camera 7 of view_0.png: it is not among the cameras")
+    refused(changed("no_camera", "cameras.txt", "7 ", "8 "), "view_0.png: camera 7: it is not among the cameras")
     refused(changed("sides", "cameras.txt", " 64 48 ", " 65 48 "), "w: 65, but the picture is 64 pixels wide")
     path = colmap("cut", lists=colmap_binary)
     with open(f"{path}/sparse/0/images.bin", "rb") as file:
@@ -253,33 +144,11 @@ def test_colmap_itself():
         same(f"COLMAP's own {form}", imported(f"{path}/sparse/{number}")[1], depth=False)
 
 
-
-
-def matrix_text(m):
-    return "\n".join(" ".join(f"{v:.17g}" for v in row) for row in m) + "\n"
-
-
-def pose_files(path, depth=True, lens=True):
-    """Writes the files like ScanNet's exporter."""
-    pictures(path, "color/{}.png", "depth/{}.png" if depth else None)
-    for i, pose in enumerate(ROOM["pose"]):
-        write(f"{path}/pose/{i}.txt", matrix_text(pose))
-    full = np.eye(4)
-    full[:3, :3] = ROOM["camera_info"][0]
-    if lens:
-        write(f"{path}/intrinsic/intrinsic_color.txt", matrix_text(full))
-        write(f"{path}/intrinsic/intrinsic_depth.txt", matrix_text(full))
-        write(f"{path}/intrinsic/extrinsic_color.txt", matrix_text(np.eye(4)))
-    return path
-
-
 def test_pose_files():
     report, got = imported(pose_files("scannet"))
     same("pose files", got)
     check(report["remarks"] == [] and report["left_out"] == [], f"pose files: {report}")
-    k = ROOM["camera_info"][0]
-    lens = f"{k[0, 0]},{k[1, 1]},{k[0, 2]},{k[1, 2]}"
-    same("pose files and a lens", imported(pose_files("scannet_lens", False, False), "--intrinsics", lens)[1], depth=False)
+    same("pose files and a lens", imported(pose_files("scannet_lens", False, False), *lens_option())[1], depth=False)
     refused(pose_files("scannet_blind", lens=False), "no intrinsic/intrinsic_color.txt; give --intrinsics")
     path = pose_files("scannet_unit")
     report, got = imported(path, "--depth-unit", "0.25")
@@ -298,7 +167,7 @@ def test_lost_poses():
     for i in (0, 2):
         write(f"{path}/pose/{i}.txt", "nan " * 16)
     os.remove("lost.mcap")
-    refused(path, "lost/pose: no pose is finite")
+    refused(path, "color/0.png: pose/0.txt is not finite")
 
 
 def test_depth_of_another_lens():
@@ -325,10 +194,11 @@ def test_pose_file_refusals():
     def changed(name, file, content):
         return write(f"{pose_files(name)}/{file}", content) and name
 
-    refused(changed("short", "pose/1.txt", "1 0 0 0"), "pose/1.txt: not 16 or 12 numbers")
-    refused(changed("long", "pose/1.txt", "1 " * 17), "pose/1.txt: more than 16 numbers")
-    refused(changed("word", "pose/1.txt", "1 0 0 x"), "pose/1.txt: a word that is no number")
-    refused(changed("skewed", "pose/1.txt", "1 0.1 0 0 0 1 0 0 0 0 1 0 0 0 0 1"), "pose/1.txt: ")
+    for name, text, why in (("short", "1 0 0 0", "not 16 or 12 numbers"), ("long", "1 " * 17, "more than 16 numbers"),
+                            ("word", "1 0 0 x", "a word that is no number"),
+                            ("skewed", "1 0.1 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "the rotation is not orthonormal")):
+        report, _ = imported(changed(name, "pose/1.txt", text))
+        check(report["frames"] == 2 and f"pose/1.txt: {why}" in report["left_out"][0], f"{name}: {report}")
     refused(changed("no_lens", "intrinsic/intrinsic_color.txt", "0 0 0 0 0 0 0 0 1"), "not a camera matrix")
     refused(changed("mirror", "intrinsic/extrinsic_depth.txt", "-1 0 0 0 0 1 0 0 0 0 1 0"), "extrinsic_depth.txt: the rotation mirrors")
     path = changed("apart", "intrinsic/extrinsic_depth.txt", "1 0 0 1 0 1 0 0 0 0 1 0")
@@ -358,20 +228,6 @@ def test_depth_from_beside():
     check(abs(edge - want).max() <= 1, f"beside: the edge is at {edge}, not {want}")
 
 
-def seven_scenes(path, lens=True):
-    """Writes a sequence like 7-Scenes: one folder, with 65535 for missing depth."""
-    pictures(path, "frame-{:06d}.color.png")
-    for i, pose in enumerate(ROOM["pose"]):
-        depth = np.array(ROOM["depth"][i])
-        depth[depth == 0] = 65535
-        depth[0, :5] = 65535
-        write(f"{path}/frame-{i:06d}.depth.png", picture(depth))
-        write(f"{path}/frame-{i:06d}.pose.txt", matrix_text(pose))
-    if lens:
-        write(f"{path}/camera-intrinsics.txt", matrix_text(np.array(ROOM["camera_info"][0])))
-    return path
-
-
 def test_seven_scenes():
     _, got = imported(seven_scenes("seven"))
     holes = np.array(ROOM["depth"])
@@ -381,8 +237,6 @@ def test_seven_scenes():
     refused(seven_scenes("seven_blind", False), "no camera-intrinsics.txt; give --intrinsics fx,fy,cx,cy, which are 585,585,320,240")
     write("sequences/camera-intrinsics.txt", matrix_text(np.array(ROOM["camera_info"][0])))
     same("a sequence below its lens", imported(seven_scenes("sequences/seq-01", False))[1] | {"depth": ROOM["depth"]})
-
-
 
 
 def dense(path, ending="geometric", change=lambda data: data):
@@ -416,8 +270,6 @@ def test_dense_depth():
         refused(f"dense_{name}", why)
 
 
-
-
 def test_unreadable():
     """One unreadable picture is named and left out, with its triplets; if only the depth is unreadable, only that is
     left out. All unreadable: refused."""
@@ -442,7 +294,7 @@ def test_unreadable():
     write(f"{path}/depth/00001.png", picture(ROOM["depth"][1])[:900])
     report, got = imported(path)
     check((report["frames"], report["depth_frames"]) == (3, 2), f"bad depth: {report}")
-    check(any(r.startswith(f"depth is left out: {path}/depth/00001.png: PNG: ") for r in report["remarks"]), f"bad depth: {report}")
+    check(report["depth_left_out"][0].startswith(f"{path}/depth/00001.png: PNG: "), f"bad depth: {report}")
     for i in range(FRAMES):
         write(f"{path}/depth/{i:05d}.png", picture(ROOM["image"][0]))
     os.remove("bad_depth.mcap")
@@ -450,29 +302,6 @@ def test_unreadable():
     path = pose_files("no_picture")
     os.remove(f"{path}/color/1.png")
     check(imported(path)[0]["left_out"] == ["pose/1.txt: there is no picture of that name"], "a pose without its picture")
-
-
-
-
-def record3d(path, as_exr=False, packed=False, change=None):
-    """Writes a Record3D export; the depth of an .r3d as after `lzfse -decode`, or packed."""
-    pictures(path, "rgb/{}.png" if as_exr else "rgbd/{}.png")
-    k = np.array(ROOM["camera_info"][0])
-    k[:2, 2] += 0.5
-    poses = []
-    for i, pose in enumerate(ROOM["pose"]):
-        w, x, y, z = quaternion((pose @ OPENGL)[:3, :3])
-        poses.append([x, y, z, w, *pose[:3, 3]])
-        metres = (ROOM["depth"][i] * UNIT).astype("<f4")
-        metres[ROOM["depth"][i] == 0] = np.nan
-        raw = b"bvx2" + bytes(99) if packed else metres.tobytes()
-        write(f"{path}/depth/{i}.exr" if as_exr else f"{path}/rgbd/{i}.depth", exr(metres) if as_exr else raw)
-    content = {"w": WIDTH, "h": HEIGHT, "dw": WIDTH, "dh": HEIGHT, "fps": 60, "K": k.T.flatten().tolist(), "poses": poses,
-               "perFrameIntrinsicCoeffs": [[k[0, 0], k[1, 1], k[0, 2], k[1, 2]]] * FRAMES}
-    if change:
-        change(content)
-    write(f"{path}/{'metadata.json' if as_exr else 'metadata'}", json.dumps(content))
-    return path
 
 
 def test_record3d():
@@ -489,11 +318,10 @@ def test_record3d():
     refused(record3d("cut_depth", change=lambda c: c.update(dw=WIDTH + 1)), "rgbd/0.depth: fewer bytes")
     refused(record3d("no_sides", change=lambda c: c.pop("dw")), "dw, dh: missing")
     refused(record3d("k_of_8", change=lambda c: c["K"].pop()), "K: not 9 finite numbers")
-    refused(record3d("pose_of_6", change=lambda c: c["poses"][1].pop()), "poses[1]: not 7 finite numbers")
+    report, _ = imported(record3d("pose_of_6", change=lambda c: c["poses"][1].pop()))
+    check(report["left_out"] == ["poses[1]: not 7 finite numbers: qx qy qz qw x y z"], f"a pose of 6 numbers: {report}")
     report, _ = imported(record3d("more_poses", change=lambda c: c["poses"].append(c["poses"][0])))
     check(report["left_out"] == ["more_poses/rgbd/3.jpg: No such file or directory"], f"more poses: {report}")
-
-
 
 
 def steps_of(lengths, unit):
@@ -556,7 +384,7 @@ def test_exr():
     with open(f"{path}/depth/1.exr", "r+b") as file:
         file.truncate(2000)
     report, _ = imported(path)
-    check(any(r.startswith(f"depth is left out: {path}/depth/1.exr: OpenEXR: ") for r in report["remarks"]), f"cut OpenEXR: {report}")
+    check(report["depth_left_out"][0].startswith(f"{path}/depth/1.exr: OpenEXR: "), f"cut OpenEXR: {report}")
     exr_of_opencv()
 
 
@@ -579,9 +407,7 @@ TESTS = [test_record3d, test_exr, test_pictures_without_pose, test_pose_files, t
 
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)
-    code, _, message = run("room", "--frames", str(FRAMES), "--size", f"{WIDTH}x{HEIGHT}", "-o", "room.mcap")
-    check(code == 0, f"room: {message}")
-    ROOM = read("room.mcap")
+    make_room()
     for test in TESTS:
         test()
 done()

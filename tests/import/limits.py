@@ -75,15 +75,18 @@ def test_positions():
 def test_lenses():
     # the last value that rounds to a number below the limit: half a step of 2^-16, or 2^-24, below it
     pixels, coefficient, tangential = 16384 - 2**-16, 128 - 2**-24, 16 - 2**-24
-    good = [{"fl_x": 8}, {"fl_x": pixels}, {"cx": pixels}, {"cy": 1 - pixels}, {"k1": 1e-9}, {"k1": coefficient},
+    good = [{"fl_x": 8}, {"fl_x": pixels}, {"cx": pixels, "w": 16, "h": 16}, {"cy": 1 - pixels, "w": 16, "h": 16}, {"k1": 1e-9}, {"k1": coefficient},
             {"k2": coefficient}, {"k3": coefficient}, {"p1": tangential}, {"p2": -tangential},
             {"camera_model": "OPENCV_FISHEYE", "k4": coefficient}]
     bad = [({"fl_x": 8 - 2**-15}, "8 to 16384 pixels"), ({"fl_x": 16384}, "8 to 16384 pixels"),
            ({"fl_x": below(16384)}, "8 to 16384 pixels"), ({"fl_x": 40, "fl_y": 7}, "8 to 16384 pixels"),
-           ({"cx": 16385}, "cx, cy"), ({"cy": -16385}, "cx, cy"), ({"k1": 128}, "less than 128"),
-           ({"k1": below(128)}, "less than 128"), ({"k2": -128.1}, "less than 128"), ({"k2": -coefficient}, "fold"), ({"k1": -20}, "fold"), ({"p1": 16}, "less than 16"),
-           ({"p2": -16}, "less than 16"), ({"p1": below(16)}, "less than 16"),
-           ({"camera_model": "OPENCV_FISHEYE", "k4": 128}, "less than 128")]
+           ({"cx": 16385, "w": 16, "h": 16}, "cx, cy"), ({"cy": -16385, "w": 16, "h": 16}, "cx, cy"), ({"cx": 17}, "outside"),
+           ({"k2": -coefficient}, "fold"), ({"k1": -20}, "fold"), ({"k1": -1e5}, "fold"), ({"k1": 128}, "out of view"),
+           ({"p1": 16}, "out of view"), ({"camera_model": "OPENCV_FISHEYE", "k1": 1000}, "out of view")]
+    # beyond the runtime's range: import draws what a pinhole sees
+    good += [{"k1": 128, "fl_x": 400}, {"k1": below(128), "fl_x": 400}, {"k1": 1000, "fl_x": 4000}, {"k4": 0.5, "k5": -0.1},
+             {"k2": -128.1}, {"p2": -16, "fl_x": 400}, {"k3": 500, "k6": 500},
+             {"camera_model": "OPENCV_FISHEYE", "k4": 128}]
     for i, lens in enumerate(good):
         taken(f"{lens}", folder(f"lens{i}", top=lens))
     for i, (lens, why) in enumerate(bad):

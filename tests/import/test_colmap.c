@@ -85,17 +85,18 @@ TEST(test_models)
             assert_true(lens.coefficients[k] == rows[i].coefficients[k]);
         }
     }
-    static const char *const refused[] = {"FOV", "THIN_PRISM_FISHEYE", "RAD_TAN_THIN_PRISM_FISHEYE", "FULL_OPENCV"};
+    static const char *const refused[] = {"FOV", "THIN_PRISM_FISHEYE", "RAD_TAN_THIN_PRISM_FISHEYE"};
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
         posed_intrinsics lens;
         const char *why = make(refused[i], &lens);
         assert_non_null(why);
         assert_non_null(strstr(why, refused[i]));
     }
-    const double full[12] = {500, 510, 320, 240, 0.1, 0.2, 0.3, 0.4, 0.5};
+    const double full[12] = {500, 510, 320, 240, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
     posed_intrinsics lens;
     assert_null(colmap_intrinsics(colmap_model_of_name("FULL_OPENCV"), full, 640, 480, &lens));
     assert_true(lens.coefficients[3] == 0.4 && lens.coefficients[4] == 0.5);
+    assert_true(lens.coefficients[5] == 0.6 && lens.coefficients[7] == 0.8);
     assert_null(colmap_model_of_name("PINHOLE "));
     for (int32_t id = -1; id <= 12; id++) { /* numbers and names come from one list */
         assert_int_equal(colmap_model_of_id(id) != NULL, id >= 0 && id <= 11);
@@ -138,6 +139,27 @@ TEST(test_text)
     colmap_model_free(&model);
 }
 
+/* Checks that an image with a bad pose, and a camera of an unknown model, are named and spoil no other. */
+TEST(test_bad_images_are_kept_apart)
+{
+    static const char *const poses[] = {"2 0 0 0 1 2 3", "nan 0 0 0 1 2 3", "1 0 0 0 inf 2 3", "1 0 0 0 2e9 2 3"};
+    static const char *const reasons[] = {"the quaternion's norm", "the quaternion's norm", "a number is not finite",
+                                          "a position is 2^30 or more"};
+    for (size_t i = 0; i < sizeof poses / sizeof *poses; i++) {
+        colmap_model model = {0};
+        char text[256];
+        snprintf(text, sizeof text, "1 %s 7 a\n\n" IMAGE("b"), poses[i]);
+        read_text(colmap_read_cameras_text, "7 PINHOLE 64 48 50 51 32 24\n8 WIDE 9 9 5\n", &model);
+        read_text(colmap_read_images_text, text, &model);
+        assert_null(colmap_model_sort(&model));
+        assert_non_null(strstr(model.images[0].wrong, reasons[i]));
+        assert_null(model.images[1].wrong);
+        assert_null(colmap_model_camera(&model, 7)->wrong);
+        assert_string_equal(colmap_model_camera(&model, 8)->wrong, "an unknown camera model");
+        colmap_model_free(&model);
+    }
+}
+
 TEST(test_refusals)
 {
     refuse_text(colmap_read_cameras_text, "# a\nx PINHOLE 1 1\n", "line 2: no CAMERA_ID");
@@ -149,10 +171,6 @@ TEST(test_refusals)
     refuse_text(colmap_read_cameras_text, "1 PINHOLE 64 48 1 2 3 4 5\n", "line 1: more parameters");
     refuse_text(colmap_read_images_text, IMAGE("a") "1 1 0 0 0 1 2\n", "line 3: not 'IMAGE_ID QW");
     refuse_text(colmap_read_images_text, IMAGE(""), "line 1: no name");
-    refuse_text(colmap_read_images_text, "1 2 0 0 0 1 2 3 7 a\n", "line 1: the quaternion's norm");
-    refuse_text(colmap_read_images_text, "1 nan 0 0 0 1 2 3 7 a\n", "line 1: the quaternion's norm");
-    refuse_text(colmap_read_images_text, "1 1 0 0 0 inf 2 3 7 a\n", "line 1: a number is not finite");
-    refuse_text(colmap_read_images_text, "1 1 0 0 0 2e9 2 3 7 a\n", "line 1: a position is 2^30 or more");
     char *longer = malloc(10000);
     memset(longer, ' ', 9999);
     longer[9999] = '\0';

@@ -23,8 +23,10 @@ static void write_picture(scratch *s, const char *name, const picture *p)
 /* Red counts columns, green rows; depth steps count both. */
 static void write_ramps(scratch *s, uint32_t width, uint32_t height, uint32_t depth_width, uint32_t depth_height)
 {
-    picture colour = {width, height, 3, 8, calloc((size_t)width * height, 3)};
-    picture depth = {depth_width, depth_height, 1, 16, calloc((size_t)depth_width * depth_height, 2)};
+    picture colour = {.width = width, .height = height, .channels = 3, .bits = 8};
+    picture depth = {.width = depth_width, .height = depth_height, .channels = 1, .bits = 16};
+    colour.samples = calloc((size_t)width * height, 3);
+    depth.samples = calloc((size_t)depth_width * depth_height, 2);
     uint8_t *rgb = colour.samples;
     uint16_t *steps = depth.samples;
     for (uint32_t y = 0; y < height; y++) {
@@ -172,38 +174,139 @@ static void refuse(scratch *s, const posed_frame *frame, uint32_t side, int stat
 TEST_WITH(test_bad_pictures_are_named, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
-    write_ramps(s, 64, 48, 64, 48);
+    write_ramps(s, 240, 160, 240, 160);
     posed_frame frame = ramp_frame();
     char other[] = "other";
     frame.image = other;
-    refuse(s, &frame, 16, IMPORT_UNREADABLE, "/other: No such file");
+    refuse(s, &frame, 16, IMPORT_NO_FRAME, "/other: No such file");
     frame = ramp_frame();
     frame.depth = other;
-    refuse(s, &frame, 16, IMPORT_UNREADABLE, "/other: No such file");
+    refuse(s, &frame, 16, IMPORT_NO_DEPTH, "/other: No such file");
     frame.depth = frame.image;
-    refuse(s, &frame, 16, IMPORT_UNREADABLE, "colour.png: 8-bit colour, but depth is a 16-bit grey PNG");
+    refuse(s, &frame, 16, IMPORT_NO_DEPTH, "colour.png: 8-bit colour, but depth is a 16-bit grey PNG");
     frame = ramp_frame();
     frame.image = frame.depth;
-    refuse(s, &frame, 16, IMPORT_UNREADABLE, "depth.png: 16-bit grey, but a colour picture has 8 bits");
+    refuse(s, &frame, 16, IMPORT_NO_FRAME, "depth.png: 16-bit grey, but a colour picture has 8 bits");
     frame = ramp_frame();
     frame.intrinsics.width = 65;
-    refuse(s, &frame, 16, -1, "colour.png: w: 65, but the picture is 64 pixels wide");
+    refuse(s, &frame, 16, IMPORT_NO_FRAME, "colour.png: w: 65, but the picture is 240 pixels wide");
     frame = ramp_frame();
     frame.intrinsics.fx = 30000;
-    refuse(s, &frame, 0, -1, "fl_x");
+    refuse(s, &frame, 0, IMPORT_NO_FRAME, "fl_x");
     frame = ramp_frame();
     frame.intrinsics.cx = 1e6;
-    refuse(s, &frame, 0, -1, "cx");
+    refuse(s, &frame, 0, IMPORT_NO_FRAME, "cx");
     frame = ramp_frame();
-    frame.intrinsics.coefficients[0] = 200;
-    refuse(s, &frame, 0, -1, "distortion");
+    frame.intrinsics.distortion = T3R_DISTORTION_RADTAN;
+    frame.intrinsics.coefficients[0] = -200;
+    refuse(s, &frame, 0, IMPORT_NO_FRAME, "distortion: the coefficients fold");
+}
+
+/* Checks that depth of another aspect, and intrinsics for another size or aspect, are refused with the remedy. */
+TEST_WITH(test_geometry_that_does_not_fit, scratch_setup, scratch_teardown)
+{
+    scratch *s = *state;
+    write_ramps(s, 240, 160, 160, 90);
+    posed_frame frame = ramp_frame();
+    refuse(s, &frame, 0, IMPORT_NO_DEPTH,
+           "depth.png: 160x90 pixels of depth cannot show the view of a picture of 240x160");
+    refuse(s, &frame, 16, IMPORT_NO_DEPTH, "crop the depth to that view, or give its lens");
+    frame.intrinsics.cx = 640;
+    frame.depth = NULL;
+    refuse(s, &frame, 16, IMPORT_NO_FRAME, "cx, cy: 639.5, 71.4 lies outside the picture of 240x160 pixels");
+    frame = ramp_frame();
+    frame.intrinsics.grid_width = 160;
+    frame.intrinsics.grid_height = 240;
+    refuse(s, &frame, 16, IMPORT_NO_FRAME, "w, h: the intrinsics are for 160x240 pixels, but the picture has 240x160");
+    /* a part of a larger picture, whose axis lies outside, and depth of almost the same aspect */
+    write_ramps(s, 240, 160, 120, 78);
+    frame = ramp_frame();
+    frame.intrinsics.width = 240;
+    frame.intrinsics.height = 160;
+    frame.intrinsics.cx = 640;
+    char error[512] = "";
+    import_buffers buffers;
+    t3r_recorded_frame out;
+    assert_int_equal(import_frame(s->directory, &frame, NULL, 0, 0, &buffers, &out, error, sizeof error), 0);
+    assert_true(out.camera.cx == 639.5 && out.depth_height == 78);
+    import_buffers_free(&buffers);
+}
+
+/* Checks that a picture beyond the largest side is averaged with --size, and refused without. */
+TEST_WITH(test_large_pictures_are_averaged, scratch_setup, scratch_teardown)
+{
+    scratch *s = *state;
+    enum { WIDTH = 4500, HEIGHT = 30 };
+    picture wide = {.width = WIDTH, .height = HEIGHT, .channels = 1, .bits = 8, .samples = malloc(WIDTH * HEIGHT)};
+    for (size_t i = 0; i < (size_t)WIDTH * HEIGHT; i++) {
+        ((uint8_t *)wide.samples)[i] = (uint8_t)(i % WIDTH / 20 + i % 2);
+    }
+    write_picture(s, "colour.png", &wide);
+    picture_free(&wide);
+    posed_frame frame = ramp_frame();
+    frame.depth = NULL;
+    frame.intrinsics.cx = 2250;
+    frame.intrinsics.cy = 15;
+    refuse(s, &frame, 0, IMPORT_NO_FRAME, "colour.png: 4500x30 pixels; sides of up to 4096 are supported, larger ones");
+    char error[512] = "";
+    import_buffers buffers;
+    t3r_recorded_frame out;
+    assert_int_equal(import_frame(s->directory, &frame, NULL, 1500, 10, &buffers, &out, error, sizeof error), 0);
+    assert_true(fabs(out.camera.fx - 70) < 1e-9 && fabs(out.camera.cx - 749.5) < 1e-9);
+    for (uint32_t x = 0; x < 1500; x++) {
+        assert_true(abs((int)buffers.rgb[3 * x] - (int)(x * 3 / 20)) <= 2);
+    }
+    import_buffers_free(&buffers);
+}
+
+/* Checks that a lens of more coefficients than a recording holds becomes a pinhole: a point is where the pinhole sees
+ * it, and what the lens does not see is black and has no depth. */
+TEST_WITH(test_bent_lenses_become_pinholes, scratch_setup, scratch_teardown)
+{
+    scratch *s = *state;
+    static const double coefficients[8] = {0.3, -0.1, 0.01, -0.02, 0.05, 0.7, -0.2, 0.1}; /* k1 k2 p1 p2 k3 k4 k5 k6 */
+    char error[512] = "";
+    posed_frame frame = ramp_frame();
+    import_buffers buffers;
+    t3r_recorded_frame out;
+    uint32_t checked = 0;
+    write_ramps(s, 240, 160, 240, 160);
+    memcpy(frame.intrinsics.coefficients, coefficients, sizeof coefficients);
+    frame.intrinsics.distortion = T3R_DISTORTION_RADTAN;
+    assert_int_equal(import_frame(s->directory, &frame, NULL, 0, 0, &buffers, &out, error, sizeof error), 0);
+    assert_int_equal(out.camera.distortion, T3R_DISTORTION_NONE);
+    assert_true(out.camera.fx == 210 && out.camera.coefficients[0] == 0);
+    for (uint32_t v = 0; v < 160; v += 7) {
+        for (uint32_t u = 0; u < 240; u += 7) {
+            const double x = (u - 103.8) / 210, y = (v - 71.4) / 190, r = x * x + y * y, *k = coefficients;
+            const double f =
+                (1 + k[0] * r + k[1] * r * r + k[4] * r * r * r) / (1 + k[5] * r + k[6] * r * r + k[7] * r * r * r);
+            const double column = 210 * (x * f + 2 * k[2] * x * y + k[3] * (r + 2 * x * x)) + 103.8;
+            const double row = 190 * (y * f + k[2] * (r + 2 * y * y) + 2 * k[3] * x * y) + 71.4;
+            if (column < 0 || row < 0 || column > 239 || row > 159) {
+                continue;
+            }
+            const uint8_t *pixel = buffers.rgb + ((size_t)v * 240 + u) * 3;
+            assert_true(fabs(pixel[0] - column) < 0.51 && fabs(pixel[1] - row) < 0.51);
+            const uint16_t step = buffers.depth[(size_t)v * 240 + u];
+            assert_true(fabs((step & 255) - column) < 0.51 && fabs((step >> 8) - row) < 0.51);
+            checked++;
+        }
+    }
+    assert_true(checked > 500);
+    import_buffers_free(&buffers);
+    frame.intrinsics.coefficients[0] = 1e-9; /* what a recording holds is left to it */
+    memset(frame.intrinsics.coefficients + 5, 0, 3 * sizeof *coefficients);
+    assert_int_equal(import_frame(s->directory, &frame, NULL, 0, 0, &buffers, &out, error, sizeof error), 0);
+    assert_int_equal(out.camera.distortion, T3R_DISTORTION_RADTAN);
+    import_buffers_free(&buffers);
 }
 
 TEST_WITH(test_the_ending_may_be_left_out, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     char error[512] = "", bare[] = "./colour", bare_depth[] = "depth";
-    write_ramps(s, 64, 48, 64, 48);
+    write_ramps(s, 240, 160, 240, 160);
     posed_frame frame = ramp_frame();
     frame.image = bare;
     frame.depth = bare_depth;

@@ -26,7 +26,7 @@ static void check_round_trip(scratch *s, uint32_t width, uint32_t height, uint32
 {
     char error[256];
     size_t bytes = (size_t)width * height * channels * bits / 8;
-    picture out = {width, height, channels, bits, malloc(bytes)}, in;
+    picture out = {.width = width, .height = height, .channels = channels, .bits = bits, .samples = malloc(bytes)}, in;
     uint32_t sides[2];
     fill(out.samples, bytes);
     assert_int_equal(picture_write_png(scratch_path(s, "a.png"), &out, error, sizeof error), 0);
@@ -109,7 +109,7 @@ static void refuse_all_cuts(scratch *s, const char *name)
     uint8_t *bytes;
     size_t count = file_bytes(scratch_path(s, name), &bytes);
     assert_true(count > 100);
-    for (size_t cut = 0; cut + 2 <= count; cut += cut < 64 ? 1 : 13) {
+    for (size_t cut = 0; cut + 3 <= count; cut += cut < 64 ? 1 : 13) {
         char error[256] = "";
         picture in;
         assert_int_equal(scratch_write(s, "cut", bytes, cut), 0);
@@ -120,7 +120,7 @@ static void refuse_all_cuts(scratch *s, const char *name)
     free(bytes);
 }
 
-static void write_jpeg(const char *path, uint32_t width, uint32_t height)
+static void write_jpeg_as(const char *path, uint32_t width, uint32_t height, bool progressive)
 {
     struct jpeg_compress_struct jpeg;
     struct jpeg_error_mgr manager;
@@ -135,6 +135,9 @@ static void write_jpeg(const char *path, uint32_t width, uint32_t height)
     jpeg.in_color_space = JCS_RGB;
     jpeg_set_defaults(&jpeg);
     jpeg_set_quality(&jpeg, 95, TRUE);
+    if (progressive) {
+        jpeg_simple_progression(&jpeg);
+    }
     jpeg_start_compress(&jpeg, TRUE);
     uint8_t *row = malloc((size_t)width * 3);
     for (uint32_t y = 0; y < height; y++) {
@@ -149,6 +152,37 @@ static void write_jpeg(const char *path, uint32_t width, uint32_t height)
     jpeg_finish_compress(&jpeg);
     jpeg_destroy_compress(&jpeg);
     fclose(file);
+}
+
+static void write_jpeg(const char *path, uint32_t width, uint32_t height)
+{
+    write_jpeg_as(path, width, height, false);
+}
+
+/* Checks that a JPEG without its end marker is read as with it, and that nothing more may be lacking: no byte of a
+ * scan, and no scan. */
+TEST(test_the_end_marker_may_be_missing)
+{
+    scratch *s = *state;
+    for (int progressive = 0; progressive < 2; progressive++) {
+        uint8_t *bytes;
+        char error[256] = "";
+        picture whole, in;
+        write_jpeg_as(scratch_path(s, "a.jpg"), 80, 60, progressive != 0);
+        assert_int_equal(picture_read(s->path, &whole, error, sizeof error), 0);
+        const size_t count = file_bytes(s->path, &bytes);
+        for (size_t lacking = 1; lacking < count - 1; lacking += lacking < 40 ? 1 : 29) {
+            assert_int_equal(scratch_write(s, "cut.jpg", bytes, count - lacking), 0);
+            const int status = picture_read(s->path, &in, error, sizeof error);
+            assert_int_equal(status, lacking <= 2 ? 0 : -1);
+            if (status == 0) {
+                assert_memory_equal(in.samples, whole.samples, (size_t)80 * 60 * 3);
+            }
+            picture_free(&in);
+        }
+        picture_free(&whole);
+        free(bytes);
+    }
 }
 
 TEST(test_jpeg_is_read)
@@ -215,12 +249,12 @@ TEST(test_sizes_over_the_limit_are_refused)
 {
     scratch *s = *state;
     char error[256];
-    picture wide = {4097, 1, 1, 8, calloc(4097, 1)};
+    picture wide = {.width = 4097, .height = 1, .channels = 1, .bits = 8, .samples = calloc(4097, 1)};
     assert_int_equal(picture_write_png(scratch_path(s, "wide.png"), &wide, error, sizeof error), 0);
     expect_refused(s->path, "PNG: ");
     picture_free(&wide);
     write_jpeg(scratch_path(s, "wide.jpg"), 4097, 1);
-    expect_refused(s->path, "largest side");
+    expect_refused(s->path, "largest size");
 }
 
 TEST(test_writing_fails_cleanly)
@@ -228,7 +262,8 @@ TEST(test_writing_fails_cleanly)
     scratch *s = *state;
     char error[256] = "";
     uint8_t samples[3] = {0};
-    picture p = {1, 1, 3, 8, samples}, odd = {1, 1, 2, 8, samples};
+    picture p = {.width = 1, .height = 1, .channels = 3, .bits = 8, .samples = samples}, odd = p;
+    odd.channels = 2;
     assert_int_equal(picture_write_png(scratch_path(s, "no/such/folder.png"), &p, error, sizeof error), -1);
     assert_non_null(strstr(error, "folder.png: No such file"));
     assert_int_equal(picture_write_png(scratch_path(s, "odd.png"), &odd, error, sizeof error), -1);

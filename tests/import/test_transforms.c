@@ -22,11 +22,20 @@ static void parse(const char *text, posed_folder *folder)
     }
 }
 
+/* Checks that the text, or one of its frames, is refused. */
 static void refuse(const char *text, const char *why)
 {
     posed_folder folder;
     char error[512] = "";
     int status = transforms_json_parse(text, strlen(text), NULL, &folder, error, sizeof error);
+    for (uint32_t i = 0; i < folder.frame_count && status == 0; i++) {
+        if (folder.frames[i].rejected) {
+            assert_int_equal(error[0], '\0');
+            assert_non_null(strstr(folder.frames[i].wrong, folder.frames[i].image));
+            snprintf(error, sizeof error, "%s", folder.frames[i].wrong);
+            status = -1;
+        }
+    }
     posed_folder_close(&folder);
     assert_int_equal(status, -1);
     if (strstr(error, why) == NULL) {
@@ -144,7 +153,10 @@ TEST(test_lenses)
     parse(FOLDER(LENS "\"camera_model\":\"PINHOLE\",\"k1\":0.1,", FRAME("")), &folder);
     assert_int_equal(folder.frames[0].intrinsics.distortion, T3R_DISTORTION_NONE);
     posed_folder_close(&folder);
-    refuse(FOLDER(LENS "\"camera_model\":\"OPENCV\",\"k4\":0.1,", FRAME("")), "k4: not 0");
+    parse(FOLDER(LENS "\"camera_model\":\"OPENCV\",\"k4\":0.1,\"k6\":0.3,", FRAME("")), &folder);
+    assert_true(folder.frames[0].intrinsics.coefficients[5] == 0.1);
+    assert_true(folder.frames[0].intrinsics.coefficients[7] == 0.3);
+    posed_folder_close(&folder);
     refuse(FOLDER(LENS "\"camera_model\":\"THIN_PRISM\",", FRAME("")), "frames[0]: camera_model");
     refuse(FOLDER(LENS "\"camera_model\":7,", FRAME("")), "camera_model: not a string");
     refuse(FOLDER(LENS "\"latlong\":true,", FRAME("")), "latlong: this lens");
@@ -169,7 +181,7 @@ TEST(test_bad_texts_are_named)
     refuse(FOLDER(LENS, FRAME(",\"fl_x\":-3")), "frames[1]: fl_x: not positive");
     refuse(FOLDER(LENS, FRAME(",\"fl_x\":1e999")), "frames[1]: fl_x: not finite");
     refuse(FOLDER(LENS, FRAME(",\"w\":63.5")), "frames[1]: w: not a whole number");
-    refuse(FOLDER(LENS, FRAME(",\"h\":5000")), "frames[1]: h: not a whole number");
+    refuse(FOLDER(LENS, FRAME(",\"h\":17000")), "frames[1]: h: not a whole number");
     refuse(FOLDER(LENS, FRAME(",\"cx\":[]")), "frames[1]: cx: not a number");
     refuse(FOLDER(LENS "\"camera_angle_x\":4,", FRAME("")), "camera_angle_x: not between");
     refuse(FOLDER(LENS, FRAME(",\"depth_path\":\"d.png\"")), "integer_depth_scale: missing");

@@ -52,7 +52,7 @@ TEST_WITH(test_association, scratch_setup, scratch_teardown)
     }
     /* d has no pose near it */
     assert_int_equal(folder.frame_count, 3);
-    assert_int_equal(folder.left_out.count, 1);
+    assert_int_equal(folder.left_out.frames.count, 1);
     assert_true(folder.depth_unit == 1 / 5000.0);
     assert_string_equal(folder.frames[0].image, "rgb/a.png");
     assert_string_equal(folder.frames[1].image, "rgb/b.png");
@@ -110,14 +110,52 @@ TEST_WITH(test_known_intrinsics, scratch_setup, scratch_teardown)
     scratch_close(&named);
 }
 
+/* Checks that lines that cannot be read are counted and named, and that the others are used. */
+TEST_WITH(test_bad_lines_are_left_out, scratch_setup, scratch_teardown)
+{
+    scratch *s = *state;
+    posed_folder folder;
+    char error[512] = "";
+    good_lists(s);
+    put(s, "rgb.txt", "10.000 rgb/a.png\nabc rgb/b.png\n12.000 rgb/c.png\n");
+    put(s, "depth.txt", "9.9\n10.008 depth/a.png\nnan depth/c.png\n");
+    put(s, "groundtruth.txt",
+        "9.980 0 0 0 0 0 0 1\n9.99 nan nan nan nan nan nan nan\n10.040 3 6 9 0 0 0 1\n12.01 0 0 0 0 0 0 0\n");
+    assert_int_equal(posed_folder_open(s->directory, &with_lens, &folder, error, sizeof error), 0);
+    assert_int_equal(folder.frame_count, 1);
+    assert_true(fabs(folder.frames[0].pose.position[0] - 1) < 1e-6); /* between the good neighbours */
+    assert_string_equal(folder.frames[0].depth, "depth/a.png");
+    static const char *const due[] = {"rgb.txt: lines left out: 1; the first: line 2: no time stamp",
+                                      "groundtruth.txt: lines left out: 2; the first: line 2: a number is not finite",
+                                      "depth.txt: lines left out: 2; the first: line 1: no file name",
+                                      "rgb/c.png: no pose near it in time"};
+    assert_int_equal(folder.left_out.frames.count, 4);
+    for (size_t i = 0; i < 4; i++) {
+        assert_non_null(strstr(folder.left_out.frames.lines[i], due[i]));
+    }
+    posed_folder_close(&folder);
+}
+
+/* Checks that --depth-unit counts instead of the data set's own step. */
+TEST_WITH(test_another_depth_unit, scratch_setup, scratch_teardown)
+{
+    scratch *s = *state;
+    posed_folder folder;
+    char error[512] = "";
+    good_lists(s);
+    posed_folder_options options = with_lens;
+    options.depth_unit = 0.001;
+    assert_int_equal(posed_folder_open(s->directory, &options, &folder, error, sizeof error), 0);
+    assert_true(folder.depth_unit == 0.001);
+    posed_folder_close(&folder);
+}
+
 TEST_WITH(test_bad_lists_are_named, scratch_setup, scratch_teardown)
 {
     scratch *s = *state;
     good_lists(s);
     put(s, "rgb.txt", "# nothing\n");
     refuse(s, &with_lens, "rgb.txt: no entry");
-    put(s, "rgb.txt", "10.0 a.png\nabc b.png\n");
-    refuse(s, &with_lens, "rgb.txt: line 2: no time stamp");
     put(s, "rgb.txt", "10.0\n");
     refuse(s, &with_lens, "rgb.txt: line 1: no file name");
     put(s, "rgb.txt", "nan a.png\n");

@@ -72,8 +72,14 @@ static int convert_frames(const posed_folder *folder, viewpoint_list *out, char 
         const posed_intrinsics *lens = &frame->intrinsics;
         viewpoint *view = &out->items[i];
         t3r_recorded_camera camera;
+        if (frame->rejected) {
+            return t3r_reason(error, error_bytes, "%s", frame->wrong != NULL ? frame->wrong : "out of memory");
+        }
         if (isnan(lens->width) || isnan(lens->height)) {
             return t3r_reason(error, error_bytes, "w or h: missing");
+        }
+        if (lens->width > T3R_MAX_SIDE || lens->height > T3R_MAX_SIDE) {
+            return t3r_reason(error, error_bytes, "w, h: more than %u pixels", T3R_MAX_SIDE);
         }
         if (posed_frame_camera(frame, (uint32_t)lens->width, (uint32_t)lens->height, &camera, error, error_bytes) !=
             0) {

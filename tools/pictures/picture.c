@@ -17,12 +17,22 @@
 #include "cli/files/whole_file.h"
 #include "host/file_bytes.h"
 #include "host/reason.h"
+#include "pictures/exif.h"
+#include "pictures/foreign_file.h"
 #include "trim3r.h"
 
 /* Both libraries report errors by longjmp. Everything that must survive a jump, or be freed after one, is in a struct
  * of the caller's, so that no local variable is read after a jump. */
 
 #define REASON_BYTES 160
+#define EXIF_BYTES 65533u /* most bytes of EXIF that are kept of a JPEG: one marker */
+#define OPAQUE_FROM 128u  /* least alpha of a valid pixel */
+
+/* How much of a picture is read. */
+typedef struct extent {
+    uint32_t most_side;
+    bool header_only;
+} extent;
 
 static int fail(char *error, size_t error_bytes, const char *path, const char *reason)
 {
@@ -41,7 +51,7 @@ typedef struct png_work {
     png_infop info;
     FILE *file;
     png_bytep *rows;
-    bool header_only;
+    extent want;
     char reason[REASON_BYTES];
 } png_work;
 
@@ -72,6 +82,36 @@ static int point_rows(png_work *work, const picture *p)
     return 0;
 }
 
+/* Returns the orientation that the chunk eXIf states. */
+static uint32_t png_orientation(png_work *work)
+{
+    png_unknown_chunkp chunks = NULL;
+    return png_get_unknown_chunks(work->png, work->info, &chunks) > 0 ? exif_orientation(chunks[0].data, chunks[0].size)
+                                                                      : EXIF_UPRIGHT;
+}
+
+/* Moves the last channel, which is alpha, from the samples into a plane; drops it if every pixel is opaque. */
+static int split_alpha(picture *p)
+{
+    uint8_t *samples = p->samples;
+    const size_t pixels = (size_t)p->width * p->height;
+    const uint32_t colours = p->channels - 1;
+    bool opaque = true;
+    p->valid = malloc(pixels);
+    for (size_t i = 0; i < pixels && p->valid != NULL; i++) {
+        p->valid[i] = samples[i * p->channels + colours] >= OPAQUE_FROM;
+        opaque = opaque && p->valid[i] != 0;
+        memmove(samples + i * colours, samples + i * p->channels, colours);
+    }
+    p->channels = colours;
+    const int status = p->valid != NULL ? 0 : -1;
+    if (opaque) {
+        free(p->valid);
+        p->valid = NULL;
+    }
+    return status;
+}
+
 static bool little_endian(void)
 {
     const uint16_t one = 1;
@@ -89,10 +129,11 @@ static int png_decode(png_work *work, picture *out)
         png_error(work->png, "out of memory");
     }
     png_init_io(work->png, work->file);
-    png_set_user_limits(work->png, T3R_MAX_SIDE, T3R_MAX_SIDE);
+    png_set_user_limits(work->png, work->want.most_side, work->want.most_side);
     /* read only pixels: a text, profile or preview may decompress to megabytes; -1: all such chunks, also those that
      * libpng knows */
     png_set_keep_unknown_chunks(work->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+    png_set_keep_unknown_chunks(work->png, PNG_HANDLE_CHUNK_ALWAYS, (png_const_bytep) "eXIf", 1);
     png_read_info(work->png, work->info);
     png_byte colour_type = png_get_color_type(work->png, work->info);
     png_byte depth = png_get_bit_depth(work->png, work->info);
@@ -101,8 +142,12 @@ static int png_decode(png_work *work, picture *out)
     out->height = png_get_image_height(work->png, work->info);
     out->channels = grey ? 1 : 3;
     out->bits = colour_type == PNG_COLOR_TYPE_GRAY && depth == 16 ? 16 : 8;
-    if (work->header_only) {
+    out->orientation = png_orientation(work);
+    if (work->want.header_only) {
         return 0;
+    }
+    if ((uint64_t)out->width * out->height > PICTURE_LARGEST_PIXELS) {
+        png_error(work->png, "image exceeds the largest number of pixels");
     }
     if (out->bits == 16) {
         if (little_endian()) {
@@ -111,8 +156,10 @@ static int png_decode(png_work *work, picture *out)
     } else {
         png_set_scale_16(work->png);
         png_set_expand(work->png);
-        png_set_strip_alpha(work->png);
     }
+    const bool alpha = out->bits == 8 && ((colour_type & PNG_COLOR_MASK_ALPHA) != 0 ||
+                                          png_get_valid(work->png, work->info, PNG_INFO_tRNS) != 0);
+    out->channels += alpha;
     png_set_interlace_handling(work->png);
     png_read_update_info(work->png, work->info);
     if (png_get_rowbytes(work->png, work->info) != (size_t)out->width * out->channels * (out->bits / 8u)) {
@@ -124,12 +171,15 @@ static int png_decode(png_work *work, picture *out)
     }
     png_read_image(work->png, work->rows);
     png_read_end(work->png, NULL);
+    if (alpha && split_alpha(out) != 0) {
+        png_error(work->png, "out of memory");
+    }
     return 0;
 }
 
-static int read_png(FILE *file, const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
+static int read_png(FILE *file, const char *path, extent want, picture *out, char *error, size_t error_bytes)
 {
-    png_work work = {.file = file, .header_only = header_only, .reason = "PNG: out of memory"};
+    png_work work = {.file = file, .want = want, .reason = "PNG: out of memory"};
     int status = png_decode(&work, out);
     png_destroy_read_struct(&work.png, &work.info, NULL);
     free(work.rows);
@@ -191,7 +241,8 @@ typedef struct jpeg_work {
     struct jpeg_decompress_struct jpeg;
     t3r_jpeg_scans scans;
     jmp_buf escape;
-    bool header_only;
+    extent want;
+    bool ends_early; /* the file ends before its end marker */
     char reason[REASON_BYTES];
 } jpeg_work;
 
@@ -209,15 +260,41 @@ static void jpeg_on_error(j_common_ptr jpeg)
 }
 
 /* Treats warnings as errors: for truncated or damaged data the library only warns, and fills in grey. Stray bytes
- * before a marker, which some cameras write, are harmless. So is an end marker that is missing after the last row:
- * before it, the library warns of missing data as well. In a progressive file whole scans may be missing. */
+ * before a marker, which some cameras write, are harmless; so is a missing end marker, if all pixels are there. */
 static void jpeg_on_message(j_common_ptr jpeg, int level)
 {
-    const bool end_missing =
-        jpeg->err->msg_code == JWRN_JPEG_EOF && !((const jpeg_work *)jpeg->err)->jpeg.progressive_mode;
-    if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA && !end_missing) {
+    jpeg_work *work = (jpeg_work *)jpeg->err;
+    if (level < 0 && jpeg->err->msg_code == JWRN_JPEG_EOF) {
+        work->ends_early = true;
+    } else if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) {
         jpeg_on_error(jpeg);
     }
+}
+
+/* Whether the file that ended early has all its pixels: lost data within a scan of Huffman codes is an error of its
+ * own, so one scan of all components is whole. Of several scans the last ones may be lost. */
+static bool jpeg_is_whole(jpeg_work *work)
+{
+    const struct jpeg_decompress_struct *jpeg = &work->jpeg;
+    bool whole = !jpeg->arith_code && (!jpeg_has_multiple_scans(&work->jpeg) || jpeg->coef_bits != NULL);
+    for (int c = 0; c < jpeg->num_components && whole && jpeg->coef_bits != NULL; c++) {
+        for (int i = 0; i < DCTSIZE2 && whole; i++) {
+            whole = jpeg->coef_bits[c][i] == 0; /* to the last bit */
+        }
+    }
+    return whole;
+}
+
+/* Returns the orientation that a marker with EXIF states. */
+static uint32_t jpeg_orientation(const struct jpeg_decompress_struct *jpeg)
+{
+    static const char name[] = "Exif\0";
+    for (const struct jpeg_marker_struct *marker = jpeg->marker_list; marker != NULL; marker = marker->next) {
+        if (marker->data_length > sizeof name && memcmp(marker->data, name, sizeof name) == 0) {
+            return exif_orientation(marker->data + sizeof name, marker->data_length - sizeof name);
+        }
+    }
+    return EXIF_UPRIGHT;
 }
 
 static void jpeg_refuse(j_common_ptr jpeg, const char *reason)
@@ -233,11 +310,14 @@ static int jpeg_decode(jpeg_work *work, FILE *file, picture *out)
     jpeg_create_decompress(&work->jpeg);
     t3r_jpeg_watch_scans(&work->jpeg, &work->scans, jpeg_refuse);
     jpeg_stdio_src(&work->jpeg, file);
+    jpeg_save_markers(&work->jpeg, JPEG_APP0 + 1, EXIF_BYTES);
     jpeg_read_header(&work->jpeg, TRUE);
-    if (work->jpeg.image_width > T3R_MAX_SIDE || work->jpeg.image_height > T3R_MAX_SIDE) {
-        jpeg_fail(work, "image exceeds the largest side");
+    if (work->jpeg.image_width > work->want.most_side || work->jpeg.image_height > work->want.most_side ||
+        (uint64_t)work->jpeg.image_width * work->jpeg.image_height > PICTURE_LARGEST_PIXELS) {
+        jpeg_fail(work, "image exceeds the largest size");
     }
-    if (work->header_only) {
+    out->orientation = jpeg_orientation(&work->jpeg);
+    if (work->want.header_only) {
         out->width = work->jpeg.image_width;
         out->height = work->jpeg.image_height;
         return 0;
@@ -258,15 +338,18 @@ static int jpeg_decode(jpeg_work *work, FILE *file, picture *out)
         JSAMPROW row = (JSAMPROW)out->samples + (size_t)work->jpeg.output_scanline * out->width * out->channels;
         jpeg_read_scanlines(&work->jpeg, &row, 1);
     }
+    if (work->ends_early && !jpeg_is_whole(work)) {
+        jpeg_fail(work, "the file ends before its last scans");
+    }
     jpeg_finish_decompress(&work->jpeg);
     return 0;
 }
 
-static int read_jpeg(FILE *file, const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
+static int read_jpeg(FILE *file, const char *path, extent want, picture *out, char *error, size_t error_bytes)
 {
     jpeg_work work;
     memset(&work, 0, sizeof work);
-    work.header_only = header_only;
+    work.want = want;
     work.jpeg.err = jpeg_std_error(&work.manager);
     work.manager.error_exit = jpeg_on_error;
     work.manager.emit_message = jpeg_on_message;
@@ -281,11 +364,11 @@ static int read_jpeg(FILE *file, const char *path, bool header_only, picture *ou
 
 /* ---- both ------------------------------------------------------------------------------------------------------ */
 
-static int read_stream(FILE *file, const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
+static int read_stream(FILE *file, const char *path, extent want, picture *out, char *error, size_t error_bytes)
 {
     static const uint8_t png_magic[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     static const uint8_t jpeg_magic[3] = {0xff, 0xd8, 0xff};
-    uint8_t magic[8] = {0};
+    uint8_t magic[FOREIGN_FILE_BYTES] = {0};
     size_t got = fread(magic, 1, sizeof magic, file);
     if (ferror(file)) {
         return fail(error, error_bytes, path, strerror(errno));
@@ -297,22 +380,23 @@ static int read_stream(FILE *file, const char *path, bool header_only, picture *
         return fail(error, error_bytes, path, "not a seekable file");
     }
     if (memcmp(magic, png_magic, sizeof png_magic) == 0) {
-        return read_png(file, path, header_only, out, error, error_bytes);
+        return read_png(file, path, want, out, error, error_bytes);
     }
     if (memcmp(magic, jpeg_magic, sizeof jpeg_magic) == 0) {
-        return read_jpeg(file, path, header_only, out, error, error_bytes);
+        return read_jpeg(file, path, want, out, error, error_bytes);
     }
-    return fail(error, error_bytes, path, "neither PNG nor JPEG");
+    const char *foreign = foreign_file_of_bytes(magic, got);
+    return fail(error, error_bytes, path, foreign != NULL ? foreign : "neither PNG nor JPEG");
 }
 
-static int read_either(const char *path, bool header_only, picture *out, char *error, size_t error_bytes)
+static int read_either(const char *path, extent want, picture *out, char *error, size_t error_bytes)
 {
     memset(out, 0, sizeof *out);
     FILE *file = t3r_file_open(path, error, error_bytes);
     if (file == NULL) {
         return -1;
     }
-    int status = read_stream(file, path, header_only, out, error, error_bytes);
+    int status = read_stream(file, path, want, out, error, error_bytes);
     fclose(file);
     return status;
 }
@@ -324,20 +408,30 @@ int picture_parse(const uint8_t *bytes, size_t count, picture *out, char *error,
     if (file == NULL) {
         return t3r_reason(error, error_bytes, count > 0 ? "out of memory" : "the picture is empty");
     }
-    int status = read_stream(file, "picture", false, out, error, error_bytes);
+    int status = read_stream(file, "picture", (extent){.most_side = T3R_MAX_SIDE}, out, error, error_bytes);
     fclose(file);
     return status;
 }
 
 int picture_read(const char *path, picture *out, char *error, size_t error_bytes)
 {
-    return read_either(path, false, out, error, error_bytes);
+    return read_either(path, (extent){.most_side = T3R_MAX_SIDE}, out, error, error_bytes);
+}
+
+int picture_read_large(const char *path, picture *out, char *error, size_t error_bytes)
+{
+    return read_either(path, (extent){.most_side = PICTURE_LARGEST_SIDE}, out, error, error_bytes);
+}
+
+int picture_header(const char *path, picture *out, char *error, size_t error_bytes)
+{
+    return read_either(path, (extent){PICTURE_LARGEST_SIDE, true}, out, error, error_bytes);
 }
 
 int picture_size(const char *path, uint32_t *width, uint32_t *height, char *error, size_t error_bytes)
 {
     picture header;
-    int status = read_either(path, true, &header, error, error_bytes);
+    int status = picture_header(path, &header, error, error_bytes);
     *width = header.width;
     *height = header.height;
     return status;
@@ -346,5 +440,6 @@ int picture_size(const char *path, uint32_t *width, uint32_t *height, char *erro
 void picture_free(picture *p)
 {
     free(p->samples);
+    free(p->valid);
     memset(p, 0, sizeof *p);
 }

@@ -40,6 +40,9 @@ static void check(const colmap_model *model)
         for (int k = 0; k < 4; k++) {
             norm += image->pose.rotation[k] * image->pose.rotation[k];
         }
+        if (image->wrong != NULL) {
+            continue;
+        }
         bool inside = image->name[0] != '\0' && fabs(norm - 1) < 1e-9;
         for (int k = 0; k < 3; k++) {
             inside = inside && fabs(image->pose.position[k]) < 1 << T3R_LIMIT_POSITION_LOG2;

@@ -19,6 +19,9 @@ static void parse(const uint8_t *data, size_t size, const posed_folder_options *
     for (uint32_t i = 0; status == 0 && i < folder.frame_count; i++) {
         const posed_frame *frame = &folder.frames[i];
         double norm = 0;
+        if (frame->rejected) {
+            continue;
+        }
         for (int k = 0; k < 4; k++) {
             norm += frame->pose.rotation[k] * frame->pose.rotation[k];
         }

@@ -5,7 +5,6 @@
 
 #include "fuzz/memory_file.h"
 #include "pictures/picture.h"
-#include "trim3r.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -17,12 +16,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     uint32_t width, height;
     picture p;
     int status = picture_size(path, &width, &height, error, sizeof error);
-    if ((status != 0) != (error[0] != '\0') || (status == 0 && (width > T3R_MAX_SIDE || height > T3R_MAX_SIDE))) {
+    if ((status != 0) != (error[0] != '\0') ||
+        (status == 0 && (width > PICTURE_LARGEST_SIDE || height > PICTURE_LARGEST_SIDE))) {
         abort();
     }
     if (status == 0 && width * height <= MOST_PIXELS) {
-        status = picture_read(path, &p, error, sizeof error);
-        if ((status != 0) != (error[0] != '\0') || (status == 0 && (p.width != width || p.height != height))) {
+        status = picture_read_large(path, &p, error, sizeof error);
+        if ((status != 0) != (error[0] != '\0') ||
+            (status == 0 && (p.width != width || p.height != height || p.orientation < 1 || p.orientation > 8))) {
             abort();
         }
         if (status == 0) {

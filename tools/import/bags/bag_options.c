@@ -2,6 +2,7 @@
 #include "import/bags/bag_options.h"
 
 #include "cli/options/option_values.h"
+#include "import/frames/left_out.h"
 
 enum {
     KEY_COLOUR = 0x1a0,
@@ -36,8 +37,7 @@ static const struct argp_option options[] = {
     {"camera-frame", KEY_CAMERA_FRAME, "FRAME", 0, "frame of the colour camera (its images')", BAG_GROUP},
     {"pair", KEY_PAIR, "MS", 0,
      "milliseconds that depth, and a pose that is not between two others, may be from colour, 1..1000 (20)", BAG_GROUP},
-    {"strict", KEY_STRICT, NULL, 0,
-     "refuse a bag with a message or frame that cannot be read (it is left out, counted and named)", BAG_GROUP},
+    {"strict", KEY_STRICT, NULL, 0, LEFT_OUT_STRICT_HELP, 0},
     {0},
 };
 
@@ -67,7 +67,6 @@ static error_t parse(int key, char *argument, struct argp_state *state)
     }
     if (key == KEY_STRICT) {
         o->topics.strict = true;
-        o->given = "--strict";
         return 0;
     }
     if (key != KEY_PAIR) {

@@ -13,7 +13,9 @@ typedef enum coefficient {
     K3 = 4,
     FISH_K3 = 2, /* for fisheye lenses */
     FISH_K4 = 3,
-    MUST_BE_0 = 5 /* the runtime has no such coefficient */
+    K4 = 5,
+    K5 = 6,
+    K6 = 7
 } coefficient;
 
 struct colmap_camera_model {
@@ -36,7 +38,7 @@ static const colmap_camera_model models[] = {
     {3, "RADIAL", 5, 1, NULL, T3R_DISTORTION_RADTAN, {K1, K2}},
     {4, "OPENCV", 8, 2, NULL, T3R_DISTORTION_RADTAN, {K1, K2, P1, P2}},
     {5, "OPENCV_FISHEYE", 8, 2, NULL, T3R_DISTORTION_FISHEYE, {K1, K2, FISH_K3, FISH_K4}},
-    {6, "FULL_OPENCV", 12, 2, NULL, T3R_DISTORTION_RADTAN, {K1, K2, P1, P2, K3, MUST_BE_0, MUST_BE_0, MUST_BE_0}},
+    {6, "FULL_OPENCV", 12, 2, NULL, T3R_DISTORTION_RADTAN, {K1, K2, P1, P2, K3, K4, K5, K6}},
     {7, "FOV", 5, 2, NO_COUNTERPART("FOV"), T3R_DISTORTION_NONE, {0}},
     {8, "SIMPLE_RADIAL_FISHEYE", 4, 1, NULL, T3R_DISTORTION_FISHEYE, {K1}},
     {9, "RADIAL_FISHEYE", 5, 1, NULL, T3R_DISTORTION_FISHEYE, {K1, K2}},
@@ -76,8 +78,8 @@ const char *colmap_intrinsics(const colmap_camera_model *model, const double *pa
             return "a parameter is not a finite number";
         }
     }
-    if (width == 0 || height == 0 || width > T3R_MAX_SIDE || height > T3R_MAX_SIDE) {
-        return "a side is not 1 to 4096 pixels";
+    if (width == 0 || height == 0 || width > PICTURE_LARGEST_SIDE || height > PICTURE_LARGEST_SIDE) {
+        return "a side is not 1 to 16384 pixels";
     }
     const double *centre = parameters + model->focals;
     *out = (posed_intrinsics){.width = (double)width,
@@ -95,11 +97,7 @@ const char *colmap_intrinsics(const colmap_camera_model *model, const double *pa
     for (uint32_t i = 0; i < model->parameters - model->focals - 2; i++) {
         double value = centre[2 + i];
         any = any || value != 0;
-        if (model->coefficients[i] != MUST_BE_0) {
-            out->coefficients[model->coefficients[i]] = value;
-        } else if (value != 0) {
-            return "k4, k5 or k6 of FULL_OPENCV is not 0: rational distortion is not supported";
-        }
+        out->coefficients[model->coefficients[i]] = value;
     }
     out->distortion = any ? model->distortion : T3R_DISTORTION_NONE;
     return NULL;

@@ -10,6 +10,7 @@
 #include "import/colmap/colmap_depth.h"
 #include "import/colmap/colmap_model.h"
 #include "import/frames/picture_folder.h"
+#include "import/frames/rejected.h"
 
 #define PATH_BYTES 8192
 #define MODELS_MOST 100u /* numbered folders of models */
@@ -175,8 +176,10 @@ static int add_frames(const char *directory, const posed_folder_options *options
         posed_frame *frame = &out->frames[out->frame_count++];
         char path[PATH_BYTES];
         if (camera == NULL || camera->wrong != NULL) {
-            return t3r_reason(error, error_bytes, "%s: camera %u of %s: %s", directory, image->camera, image->name,
-                              camera == NULL ? "it is not among the cameras" : camera->wrong);
+            rejected_mark(frame, "%s: camera %u: %s", image->name, image->camera,
+                          camera == NULL ? "it is not among the cameras" : camera->wrong);
+        } else if (image->wrong != NULL) {
+            rejected_mark(frame, "%s: its pose: %s", image->name, image->wrong);
         }
         if (image->name[0] == '/') {
             snprintf(path, sizeof path, "%s", image->name);
@@ -185,7 +188,8 @@ static int add_frames(const char *directory, const posed_folder_options *options
         }
         frame->image = strdup(path);
         frame->posed = true;
-        frame->intrinsics = camera->intrinsics;
+        frame->as_stored = true; /* COLMAP does not turn pictures by EXIF */
+        frame->intrinsics = camera != NULL ? camera->intrinsics : (posed_intrinsics){0};
         frame->pose = image->pose;
         if (frame->image == NULL) {
             return t3r_reason(error, error_bytes, "out of memory");

@@ -49,13 +49,10 @@ const char *colmap_model_add_image(colmap_model *model, const char *name, uint32
     if (name[0] == '\0') {
         return "no name";
     }
-    const char *wrong = pose_check(&from_world);
+    image.wrong = pose_check(&from_world);
     quaternion_normalise(from_world.rotation);
     image.pose = rigid_inverse(&from_world);
-    wrong = wrong != NULL ? wrong : pose_check_position(image.pose.position);
-    if (wrong != NULL) {
-        return wrong;
-    }
+    image.wrong = image.wrong != NULL ? image.wrong : pose_check_position(image.pose.position);
     colmap_image *list = grown(model->images, model->image_count, sizeof *list);
     if (list != NULL) {
         model->images = list;

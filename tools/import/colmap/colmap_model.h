@@ -20,7 +20,8 @@ typedef struct colmap_camera {
 typedef struct colmap_image {
     char *name; /* path in the folder of pictures */
     uint32_t camera;
-    rigid pose; /* camera to world */
+    rigid pose;        /* camera to world */
+    const char *wrong; /* why the pose cannot be used; NULL = it can */
 } colmap_image;
 
 /* Initialise with zeros. */

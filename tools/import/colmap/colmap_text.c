@@ -63,7 +63,8 @@ static const char *parse_camera(char *line, colmap_model *model)
     const char *name = take_word(&line);
     const colmap_camera_model *lens = name != NULL ? colmap_model_of_name(name) : NULL;
     if (lens == NULL) {
-        return name == NULL ? "no MODEL" : "an unknown camera model";
+        const colmap_camera unknown = {.id = (uint32_t)id, .wrong = "an unknown camera model"};
+        return name == NULL ? "no MODEL" : colmap_model_add_camera(model, &unknown);
     }
     if (!take_whole(&line, UINT64_MAX, &width) || !take_whole(&line, UINT64_MAX, &height)) {
         return "no WIDTH and HEIGHT";

@@ -11,12 +11,17 @@
 #include "import/frames/frame.h"
 #include "messages/fixed_camera.h"
 
-static int look_at(const char *directory, const posed_folder *folder, uint32_t index, pose_view *view,
-                   t3r_camera *camera, char *error, size_t error_bytes)
+static int look_at(const char *directory, const posed_folder *folder, uint32_t index, const uint32_t size[2],
+                   pose_view *view, t3r_camera *camera, char *error, size_t error_bytes)
 {
     import_buffers buffers;
     t3r_recorded_frame recorded;
-    int status = import_frame(directory, &folder->frames[index], NULL, 0, 0, &buffers, &recorded, error, error_bytes);
+    const posed_frame *from = &folder->frames[index];
+    uint32_t sides[2];
+    const bool large = import_picture_size(directory, from, &sides[0], &sides[1], error, error_bytes) == 0 &&
+                       (sides[0] > T3R_MAX_SIDE || sides[1] > T3R_MAX_SIDE);
+    int status = import_frame(directory, from, NULL, large ? size[0] : 0, large ? size[1] : 0, &buffers, &recorded,
+                              error, error_bytes);
     if (status == 0) {
         (void)t3r_fixed_camera(&recorded.camera, camera); /* cannot fail: import_frame() has checked it */
         t3r_frame frame = {.format = recorded.format, .width = recorded.width, .height = recorded.height};
@@ -56,8 +61,9 @@ static void set_pose(posed_frame *frame, const t3r_camera *camera)
     }
 }
 
-static int estimate(const char *directory, posed_folder *folder, poses_source source, pose_view *views, rigid *poses,
-                    t3r_camera *cameras, pose_account *accounts, char *error, size_t error_bytes)
+static int estimate(const char *directory, posed_folder *folder, const uint32_t size[2], poses_source source,
+                    pose_view *views, rigid *poses, t3r_camera *cameras, pose_account *accounts, char *error,
+                    size_t error_bytes)
 {
     if (poses_check_count(folder->frame_count, error, error_bytes) != 0) {
         return -1;
@@ -65,7 +71,7 @@ static int estimate(const char *directory, posed_folder *folder, poses_source so
     for (uint32_t i = 0; i < folder->frame_count; i++) {
         char reason[512];
         cli_progress("looking for features", i, folder->frame_count);
-        const int status = look_at(directory, folder, i, &views[i], &cameras[i], reason, sizeof reason);
+        const int status = look_at(directory, folder, i, size, &views[i], &cameras[i], reason, sizeof reason);
         if (status != 0) {
             (void)t3r_reason(error, error_bytes, "frame %u: %s", i, reason);
             return status;
@@ -85,18 +91,20 @@ static int estimate(const char *directory, posed_folder *folder, poses_source so
             return t3r_reason(error, error_bytes, "frame %u: its position is out of range", i);
         }
         set_pose(&folder->frames[i], &camera);
+        folder->frames[i].upright = true;
     }
     return 0;
 }
 
-int import_estimate_poses(const char *directory, posed_folder *folder, poses_source source, pose_account *accounts,
-                          char *error, size_t error_bytes)
+int import_estimate_poses(const char *directory, posed_folder *folder, uint32_t width, uint32_t height,
+                          poses_source source, pose_account *accounts, char *error, size_t error_bytes)
 {
     pose_view *views = calloc(folder->frame_count, sizeof *views);
     rigid *poses = calloc(folder->frame_count, sizeof *poses);
     t3r_camera *cameras = calloc(folder->frame_count, sizeof *cameras);
     int status = views != NULL && poses != NULL && cameras != NULL
-                     ? estimate(directory, folder, source, views, poses, cameras, accounts, error, error_bytes)
+                     ? estimate(directory, folder, (const uint32_t[]){width, height}, source, views, poses, cameras,
+                                accounts, error, error_bytes)
                      : t3r_reason(error, error_bytes, "out of memory");
     for (uint32_t i = 0; views != NULL && i < folder->frame_count; i++) {
         pose_view_free(&views[i]);

@@ -16,6 +16,7 @@
 #include "import/folders/pose_layout.h"
 #include "import/frames/align_depth.h"
 #include "import/frames/frame.h"
+#include "import/frames/rejected.h"
 #include "import/poses/matrix_text.h"
 #include "import/poses/pose_matrix.h"
 #include "mcap/reader_limits.h"
@@ -141,31 +142,33 @@ static int read_places(const char *directory, double depth_unit, cameras *out, c
                : 0;
 }
 
-/* Returns 1 if the frame is left out, with the reason in error[]. */
-static int add_frame(const char *directory, const pose_layout *layout, const char *pose_name, const char *stem,
-                     posed_frame *frame, char *error, size_t error_bytes)
+/* Makes the frame of a pose, or rejects it. A lost pose counts as none if poses may be missing. */
+static void add_frame(const char *directory, const pose_layout *layout, const char *pose_name, const char *stem,
+                      bool without_poses, posed_frame *frame)
 {
-    double matrix[16];
-    if (read_matrix(directory, pose_name, 4, matrix, error, error_bytes) != 0) {
-        return -1;
-    }
+    double matrix[16] = {0};
+    char reason[ERROR_BYTES] = "";
     frame->image = pose_layout_find(directory, layout->colours, stem, layout->colour_endings);
     frame->depth = pose_layout_find(directory, layout->depths, stem, layout->depth_endings);
     frame->no_depth = layout->no_depth;
     frame->pose = rigid_identity;
     if (frame->image == NULL) {
-        (void)t3r_reason(error, error_bytes, "%s: there is no picture of that name", pose_name);
-        return 1;
+        rejected_mark(frame, "%s: there is no picture of that name", pose_name);
+        return;
     }
+    if (read_matrix(directory, pose_name, 4, matrix, reason, sizeof reason) != 0) {
+        rejected_mark(frame, "%s: %s", frame->image, reason);
+        return;
+    }
+    bool lost = false;
     for (int i = 0; i < 16; i++) {
-        if (!isfinite(matrix[i])) {
-            (void)t3r_reason(error, error_bytes, "%s: %s is not finite: the pose was lost", frame->image, pose_name);
-            return 1;
-        }
+        lost = lost || !isfinite(matrix[i]);
     }
-    const char *wrong = pose_of_matrix(matrix, AXES_OPENCV, &frame->pose);
+    const char *wrong = lost ? "is not finite: the pose was lost" : pose_of_matrix(matrix, AXES_OPENCV, &frame->pose);
     frame->posed = wrong == NULL;
-    return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "%s/%s: %s", directory, pose_name, wrong);
+    if (wrong != NULL && !(lost && without_poses)) {
+        rejected_mark(frame, lost ? "%s: %s %s" : "%s: %s: %s", frame->image, pose_name, wrong);
+    }
 }
 
 /* Drops depth's lens if it sees the same as colour's from the same place. */
@@ -204,27 +207,15 @@ static int add_all(const char *directory, const char *folder, const pose_layout 
         snprintf(stem, sizeof stem, "%.*s", (int)(strlen(entries[i]->d_name) - strlen(layout->pose_ending)),
                  entries[i]->d_name);
         posed_frame *frame = &out->frames[out->frame_count++];
-        int status = add_frame(directory, layout, pose_name, stem, frame, reason, sizeof reason);
-        if (status < 0) {
-            return t3r_reason(error, error_bytes, "%s", reason);
-        }
-        if (status > 0 && (frame->image == NULL || !without_poses)) {
-            (void)text_list_add(&out->left_out, "%s", reason);
-            posed_frame_free(frame);
-            out->frame_count--;
-            continue;
-        }
+        add_frame(directory, layout, pose_name, stem, without_poses, frame);
         frame->intrinsics = shared.colour;
         /* unreadable pictures are reported later, where they are read */
-        compared =
-            compared || (frame->depth != NULL && compare_lenses(directory, frame, &shared, reason, sizeof reason) == 0);
+        compared = compared || (frame->depth != NULL && !frame->rejected &&
+                                compare_lenses(directory, frame, &shared, reason, sizeof reason) == 0);
         frame->depth_lens = shared.depth;
         frame->from_depth = shared.from_depth;
     }
-    return out->frame_count > 0
-               ? 0
-               : t3r_reason(error, error_bytes, "%s/%s: no pose is finite and has a picture; the last: %s", directory,
-                            folder, reason);
+    return 0;
 }
 
 /* Frees the entries that are no poses, and returns the number of the others, whose order is kept. */

@@ -14,10 +14,14 @@
 #include "import/depth/exr_depth.h"
 #include "import/folders/pose_files.h"
 #include "import/folders/record3d.h"
+#include "import/folders/reduced_pictures.h"
 #include "import/folders/transforms_json.h"
 #include "import/folders/tum_rgbd.h"
 #include "import/frames/picture_folder.h"
+#include "import/frames/rejected.h"
 #include "mcap/reader_limits.h"
+
+#define ERROR_BYTES 1024
 
 static bool has_transforms(const char *directory)
 {
@@ -80,6 +84,30 @@ static void mark_exr(posed_folder *folder)
     }
 }
 
+/* Remarks on folders of masks and confidence, which only the fields of transforms.json name. */
+static void tell_unread(const char *directory, posed_folder *folder)
+{
+    static const char *const names[] = {"mask", "masks", "confidence", "conf"};
+    bool named = false;
+    for (uint32_t i = 0; i < folder->frame_count && !named; i++) {
+        named = folder->frames[i].mask != NULL || folder->frames[i].confidence != NULL;
+    }
+    for (size_t i = 0; i < sizeof names / sizeof *names && !named; i++) {
+        if (posed_exists(directory, names[i])) {
+            (void)text_list_add(&folder->remarks, "%s: this folder is not read%s", names[i],
+                                names[i][0] == 'm' ? "; mask_path of a frame in transforms.json is" : "");
+        }
+    }
+}
+
+static int drop_rejected(const char *directory, posed_folder *folder, char *error, size_t error_bytes)
+{
+    char reason[ERROR_BYTES];
+    return rejected_drop(folder, reason, sizeof reason) == 0
+               ? 0
+               : t3r_reason(error, error_bytes, "%s: %s: %s", directory, folder->kind, reason);
+}
+
 int posed_folder_open(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                       size_t error_bytes)
 {
@@ -92,11 +120,16 @@ int posed_folder_open(const char *directory, const posed_folder_options *options
             int status = kinds[i].read(directory, options, out, error, error_bytes);
             out->kind = kinds[i].name;
             mark_exr(out);
-            return status;
+            tell_unread(directory, out);
+            reduced_pictures_take(directory, out);
+            return status == 0 ? drop_rejected(directory, out, error, error_bytes) : status;
         }
     }
     if (options != NULL && options->without_poses) {
         return picture_folder_read(directory, options, out, error, error_bytes);
+    }
+    if (picture_folder_foreign(directory, &out->left_out) == 0 && out->left_out.frames.count > 0) {
+        return t3r_reason(error, error_bytes, "%s: no poses, and %s", directory, out->left_out.frames.lines[0]);
     }
     return t3r_reason(
         error, error_bytes,

@@ -15,6 +15,7 @@
 #include "host/reason.h"
 #include "import/depth/exr_depth.h"
 #include "import/frames/picture_folder.h"
+#include "import/frames/rejected.h"
 #include "import/poses/pose_check.h"
 #include "mcap/reader_limits.h"
 
@@ -136,12 +137,12 @@ static int parse_frames(const cJSON *root, const uint32_t sides[2], posed_folder
         posed_frame *frame = &out->frames[out->frame_count++];
         const char *wrong = take_pose(pose, frame);
         if (wrong != NULL) {
-            return t3r_reason(error, error_bytes, "poses[%u]: %s", out->frame_count - 1, wrong);
+            rejected_mark(frame, "poses[%u]: %s", out->frame_count - 1, wrong);
         }
         memcpy(lens, (const double[4]){k[0], k[4], k[6], k[7]}, sizeof lens);
         if (own != NULL && !take_numbers(own, 4, lens)) {
-            return t3r_reason(error, error_bytes, "perFrameIntrinsicCoeffs[%u]: not 4 finite numbers: fx fy cx cy",
-                              out->frame_count - 1);
+            rejected_mark(frame, "perFrameIntrinsicCoeffs[%u]: not 4 finite numbers: fx fy cx cy",
+                          out->frame_count - 1);
         }
         frame->intrinsics = lens_of(lens, sides);
         own = own != NULL ? own->next : NULL;
@@ -240,6 +241,10 @@ static int add_names(const char *directory, const layout *l, const uint32_t dept
                             exr_depth_is(l->depth_ending)
                                 ? exr_depth_missing()
                                 : "rgbd/N.depth is packed with LZFSE, which is not read; lzfse -decode unpacks it");
+    }
+    if (posed_exists(directory, "rgbd/0.conf") || posed_exists(directory, "conf")) {
+        (void)text_list_add(&out->remarks,
+                            "the confidence of depth (.conf) is not read: depth of all confidences counts");
     }
     return picture_folder_rest(directory, l->pictures, "there is no pose of it", out, error, error_bytes);
 }

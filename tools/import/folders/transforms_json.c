@@ -12,6 +12,7 @@
 #include "cli/tables/json_input.h"
 #include "host/reason.h"
 #include "import/depth/exr_depth.h"
+#include "import/frames/rejected.h"
 #include "import/poses/pose_matrix.h"
 #include "mcap/reader_limits.h"
 #include "messages/fixed_camera.h"
@@ -22,7 +23,8 @@
 #define NERFSTUDIO_UNIT 0.001 /* default of a depth_file_path, as in nerfstudio */
 
 /* Every field that is read at the top or in a frame, in the order of strcmp(). */
-static const char *const known[] = {"camera_angle_x",
+static const char *const known[] = {"applied_scale",
+                                    "camera_angle_x",
                                     "camera_angle_y",
                                     "camera_model",
                                     "confidence_path",
@@ -47,6 +49,7 @@ static const char *const known[] = {"camera_angle_x",
                                     "k5",
                                     "k6",
                                     "latlong",
+                                    "mask_path",
                                     "orthographic",
                                     "p1",
                                     "p2",
@@ -91,10 +94,10 @@ static size_t number_of(const char *name)
     return found != NULL ? (size_t)(found - known) : KNOWN;
 }
 
-/* Whether an unread field may hold depth or poses, by its name. */
+/* Whether an unread field may hold depth, poses or masks, by its name. */
 static bool may_matter(const char *name)
 {
-    static const char *const parts[] = {"depth", "disparity", "pose", "transform", "extrinsic"};
+    static const char *const parts[] = {"depth", "disparity", "pose", "transform", "extrinsic", "mask", "confidence"};
     static const char *const harmless[] = {"applied_transform"}; /* the poses already include it */
     for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++) {
         if (strcmp(name, harmless[i]) == 0) {
@@ -119,7 +122,7 @@ static void tell_unread(reader *r, const char *name)
     }
     if (r->remarked_count < REMARKED_MOST) {
         r->remarked[r->remarked_count++] = name;
-        (void)text_list_add(r->remarks, "%s%s%.100s: this field is not read, though its name says depth or pose",
+        (void)text_list_add(r->remarks, "%s%s%.100s: this field is not read, though its name says depth, pose or mask",
                             r->where, r->where[0] != '\0' ? ": " : "", name);
     }
 }
@@ -200,8 +203,8 @@ static int read_size(reader *r, const char *name, double *value)
     if (read_number(r, name, value) != 0) {
         return -1;
     }
-    if (!isnan(*value) && !(*value >= 1 && *value <= T3R_MAX_SIDE && floor(*value) == *value)) {
-        return fail(r, name, "not a whole number of pixels from 1 to 4096");
+    if (!isnan(*value) && !(*value >= 1 && *value <= PICTURE_LARGEST_SIDE && floor(*value) == *value)) {
+        return fail(r, name, "not a whole number of pixels from 1 to 16384");
     }
     return 0;
 }
@@ -261,14 +264,14 @@ static int read_lens(reader *r, bool *fisheye, bool *pinhole)
 
 static int read_distortion(reader *r, posed_intrinsics *out)
 {
-    static const char *const radtan[5] = {"k1", "k2", "p1", "p2", "k3"};
+    static const char *const radtan[8] = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
     static const char *const equidistant[4] = {"k1", "k2", "k3", "k4"};
     bool fisheye = false, pinhole = false;
     if (read_lens(r, &fisheye, &pinhole) != 0) {
         return -1;
     }
     const char *const *names = fisheye ? equidistant : radtan;
-    int count = pinhole ? 0 : fisheye ? 4 : 5;
+    int count = pinhole ? 0 : fisheye ? 4 : 8;
     bool any = fisheye;
     for (int i = 0; i < count; i++) {
         double value;
@@ -277,18 +280,6 @@ static int read_distortion(reader *r, posed_intrinsics *out)
         }
         out->coefficients[i] = isnan(value) ? 0 : value;
         any = any || out->coefficients[i] != 0;
-    }
-    if (!fisheye && !pinhole) {
-        static const char *const higher[] = {"k4", "k5", "k6"};
-        for (size_t i = 0; i < sizeof higher / sizeof *higher; i++) {
-            double value;
-            if (read_number(r, higher[i], &value) != 0) {
-                return -1;
-            }
-            if (!isnan(value) && value != 0) {
-                return fail(r, higher[i], "not 0: rational distortion is not supported");
-            }
-        }
     }
     out->distortion = !any ? T3R_DISTORTION_NONE : fisheye ? T3R_DISTORTION_FISHEYE : T3R_DISTORTION_RADTAN;
     return 0;
@@ -388,6 +379,24 @@ static int read_unit(reader *r, const char *name, double *unit)
                : fail(r, name, T3R_LIMIT_TEXT("not between 1e-12 and ", T3R_LIMIT_DEPTH_UNIT, ""));
 }
 
+/* Reads the scale that nerfstudio has applied to the poses, and applies to its depth when it reads it; 1 if there is no
+ * such depth. */
+static int read_applied_scale(reader *r, double *scale)
+{
+    if (read_number(r, "applied_scale", scale) != 0) {
+        return -1;
+    }
+    if (!isnan(*scale) && !(*scale > 0)) {
+        return fail(r, "applied_scale", "not positive");
+    }
+    if (isnan(*scale) || *scale == 1 || !r->nerfstudio) {
+        *scale = 1;
+    } else {
+        (void)text_list_add(r->remarks, "applied_scale: depth is multiplied by %g, as the poses are", *scale);
+    }
+    return 0;
+}
+
 static bool all_depth_is_exr(const posed_folder *folder)
 {
     bool all = true, some = false;
@@ -414,11 +423,15 @@ static void settle_exr(reader *r, double integer_unit, posed_folder *out)
 
 static int read_depth_unit(reader *r, posed_folder *out)
 {
-    double unit, other;
-    if (read_unit(r, "integer_depth_scale", &unit) != 0 || read_unit(r, "depth_unit_scale_factor", &other) != 0) {
+    double unit, other, scale;
+    if (read_unit(r, "integer_depth_scale", &unit) != 0 || read_unit(r, "depth_unit_scale_factor", &other) != 0 ||
+        read_applied_scale(r, &scale) != 0) {
         return -1;
     }
     out->exr_length = isnan(other) ? 0 : other;
+    if (scale != 1) {
+        out->exr_length = (isnan(other) ? 1 : other) * scale;
+    }
     if (all_depth_is_exr(out)) {
         settle_exr(r, unit, out);
         return 0;
@@ -431,6 +444,11 @@ static int read_depth_unit(reader *r, posed_folder *out)
         if (out->frames[i].depth == NULL) {
             continue;
         }
+        if (r->options->depth_unit != 0) {
+            unit = r->options->depth_unit;
+            scale = 1; /* it is in world units */
+            break;
+        }
         if (!r->nerfstudio) {
             return fail(r, "integer_depth_scale", "missing, but frames have a depth_path");
         }
@@ -439,12 +457,35 @@ static int read_depth_unit(reader *r, posed_folder *out)
                             "depth_unit_scale_factor: missing; a step of depth is taken as %g, nerfstudio's default",
                             NERFSTUDIO_UNIT);
     }
-    out->depth_unit = isnan(unit) ? 0.001 : unit;
+    uint64_t fixed;
+    out->depth_unit = isnan(unit) ? 0.001 : unit * scale;
     out->depth_unit_given = !isnan(unit);
+    if (!t3r_fixed_depth_unit(out->depth_unit, &fixed)) {
+        return fail(
+            r, "applied_scale",
+            T3R_LIMIT_TEXT("it makes steps of depth that are not between 1e-12 and ", T3R_LIMIT_DEPTH_UNIT, ""));
+    }
     return 0;
 }
 
 /* ---- the file -------------------------------------------------------------------------------------------------- */
+
+/* Reads all of a frame but its picture's name. */
+static int read_fields(reader *r, posed_frame *frame)
+{
+    if (read_depth_path(r, frame) != 0 || read_optional_path(r, "mask_path", &frame->mask) != 0 ||
+        read_optional_path(r, "pointmap_path", &frame->pointmap) != 0 ||
+        read_optional_path(r, "confidence_path", &frame->confidence) != 0) {
+        return -1;
+    }
+    if (frame->confidence != NULL && frame->pointmap == NULL) {
+        return fail(r, "confidence_path", "there is no pointmap_path");
+    }
+    if (frame->depth != NULL && frame->pointmap != NULL) {
+        return fail(r, "pointmap_path", "there is a depth_path too");
+    }
+    return read_pose(r, frame) != 0 ? -1 : read_intrinsics(r, &frame->intrinsics);
+}
 
 static int read_frames(reader *r, posed_folder *out)
 {
@@ -471,18 +512,9 @@ static int read_frames(reader *r, posed_folder *out)
         if (read_path(r, "file_path", &frame->image) != 0) {
             return -1;
         }
-        if (read_depth_path(r, frame) != 0 || read_optional_path(r, "pointmap_path", &frame->pointmap) != 0 ||
-            read_optional_path(r, "confidence_path", &frame->confidence) != 0) {
-            return -1;
-        }
-        if (frame->confidence != NULL && frame->pointmap == NULL) {
-            return fail(r, "confidence_path", "there is no pointmap_path");
-        }
-        if (frame->depth != NULL && frame->pointmap != NULL) {
-            return fail(r, "pointmap_path", "there is a depth_path too");
-        }
-        if (read_pose(r, frame) != 0 || read_intrinsics(r, &frame->intrinsics) != 0) {
-            return -1;
+        if (read_fields(r, frame) != 0) {
+            rejected_mark(frame, "%s: %s", frame->image, r->error);
+            r->error[0] = '\0';
         }
     }
     r->frame = NULL;

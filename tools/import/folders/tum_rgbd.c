@@ -21,6 +21,7 @@
 #define NEAR_SECONDS 0.020
 #define BRACKET_SECONDS 0.100
 #define DEPTH_STEPS_PER_METRE 5000.0
+#define REASON_BYTES 256
 
 typedef struct stamped {
     double stamp;
@@ -31,6 +32,8 @@ typedef struct stamped {
 typedef struct stamped_list {
     stamped *items;
     size_t count;
+    uint32_t bad_lines; /* left out */
+    char first_bad[REASON_BYTES];
 } stamped_list;
 
 typedef struct intrinsics_row {
@@ -54,6 +57,14 @@ static void list_free(stamped_list *list)
     }
     free(list->items);
     *list = (stamped_list){0};
+}
+
+/* Counts a line that is left out. */
+static void note_bad_line(stamped_list *list, size_t line_number, const char *wrong)
+{
+    if (list->bad_lines++ == 0) {
+        snprintf(list->first_bad, sizeof list->first_bad, "line %zu: %s", line_number, wrong);
+    }
 }
 
 static int by_stamp(const void *a, const void *b)
@@ -103,12 +114,13 @@ static int parse_list(const char *path, char *text, bool poses, stamped_list *li
         *item = (stamped){0};
         const char *wrong = parse_line(line, poses, item);
         if (wrong != NULL) {
-            return t3r_reason(error, error_bytes, "%s: line %zu: %s", path, lines.number, wrong);
+            note_bad_line(list, lines.number, wrong);
+        } else {
+            list->count++;
         }
-        list->count++;
     }
     if (list->count == 0) {
-        return t3r_reason(error, error_bytes, "%s: no entry", path);
+        return t3r_reason(error, error_bytes, "%s: %s", path, list->bad_lines > 0 ? list->first_bad : "no entry");
     }
     qsort(list->items, list->count, sizeof *list->items, by_stamp);
     return 0;
@@ -207,6 +219,14 @@ static int find_intrinsics(const char *directory, const posed_folder_options *op
     return 0;
 }
 
+/* Notes the lines of a list that are left out. */
+static int note_list(const char *name, const stamped_list *list, posed_folder *out)
+{
+    return list->bad_lines == 0 ? 0
+                                : text_list_add(&out->left_out.frames, "%s: lines left out: %u; the first: %s", name,
+                                                list->bad_lines, list->first_bad);
+}
+
 static int join(const stamped_list *colour, const stamped_list *depth, const stamped_list *trajectory,
                 const posed_intrinsics *intrinsics, bool without_poses, posed_folder *out, char *error,
                 size_t error_bytes)
@@ -222,7 +242,7 @@ static int join(const stamped_list *colour, const stamped_list *depth, const sta
         posed_frame *frame = &out->frames[out->frame_count];
         frame->posed = find_pose(trajectory, colour->items[i].stamp, &frame->pose);
         if (!frame->posed && !without_poses) {
-            if (text_list_add(&out->left_out, "%s: no pose near it in time", colour->items[i].name) != 0) {
+            if (text_list_add(&out->left_out.frames, "%s: no pose near it in time", colour->items[i].name) != 0) {
                 return t3r_reason(error, error_bytes, "out of memory");
             }
             continue;
@@ -249,7 +269,7 @@ int tum_rgbd_read(const char *directory, const posed_folder_options *options, po
                   size_t error_bytes)
 {
     memset(out, 0, sizeof *out);
-    out->depth_unit = 1 / DEPTH_STEPS_PER_METRE;
+    out->depth_unit = options != NULL && options->depth_unit != 0 ? options->depth_unit : 1 / DEPTH_STEPS_PER_METRE;
     out->depth_unit_given = true;
     posed_intrinsics intrinsics;
     stamped_list colour = {0}, depth = {0}, trajectory = {0};
@@ -263,6 +283,11 @@ int tum_rgbd_read(const char *directory, const posed_folder_options *options, po
     }
     if (status == 0 && posed_exists(directory, "depth.txt")) {
         status = read_list(directory, "depth.txt", false, &depth, error, error_bytes);
+    }
+    if (status == 0 &&
+        (note_list("rgb.txt", &colour, out) != 0 || note_list("groundtruth.txt", &trajectory, out) != 0 ||
+         note_list("depth.txt", &depth, out) != 0)) {
+        status = t3r_reason(error, error_bytes, "out of memory");
     }
     if (status == 0) {
         status = join(&colour, &depth, &trajectory, &intrinsics, without_poses, out, error, error_bytes);

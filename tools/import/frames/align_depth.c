@@ -26,29 +26,26 @@ bool align_depth_same(const posed_intrinsics *colour, const posed_intrinsics *de
     return same;
 }
 
-static int lens_of(const posed_intrinsics *intrinsics, uint32_t width, uint32_t height, lens *out, char *error,
-                   size_t error_bytes)
+static int lens_of(const t3r_recorded_camera *camera, lens *out, char *error, size_t error_bytes)
 {
-    const posed_frame frame = {.intrinsics = *intrinsics, .pose = {.rotation = {1, 0, 0, 0}}};
-    t3r_recorded_camera recorded = {0};
     t3r_camera fixed;
-    if (posed_frame_camera(&frame, width, height, &recorded, error, error_bytes) != 0) {
-        return -1;
-    }
-    const char *wrong = t3r_fixed_camera(&recorded, &fixed);
+    const char *wrong = t3r_fixed_camera(camera, &fixed);
     if (wrong != NULL) {
         return t3r_reason(error, error_bytes, "%s are supported", wrong);
     }
-    lens_of_camera(&fixed, width, height, out);
+    lens_of_camera(&fixed, camera->width, camera->height, out);
     return 0;
 }
 
-int align_depth(const posed_frame *frame, const picture *colour, picture *depth, char *error, size_t error_bytes)
+int align_depth(const posed_frame *frame, const t3r_recorded_camera *colour, picture *depth, char *error,
+                size_t error_bytes)
 {
     lens from, to;
     ray_grid rays = {0};
-    if (lens_of(&frame->depth_lens, depth->width, depth->height, &from, error, error_bytes) != 0 ||
-        lens_of(&frame->intrinsics, colour->width, colour->height, &to, error, error_bytes) != 0) {
+    const posed_frame beside = {.intrinsics = frame->depth_lens, .pose = rigid_identity};
+    t3r_recorded_camera camera = {0};
+    if (posed_frame_camera(&beside, depth->width, depth->height, &camera, error, error_bytes) != 0 ||
+        lens_of(&camera, &from, error, error_bytes) != 0 || lens_of(colour, &to, error, error_bytes) != 0) {
         return -1;
     }
     const size_t count = (size_t)depth->width * depth->height;

@@ -15,6 +15,7 @@ bool align_depth_same(const posed_intrinsics *colour, const posed_intrinsics *de
 
 /* Draws the frame's depth, which frame->depth_lens saw from frame->from_depth, as seen by the camera of its colour
  * picture (register_depth.h), into `depth`. Returns 0, or -1 with a reason in error[]. */
-int align_depth(const posed_frame *frame, const picture *colour, picture *depth, char *error, size_t error_bytes);
+int align_depth(const posed_frame *frame, const t3r_recorded_camera *colour, picture *depth, char *error,
+                size_t error_bytes);
 
 #endif

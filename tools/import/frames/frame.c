@@ -13,9 +13,12 @@
 #include "image/undistort.h"
 #include "import/depth/exr_depth.h"
 #include "import/frames/align_depth.h"
+#include "import/frames/straighten.h"
 #include "mcap/reader_limits.h"
 #include "messages/fixed_camera.h"
+#include "pictures/exif.h"
 #include "pictures/picture.h"
+#include "pictures/picture_shape.h"
 
 #define MIN_SIDE 2u /* least side of t3r_frame */
 
@@ -24,7 +27,7 @@ _Static_assert(T3R_MAX_POSITION_Q32 == INT64_C(1) << (T3R_LIMIT_POSITION_LOG2 + 
                    T3R_MAX_DEPTH_UNIT_Q40 == ((uint64_t)T3R_LIMIT_DEPTH_UNIT << 40) - 1,
                "readers and runtime have the same limits");
 
-/* Returns a b / c rounded to nearest, halves up; sides are at most 2^12, so nothing overflows. */
+/* Returns a b / c rounded to nearest, halves up; sides are at most 2^14, so nothing overflows. */
 static uint32_t share(uint32_t a, uint32_t b, uint32_t c)
 {
     return (2 * a * b + c) / (2 * c);
@@ -91,10 +94,47 @@ static char *find_picture(const char *directory, const char *name)
     return path;
 }
 
-static int size_of(const char *directory, const char *name, uint32_t *width, uint32_t *height, char *error,
-                   size_t error_bytes)
+/* Finds whether a picture is to be turned upright as EXIF states: not if its camera sees the stored pixels. Its sides
+ * decide if they can; the orientation of a picture whose pose is given may have been obeyed or not where that was
+ * made. */
+static int find_turn(const posed_frame *frame, const picture *p, bool *turn, char *error, size_t error_bytes)
 {
-    char *path = find_picture(directory, name);
+    const posed_intrinsics *in = &frame->intrinsics;
+    const bool swaps = p->orientation >= EXIF_SWAPS_FROM, grid = in->grid_width > 0;
+    const double width = grid ? in->grid_width : in->width, height = grid ? in->grid_height : in->height;
+    const bool stored = posed_same_aspect(width, height, p->width, p->height);
+    const bool turned = swaps ? posed_same_aspect(width, height, p->height, p->width) : stored;
+    *turn = p->orientation > EXIF_UPRIGHT && !frame->as_stored && (turned || !stored);
+    return !*turn || !frame->posed || frame->upright || stored != turned
+               ? 0
+               : t3r_reason(
+                     error, error_bytes,
+                     "%s: EXIF turns the picture (orientation %u), and nothing says whether its pose is that of "
+                     "the turned one; mogrify -auto-orient turns the pixels, exiftool -Orientation= drops the mark",
+                     frame->image, p->orientation);
+}
+
+int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
+                        size_t error_bytes)
+{
+    picture header = {0};
+    bool turn = false;
+    char *path = find_picture(directory, frame->image);
+    const int status = path == NULL ? t3r_reason(error, error_bytes, "out of memory")
+                       : picture_header(path, &header, error, error_bytes) != 0
+                           ? -1
+                           : find_turn(frame, &header, &turn, error, error_bytes);
+    const bool swap = turn && header.orientation >= EXIF_SWAPS_FROM;
+    *width = swap ? header.height : header.width;
+    *height = swap ? header.width : header.height;
+    free(path);
+    return status;
+}
+
+int import_depth_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
+                      size_t error_bytes)
+{
+    char *path = find_picture(directory, frame->depth);
     const int status = path == NULL         ? t3r_reason(error, error_bytes, "out of memory")
                        : exr_depth_is(path) ? exr_depth_size(path, width, height, error, error_bytes)
                                             : picture_size(path, width, height, error, error_bytes);
@@ -102,21 +142,9 @@ static int size_of(const char *directory, const char *name, uint32_t *width, uin
     return status;
 }
 
-int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
-                        size_t error_bytes)
-{
-    return size_of(directory, frame->image, width, height, error, error_bytes);
-}
-
-int import_depth_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
-                      size_t error_bytes)
-{
-    return size_of(directory, frame->depth, width, height, error, error_bytes);
-}
-
 static int read_colour(const char *path, picture *out, char *error, size_t error_bytes)
 {
-    if (picture_read(path, out, error, error_bytes) != 0) {
+    if (picture_read_large(path, out, error, error_bytes) != 0) {
         return -1;
     }
     if (out->bits != 8) {
@@ -254,88 +282,201 @@ static int check_camera(const t3r_recorded_camera *camera, const char *name, cha
                                              : "distortion: the coefficients fold more than half of the picture");
 }
 
-int import_check_picture(const char *directory, const posed_frame *frame, char *error, size_t error_bytes)
-{
-    picture colour = {0};
-    const int status = read_named(directory, frame->image, NULL, &colour, error, error_bytes);
-    picture_free(&colour);
-    return status;
-}
+/* ---- colour ---------------------------------------------------------------------------------------------------- */
 
-int import_check_depth(const char *directory, const posed_frame *frame, char *error, size_t error_bytes)
+static int turn_upright(const posed_frame *frame, picture *colour, char *error, size_t error_bytes)
 {
-    picture depth = {0};
-    const int status = read_named(directory, frame->depth, &frame->depth_raw, &depth, error, error_bytes);
-    picture_free(&depth);
-    return status;
-}
-
-static int adapt(const char *directory, const posed_frame *frame, uint32_t width, uint32_t height, picture *colour,
-                 picture *depth, import_buffers *buffers, t3r_recorded_frame *out, char *error, size_t error_bytes)
-{
-    char reason[256];
-    if (read_named(directory, frame->image, NULL, colour, error, error_bytes) != 0) {
-        return IMPORT_UNREADABLE;
+    bool turn;
+    if (find_turn(frame, colour, &turn, error, error_bytes) != 0) {
+        return -1;
     }
-    if (posed_frame_camera(frame, colour->width, colour->height, &out->camera, reason, sizeof reason) != 0) {
+    return !turn || picture_turn(colour) == 0 ? 0 : t3r_reason(error, error_bytes, "%s: out of memory", frame->image);
+}
+
+/* Marks the pixels invalid that the frame's mask has black. */
+static int apply_mask(const char *directory, const posed_frame *frame, picture *colour, char *error, size_t error_bytes)
+{
+    const size_t pixels = (size_t)colour->width * colour->height;
+    picture mask = {0};
+    if (frame->mask == NULL) {
+        return 0;
+    }
+    int status = read_named(directory, frame->mask, NULL, &mask, error, error_bytes);
+    if (status == 0 && !posed_same_aspect(mask.width, mask.height, colour->width, colour->height)) {
+        status = t3r_reason(error, error_bytes, "%s: a mask of %ux%u pixels, but the picture has %ux%u", frame->mask,
+                            mask.width, mask.height, colour->width, colour->height);
+    }
+    if (status == 0 && colour->valid == NULL && (colour->valid = malloc(pixels)) != NULL) {
+        memset(colour->valid, 1, pixels);
+    }
+    if (status == 0 && (colour->valid == NULL || picture_keep_bright(&mask) != 0)) {
+        status = t3r_reason(error, error_bytes, "%s: out of memory", frame->mask);
+    }
+    for (size_t i = 0; i < pixels && status == 0; i++) {
+        const uint32_t x = (uint32_t)(i % colour->width), y = (uint32_t)(i / colour->width);
+        colour->valid[i] = colour->valid[i] != 0 && picture_valid_at(&mask, x, y, colour);
+    }
+    picture_free(&mask);
+    return status;
+}
+
+/* Reads the picture and makes its camera: upright, at most T3R_MAX_SIDE pixels wide and high if `large`, and without a
+ * distortion that no recording holds: `bent` is then that lens. */
+static int read_view(const char *directory, const posed_frame *frame, bool large, picture *colour,
+                     t3r_recorded_camera *camera, lens *bent, char *error, size_t error_bytes)
+{
+    char reason[512];
+    if (read_named(directory, frame->image, NULL, colour, error, error_bytes) != 0 ||
+        turn_upright(frame, colour, error, error_bytes) != 0 ||
+        apply_mask(directory, frame, colour, error, error_bytes) != 0) {
+        return -1;
+    }
+    if (posed_frame_camera(frame, colour->width, colour->height, camera, reason, sizeof reason) != 0) {
         return t3r_reason(error, error_bytes, "%s: %s", frame->image, reason);
     }
-    bool resize = width != 0;
+    const uint32_t longer = colour->width > colour->height ? colour->width : colour->height;
+    const uint32_t n = (longer + T3R_MAX_SIDE - 1) / T3R_MAX_SIDE;
+    if (n > 1 && !large) {
+        return t3r_reason(error, error_bytes,
+                          "%s: %ux%u pixels; sides of up to %u are supported, larger ones with --size", frame->image,
+                          colour->width, colour->height, T3R_MAX_SIDE);
+    }
+    if (n > 1) {
+        const import_crop whole = {.width = colour->width / n * n, .height = colour->height / n * n};
+        picture_reduce(colour, n);
+        import_crop_camera(camera, &whole, colour->width, colour->height);
+    }
+    if (posed_is_bent(&frame->intrinsics)) {
+        *bent = posed_lens(&frame->intrinsics, camera);
+        if (straighten(bent, colour, reason, sizeof reason) != 0) {
+            return t3r_reason(error, error_bytes, "%s: %s", frame->image, reason);
+        }
+        camera->distortion = T3R_DISTORTION_NONE;
+        memset(camera->coefficients, 0, sizeof camera->coefficients);
+    }
+    picture_blacken(colour);
+    return 0;
+}
+
+/* Returns 0, or -1 with a reason. */
+static int adapt_colour(const posed_frame *frame, const picture *colour, import_crop *crop, uint32_t width,
+                        uint32_t height, import_buffers *buffers, t3r_recorded_frame *out, char *error,
+                        size_t error_bytes)
+{
     out->format = T3R_PIXEL_RGB24;
-    out->width = resize ? width : colour->width;
-    out->height = resize ? height : colour->height;
+    out->width = width != 0 ? width : colour->width;
+    out->height = width != 0 ? height : colour->height;
     if (out->width < T3R_MIN_SIDE || out->height < T3R_MIN_SIDE) {
         return t3r_reason(error, error_bytes, "%s: %ux%u pixels; sides of %u and more are supported, or give --size",
                           frame->image, out->width, out->height, T3R_MIN_SIDE);
     }
-    import_crop crop = import_largest_crop(colour->width, colour->height, out->width, out->height);
-    if (crop.width < MIN_SIDE || crop.height < MIN_SIDE) {
+    *crop = import_largest_crop(colour->width, colour->height, out->width, out->height);
+    if (crop->width < MIN_SIDE || crop->height < MIN_SIDE) {
         return t3r_reason(error, error_bytes, "%s: too narrow to crop to that aspect", frame->image);
     }
-    import_crop_camera(&out->camera, &crop, out->width, out->height);
+    import_crop_camera(&out->camera, crop, out->width, out->height);
     if (check_camera(&out->camera, frame->image, error, error_bytes) != 0) {
         return -1;
     }
     buffers->rgb = malloc((size_t)out->width * out->height * 3);
-    if (buffers->rgb == NULL || develop_colour(colour, &crop, out->width, out->height, buffers->rgb) != 0) {
+    if (buffers->rgb == NULL || develop_colour(colour, crop, out->width, out->height, buffers->rgb) != 0) {
         return t3r_reason(error, error_bytes, "%s: out of memory", frame->image);
     }
     out->planes[0] = buffers->rgb;
     out->stride_bytes[0] = out->width * 3;
-    bool made = depth->samples != NULL;
-    if (!made && frame->depth == NULL) {
-        return 0;
+    return 0;
+}
+
+/* ---- depth ----------------------------------------------------------------------------------------------------- */
+
+/* Reads the frame's depth as its colour camera sees it. */
+static int read_aligned(const char *directory, const posed_frame *frame, const picture *colour,
+                        const t3r_recorded_camera *camera, const lens *bent, picture *depth, char *error,
+                        size_t error_bytes)
+{
+    char reason[512];
+    if (read_named(directory, frame->depth, &frame->depth_raw, depth, error, error_bytes) != 0) {
+        return -1;
     }
-    if (!made) {
-        if (read_named(directory, frame->depth, &frame->depth_raw, depth, error, error_bytes) != 0) {
-            return IMPORT_UNREADABLE;
-        }
-        if (frame->no_depth != 0) {
-            forget_samples(depth, frame->no_depth);
-        }
-        if (frame->depth_lens.fx != 0 && align_depth(frame, colour, depth, reason, sizeof reason) != 0) {
-            return t3r_reason(error, error_bytes, "%s: its lens: %s", frame->depth, reason);
+    if (frame->no_depth != 0) {
+        forget_samples(depth, frame->no_depth);
+    }
+    if (frame->depth_lens.fx != 0) {
+        return align_depth(frame, camera, depth, reason, sizeof reason) == 0
+                   ? 0
+                   : t3r_reason(error, error_bytes, "%s: its lens: %s", frame->depth, reason);
+    }
+    if (!posed_same_aspect(depth->width, depth->height, colour->width, colour->height)) {
+        return t3r_reason(error, error_bytes,
+                          "%s: %ux%u pixels of depth cannot show the view of a picture of %ux%u: another aspect; crop "
+                          "the depth to that view, or give its lens (intrinsic/intrinsic_depth.txt beside pose texts)",
+                          frame->depth, depth->width, depth->height, colour->width, colour->height);
+    }
+    return bent->fx == 0 || straighten(bent, depth, reason, sizeof reason) == 0
+               ? 0
+               : t3r_reason(error, error_bytes, "%s: %s", frame->depth, reason);
+}
+
+/* Sets depth to 0 where colour is invalid. */
+static void forget_invalid(const picture *colour, picture *depth)
+{
+    uint16_t *samples = depth->samples;
+    for (size_t i = 0; i < (size_t)depth->width * depth->height && colour->valid != NULL; i++) {
+        if (!picture_valid_at(colour, (uint32_t)(i % depth->width), (uint32_t)(i / depth->width), depth)) {
+            samples[i] = 0;
         }
     }
-    /* networks round sides to whole patches, so the two aspect ratios need not agree to the pixel */
-    double aspect = (double)depth->width * colour->height / ((double)depth->height * colour->width);
-    if (made && fabs(aspect - 1) > 0.04) {
-        return t3r_reason(error, error_bytes, "%s: a pointmap of %ux%u pixels, but the picture has %ux%u", frame->image,
-                          depth->width, depth->height, colour->width, colour->height);
-    }
+}
+
+/* Adapts depth of the same view as colour. */
+static int adapt_depth(const posed_frame *frame, const picture *colour, const import_crop *crop, picture *depth,
+                       bool resize, import_buffers *buffers, t3r_recorded_frame *out, char *error, size_t error_bytes)
+{
     const char *name = frame->depth != NULL ? frame->depth : "pointmap";
-    import_crop part = import_crop_in_proportion(&crop, colour->width, colour->height, depth->width, depth->height);
+    const import_crop part =
+        import_crop_in_proportion(crop, colour->width, colour->height, depth->width, depth->height);
     if (part.width < MIN_SIDE || part.height < MIN_SIDE) {
         return t3r_reason(error, error_bytes, "%s: too small to crop", name);
     }
-    out->depth_width = resize ? width : depth->width;
-    out->depth_height = resize ? height : depth->height;
+    forget_invalid(colour, depth);
+    out->depth_width = resize ? out->width : depth->width;
+    out->depth_height = resize ? out->height : depth->height;
     buffers->depth = malloc((size_t)out->depth_width * out->depth_height * sizeof *buffers->depth);
     if (buffers->depth == NULL ||
         develop_depth(depth, &part, out->depth_width, out->depth_height, buffers->depth) != 0) {
         return t3r_reason(error, error_bytes, "%s: out of memory", name);
     }
     out->depth = buffers->depth;
+    return 0;
+}
+
+/* ---- both ------------------------------------------------------------------------------------------------------ */
+
+static int adapt(const char *directory, const posed_frame *frame, uint32_t width, uint32_t height, picture *colour,
+                 picture *depth, import_buffers *buffers, t3r_recorded_frame *out, char *error, size_t error_bytes)
+{
+    import_crop crop = {0};
+    lens bent = {0};
+    const bool made = depth->samples != NULL;
+    if (read_view(directory, frame, width != 0, colour, &out->camera, &bent, error, error_bytes) != 0) {
+        return IMPORT_NO_FRAME;
+    }
+    const t3r_recorded_camera whole = out->camera;
+    if (adapt_colour(frame, colour, &crop, width, height, buffers, out, error, error_bytes) != 0) {
+        return IMPORT_NO_FRAME;
+    }
+    if (!made && frame->depth == NULL) {
+        return 0;
+    }
+    if (made && !posed_same_aspect(depth->width, depth->height, colour->width, colour->height)) {
+        (void)t3r_reason(error, error_bytes, "%s: a pointmap of %ux%u pixels, but the picture has %ux%u", frame->image,
+                         depth->width, depth->height, colour->width, colour->height);
+        return IMPORT_NO_DEPTH;
+    }
+    if ((!made && read_aligned(directory, frame, colour, &whole, &bent, depth, error, error_bytes) != 0) ||
+        adapt_depth(frame, colour, &crop, depth, width != 0, buffers, out, error, error_bytes) != 0) {
+        return IMPORT_NO_DEPTH;
+    }
     return 0;
 }
 

@@ -23,17 +23,14 @@ import_crop import_largest_crop(uint32_t picture_width, uint32_t picture_height,
 import_crop import_crop_in_proportion(const import_crop *crop, uint32_t from_width, uint32_t from_height,
                                       uint32_t width, uint32_t height);
 
-/* Reads the sides of the frame's picture from its header. Returns 0, or -1 with "picture: what" in error[]. */
+/* Reads the sides of the frame's picture, upright, from its header. Returns 0, or -1 with "picture: what" in error[].
+ */
 int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
                         size_t error_bytes);
 
 /* Reads the sides of its depth; the frame must have depth. */
 int import_depth_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
                       size_t error_bytes);
-
-/* Checks whether the frame's picture and its depth can be read. Returns 0, or -1 with "picture: what" in error[]. */
-int import_check_picture(const char *directory, const posed_frame *frame, char *error, size_t error_bytes);
-int import_check_depth(const char *directory, const posed_frame *frame, char *error, size_t error_bytes);
 
 /* Adapts a camera to cropping and resizing to width x height. */
 void import_crop_camera(t3r_recorded_camera *camera, const import_crop *crop, uint32_t width, uint32_t height);
@@ -46,8 +43,9 @@ typedef struct import_buffers {
 /* Reads and adapts a frame: to width x height, or unchanged in size when width is 0. depth: 16-bit steps made
  * elsewhere, which replace the frame's own (NULL: those are used) and which the call consumes. `out` (all but its
  * stamp) points into `buffers`, which import_buffers_free() releases in either case. Returns 0; with "picture: what" in
- * error[], IMPORT_UNREADABLE if the picture or its depth cannot be read, and -1 for all other errors. */
-enum { IMPORT_UNREADABLE = 1 };
+ * error[], IMPORT_NO_FRAME if its picture or camera cannot be used, IMPORT_NO_DEPTH if its depth cannot, and -1 if
+ * memory is out. */
+enum { IMPORT_NO_FRAME = 1, IMPORT_NO_DEPTH };
 int import_frame(const char *directory, const posed_frame *frame, picture *depth, uint32_t width, uint32_t height,
                  import_buffers *buffers, t3r_recorded_frame *out, char *error, size_t error_bytes);
 void import_buffers_free(import_buffers *buffers);

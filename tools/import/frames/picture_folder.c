@@ -13,12 +13,34 @@
 
 #include "host/reason.h"
 #include "mcap/reader_limits.h"
+#include "pictures/foreign_file.h"
 
 static int is_picture(const struct dirent *entry)
 {
     const char *dot = strrchr(entry->d_name, '.');
     return entry->d_name[0] != '.' && dot != NULL &&
            (strcasecmp(dot, ".png") == 0 || strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0);
+}
+
+static int is_foreign(const struct dirent *entry)
+{
+    return entry->d_name[0] != '.' && foreign_file_of_name(entry->d_name) != NULL;
+}
+
+int picture_folder_foreign(const char *directory, left_out *out)
+{
+    struct dirent **entries;
+    const int count = scandir(directory, &entries, is_foreign, versionsort);
+    int status = 0;
+    for (int i = 0; i < count; i++) {
+        const char *name = entries[i]->d_name;
+        status = status == 0 ? text_list_add(&out->frames, "%s: %s", name, foreign_file_of_name(name)) : status;
+        free(entries[i]);
+    }
+    if (count >= 0) {
+        free(entries);
+    }
+    return status;
 }
 
 int picture_folder_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
@@ -34,6 +56,9 @@ int picture_folder_read(const char *directory, const posed_folder_options *optio
                           directory);
     }
     memcpy(numbers, options->intrinsics, options->intrinsics_count * sizeof *numbers);
+    if (picture_folder_foreign(directory, &out->left_out) != 0) {
+        return t3r_reason(error, error_bytes, "out of memory");
+    }
     int count = scandir(directory, &entries, is_picture, versionsort);
     if (count < 0) {
         return t3r_reason(error, error_bytes, "%s: %s", directory, strerror(errno));
@@ -42,8 +67,9 @@ int picture_folder_read(const char *directory, const posed_folder_options *optio
     int status = 0;
     if (count == 0 || count > T3R_LIMIT_FRAMES) {
         status = t3r_reason(error, error_bytes, "%s: %s", directory,
-                            count == 0 ? "no transforms.json, no rgb.txt and groundtruth.txt, no pictures"
-                                       : T3R_LIMIT_TEXT("more than ", T3R_LIMIT_FRAMES, " pictures"));
+                            count == 0 && out->left_out.frames.count > 0 ? out->left_out.frames.lines[0]
+                            : count == 0 ? "no transforms.json, no rgb.txt and groundtruth.txt, no pictures"
+                                         : T3R_LIMIT_TEXT("more than ", T3R_LIMIT_FRAMES, " pictures"));
     }
     for (int i = 0; i < count; i++) {
         if (status == 0 && out->frames != NULL) {
@@ -92,7 +118,7 @@ int picture_folder_rest(const char *directory, const char *place, const char *wh
     for (int i = 0; i < count; i++) {
         char *path = status == 0 ? spelled(place, entries[i]->d_name) : NULL;
         if (status == 0 && (path == NULL || (bsearch(&path, used, out->frame_count, sizeof *used, by_text) == NULL &&
-                                             text_list_add(&out->left_out, "%s: %s", path, why) != 0))) {
+                                             text_list_add(&out->left_out.frames, "%s: %s", path, why) != 0))) {
             status = t3r_reason(error, error_bytes, "out of memory");
         }
         free(path);

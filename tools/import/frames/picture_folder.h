@@ -11,7 +11,11 @@
 int picture_folder_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                         size_t error_bytes);
 
-/* Adds to out->left_out, with the reason, every picture in DIR/PLACE that is no frame's image: pictures that the
+/* Adds to `out` the pictures and videos in DIR that are not read, with the command that converts each (foreign_file.h).
+ * Returns 0, or -1 when out of memory. */
+int picture_folder_foreign(const char *directory, left_out *out);
+
+/* Adds to out->left_out.frames, with the reason, every picture in DIR/PLACE that is no frame's image: pictures that the
  * folder's lists omit. Returns 0, or -1 with a reason in error[]. */
 int picture_folder_rest(const char *directory, const char *place, const char *why, posed_folder *out, char *error,
                         size_t error_bytes);

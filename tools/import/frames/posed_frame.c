@@ -53,6 +53,37 @@ posed_intrinsics posed_intrinsics_of(const double numbers[9])
     return out;
 }
 
+#define ASPECT_TOLERANCE 0.04
+
+bool posed_same_aspect(double width, double height, double other_width, double other_height)
+{
+    return fabs(width * other_height / (height * other_width) - 1) <= ASPECT_TOLERANCE;
+}
+
+/* Checks that the camera is that of a picture of this size. Where nothing says the size that it is for, its principal
+ * point must lie in the picture. */
+static int check_size(const posed_intrinsics *in, const t3r_recorded_camera *camera, char *error, size_t error_bytes)
+{
+    const uint32_t width = camera->width, height = camera->height;
+    const bool grid = in->grid_width > 0 && in->grid_height > 0;
+    if (grid && !posed_same_aspect(in->grid_width, in->grid_height, width, height)) {
+        return t3r_reason(
+            error, error_bytes,
+            "w, h: the intrinsics are for %gx%g pixels, but the picture has %ux%u: another aspect; turn or "
+            "crop the pictures to that view",
+            in->grid_width, in->grid_height, width, height);
+    }
+    const bool known = grid || (!isnan(in->width) && !isnan(in->height));
+    const double x = camera->cx + 0.5, y = camera->cy + 0.5;
+    if (!known && !(x >= 0 && x <= width && y >= 0 && y <= height)) {
+        return t3r_reason(error, error_bytes,
+                          "cx, cy: %g, %g lies outside the picture of %ux%u pixels: intrinsics for another size? Scale "
+                          "them to the picture; if it is a part of a larger one, say so by w and h in transforms.json",
+                          camera->cx, camera->cy, width, height);
+    }
+    return 0;
+}
+
 /* Returns a focal length: the given one, else from a field of view over `pixels`, else the other axis's. */
 static double focal_length(double given, double angle, double pixels, double other)
 {
@@ -90,6 +121,9 @@ int posed_frame_camera(const posed_frame *frame, uint32_t width, uint32_t height
         return t3r_reason(error, error_bytes, "fl_x, fl_y: %g, %g: focal lengths must be positive", camera->fx,
                           camera->fy);
     }
+    if (check_size(in, camera, error, error_bytes) != 0) {
+        return -1;
+    }
     memcpy(camera->coefficients, in->coefficients, sizeof camera->coefficients);
     memcpy(camera->position, frame->pose.position, sizeof camera->position);
     memcpy(camera->rotation, frame->pose.rotation, sizeof camera->rotation);
@@ -100,6 +134,8 @@ void posed_frame_free(posed_frame *frame)
 {
     free(frame->image);
     free(frame->depth);
+    free(frame->mask);
+    free(frame->wrong);
     free(frame->pointmap);
     free(frame->confidence);
     *frame = (posed_frame){0};
@@ -112,7 +148,7 @@ void posed_folder_close(posed_folder *folder)
     }
     free(folder->frames);
     free(folder->triplets);
-    text_list_free(&folder->left_out);
+    left_out_free(&folder->left_out);
     text_list_free(&folder->remarks);
     memset(folder, 0, sizeof *folder);
 }

@@ -57,6 +57,7 @@ static int maps_of(pointmap_source *source, uint32_t index, pointmaps *own, poin
 static void set_pose(posed_frame *frame, const rigid *pose)
 {
     frame->posed = true;
+    frame->upright = true; /* networks see the turned picture */
     frame->pose = *pose;
 }
 
@@ -353,7 +354,8 @@ int pointmap_source_depth(pointmap_source *source, uint32_t index, picture *dept
                 double step = floor(z[i] / source->folder->depth_unit + 0.5);
                 steps[i] = step >= 1 && step <= MOST_STEPS ? (uint16_t)step : 0;
             }
-            *depth = (picture){maps->width, maps->height, 1, 16, steps};
+            *depth =
+                (picture){.width = maps->width, .height = maps->height, .channels = 1, .bits = 16, .samples = steps};
         }
         free(z);
         pointmaps_forget(maps); /* frees memory for the frame's pictures */

@@ -15,14 +15,17 @@
 #include "cli/options/option_values.h"
 #include "cli/options/recording_options.h"
 #include "cli/tables/json_output.h"
+#include "host/file_bytes.h"
 #include "host/reason.h"
 #include "import/bags/recording_import.h"
 #include "import/estimation/poses.h"
 #include "import/estimation/poses_output.h"
 #include "import/folders/posed_folder.h"
 #include "import/frames/frame.h"
-#include "import/frames/unreadable.h"
+#include "import/frames/left_out.h"
+#include "import/frames/rejected.h"
 #include "import/pointmaps/import_pointmaps.h"
+#include "pictures/foreign_file.h"
 #include "recording/recording.h"
 #include "recording/recording_folder.h"
 #include "trim3r.h"
@@ -306,8 +309,7 @@ static void print_json(const material *m, const totals *t)
     cJSON_AddNumberToObject(json, "width", t->width);
     cJSON_AddNumberToObject(json, "height", t->height);
     json_add_integer(json, "bytes", (int64_t)t->bytes);
-    cJSON_AddNumberToObject(json, "skipped", folder->left_out.count);
-    text_list_add_json(&folder->left_out, json, "left_out");
+    left_out_add_json(&folder->left_out, json);
     text_list_add_json(&folder->remarks, json, "remarks");
     if (m->pointmaps.count > 0) {
         cJSON_AddNumberToObject(json, "pointmaps", m->pointmaps.count);
@@ -329,7 +331,7 @@ static void print_text(const options *o, const material *m, const totals *t)
     if (t->unposed > 0) {
         printf("without a pose: %u frames\n", t->unposed);
     }
-    text_list_print(&folder->left_out, "left out");
+    left_out_print(&folder->left_out);
     text_list_print(&folder->remarks, "remark");
     if (m->pointmaps.count > 0) {
         printf("pointmaps: %u, depth in steps of %g", m->pointmaps.count, folder->depth_unit);
@@ -382,7 +384,7 @@ static int prepare(const options *o, material *m, char *error)
     return 0;
 }
 
-/* Estimates poses if requested, and writes the recording: 0, IMPORT_UNREADABLE, or -1. */
+/* Poses, where they are to be estimated, and the recording: a status of import_frame(). */
 static int make(const options *o, material *m, totals *t, char *error)
 {
     char reason[ERROR_BYTES - 300];
@@ -393,8 +395,8 @@ static int make(const options *o, material *m, totals *t, char *error)
         if (m->accounts == NULL) {
             return t3r_reason(error, ERROR_BYTES, "out of memory");
         }
-        const int status =
-            import_estimate_poses(o->directory, &m->folder, o->poses, m->accounts, reason, sizeof reason);
+        const int status = import_estimate_poses(o->directory, &m->folder, o->width, o->height, o->poses, m->accounts,
+                                                 reason, sizeof reason);
         if (status != 0) {
             (void)t3r_reason(error, ERROR_BYTES, "%s: %s", o->directory, reason);
             return status;
@@ -403,17 +405,27 @@ static int make(const options *o, material *m, totals *t, char *error)
     return write_recording(o, m, t, error);
 }
 
-/* Does the same without unreadable pictures, if there are any. Pointmaps need all pictures. */
-static int make_of_what_can_be_read(const options *o, material *m, totals *t, char *error)
+/* Refuses what --strict refuses. */
+static int check_strict(const options *o, const material *m, char *error)
 {
     char reason[ERROR_BYTES - 300];
-    const int status = make(o, m, t, error);
-    if (status != IMPORT_UNREADABLE || m->pointmaps.count > 0) {
+    return !o->bag.topics.strict || left_out_refuse(&m->folder.left_out, reason, sizeof reason) == 0
+               ? 0
+               : t3r_reason(error, ERROR_BYTES, "%s: %s", o->directory, reason);
+}
+
+/* The same without frames that cannot be used, where there are such. Pointmaps go with all pictures. */
+static int make_of_what_can_be_used(const options *o, material *m, totals *t, char *error)
+{
+    char reason[ERROR_BYTES - 300];
+    const int status = check_strict(o, m, error) == 0 ? make(o, m, t, error) : -1;
+    if (status <= 0 || m->pointmaps.count > 0) {
         return status;
     }
-    return unreadable_leave_out(o->directory, &m->folder, reason, sizeof reason) == 0
-               ? make(o, m, t, error)
-               : t3r_reason(error, ERROR_BYTES, "%s: %s", o->directory, reason);
+    if (rejected_find(o->directory, &m->folder, o->width, o->height, reason, sizeof reason) != 0) {
+        return t3r_reason(error, ERROR_BYTES, "%s: %s", o->directory, reason);
+    }
+    return check_strict(o, m, error) == 0 ? make(o, m, t, error) : -1;
 }
 
 /* ---- a recording or a bag --------------------------------------------------------------------------------------- */
@@ -472,13 +484,26 @@ static bool is_file(const char *path)
     return stat(path, &about) == 0 && S_ISREG(about.st_mode);
 }
 
+/* Returns how to convert a picture or video that is given as a recording; NULL for all other files. */
+static const char *foreign_file(const char *path)
+{
+    uint8_t bytes[FOREIGN_FILE_BYTES];
+    FILE *file = t3r_file_open(path, NULL, 0);
+    const size_t count = file != NULL ? fread(bytes, 1, sizeof bytes, file) : 0;
+    if (file != NULL) {
+        fclose(file);
+    }
+    return foreign_file_of_bytes(bytes, count);
+}
+
 int command_import(int argc, char **argv)
 {
     options o = {0};
     o.pointmaps.confidence_least = -HUGE_VAL;
     file_options_parse(&parser, argc, argv, &o);
     if (is_file(o.directory) || t3r_recording_is_folder(o.directory)) {
-        return import_recording(&o);
+        const char *foreign = is_file(o.directory) ? foreign_file(o.directory) : NULL;
+        return foreign == NULL ? import_recording(&o) : cli_error(CLI_BAD_INPUT, "%s: %s", o.directory, foreign);
     }
     if (o.bag.given != NULL) {
         return cli_error(CLI_BAD_USAGE, "%s is for bags and recordings, and %s is none", o.bag.given, o.directory);
@@ -488,7 +513,7 @@ int command_import(int argc, char **argv)
     char error[ERROR_BYTES] = "";
     int status = prepare(&o, &m, error);
     if (status == 0) {
-        status = make_of_what_can_be_read(&o, &m, &t, error);
+        status = make_of_what_can_be_used(&o, &m, &t, error);
     }
     cli_progress_end();
     if (status == 0 && t.depth_frames == 0) {

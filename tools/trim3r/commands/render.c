@@ -325,8 +325,9 @@ static int render_one(const render_options *o, reconstruction *r, const viewpoin
                         index);
     }
     *hash = t3r_hash_bytes(*hash, p->rgb, pixels * 3);
-    code = write_picture(o->output, index, count, &(picture){view->width, view->height, 3, 8, p->rgb});
-    picture grey = {view->width, view->height, 1, 16, p->grey};
+    picture colour = {.width = view->width, .height = view->height, .channels = 3, .bits = 8, .samples = p->rgb};
+    code = write_picture(o->output, index, count, &colour);
+    picture grey = {.width = view->width, .height = view->height, .channels = 1, .bits = 16, .samples = p->grey};
     if (code == CLI_OK && o->depth != NULL) {
         const uint32_t far = convert_depth(p->depth_q20, pixels, o->depth_unit, r->scene.frame.exponent, p->grey);
         if (far > 0) {
