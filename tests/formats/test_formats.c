@@ -10,9 +10,9 @@
 #include "core/little_endian.h"
 #include "host/file_bytes.h"
 #include "scene/gaussian_shape.h"
-#include "scene/rows/scene_rows.h"
-#include "scene/rows/scene_turn.h"
 #include "scene/scene_file.h"
+#include "scene/scene_rows.h"
+#include "scene/scene_turn.h"
 #include "scratch.h"
 #include "test.h"
 

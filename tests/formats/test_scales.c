@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "scene/gaussian_shape.h"
-#include "scene/splat_scales.h"
+#include "scene/summary/splat_scales.h"
 #include "test.h"
 
 #define COUNT 2000u

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "scene/rows/scene_turn.h"
+#include "scene/scene_turn.h"
 #include "test.h"
 
 /* Returns the sum of the harmonics in a direction. */

@@ -14,8 +14,8 @@
 #include "core/scene_frame.h"
 #include "host/file_bytes.h"
 #include "host/reason.h"
-#include "scene/rows/chosen_rows.h"
-#include "scene/rows/scene_extent.h"
+#include "scene/chosen_rows.h"
+#include "scene/scene_extent.h"
 #include "scene/scene_format.h"
 
 /* All formats. Of two with one suffix the first is written; `ply` is used for files that no format recognises. */

@@ -6,8 +6,8 @@
 
 #include <stdio.h>
 
-#include "scene/rows/scene_rows.h"
 #include "scene/scene_file.h"
+#include "scene/scene_rows.h"
 
 typedef struct scene_format {
     const char *suffix;  /* suffix of its files: ".ply" */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/scene_options.h"
 
-#include "scene/rows/scene_turn.h"
 #include "scene/scene_file.h"
+#include "scene/scene_turn.h"
 
 void scene_output_option(struct argp_state *state, const char *option, const char *path)
 {

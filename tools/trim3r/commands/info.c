@@ -15,8 +15,8 @@
 #include "import/bags/bag_pictures.h"
 #include "recording/recording.h"
 #include "scene/scene_file.h"
-#include "scene/scene_info.h"
 #include "scene/scene_options.h"
+#include "scene/summary/scene_info.h"
 
 #define ERROR_BYTES 512
 

@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-#include "scene/rows/scene_rows.h"
+#include "scene/scene_rows.h"
 
 #define GLB_MAGIC "glTF"
 #define GLB_VERSION 2u

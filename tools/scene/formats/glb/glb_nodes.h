@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "scene/rows/scene_turn.h"
+#include "scene/scene_turn.h"
 
 /* A point of the mesh becomes scale x rotated point + translation. */
 typedef struct glb_placement {

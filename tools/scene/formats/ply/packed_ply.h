@@ -5,7 +5,7 @@
 #define TRIM3R_TOOLS_PACKED_PLY_H
 
 #include "scene/formats/ply/ply_header.h"
-#include "scene/rows/scene_rows.h"
+#include "scene/scene_rows.h"
 
 #define PACKED_PLY_CHUNK 256u
 

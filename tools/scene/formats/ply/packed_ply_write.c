@@ -9,8 +9,8 @@
 #include "scene/formats/byte_codes.h"
 #include "scene/formats/ply/packed_ply.h"
 #include "scene/formats/ply/ply.h"
-#include "scene/rows/scene_order.h"
 #include "scene/scene_format.h"
+#include "scene/scene_order.h"
 
 /* Clamps logarithms of scales; readers accept no more. */
 #define SCALE_MOST 20.0

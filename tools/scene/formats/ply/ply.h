@@ -6,7 +6,7 @@
 
 #include <stdio.h>
 
-#include "scene/rows/scene_rows.h"
+#include "scene/scene_rows.h"
 
 /* like scene_format's */
 int ply_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes);

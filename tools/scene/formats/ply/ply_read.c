@@ -13,7 +13,7 @@
 #include "scene/formats/ply/packed_ply.h"
 #include "scene/formats/ply/ply_body.h"
 #include "scene/formats/ply/ply_header.h"
-#include "scene/rows/scene_rows.h"
+#include "scene/scene_rows.h"
 
 /* The values read of each vertex, in this order; the harmonics above degree 0 follow. */
 enum { X, Y, Z, DC_0, DC_1, DC_2, OPACITY, SCALE_0, SCALE_1, SCALE_2, ROT_0, ROT_1, ROT_2, ROT_3, WANTED_COUNT };

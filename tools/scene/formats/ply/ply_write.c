@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "host/little_floats.h"
-#include "scene/rows/scene_rows.h"
+#include "scene/scene_rows.h"
 
 static void write_properties(FILE *file, const char *names)
 {

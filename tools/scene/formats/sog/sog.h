@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-#include "scene/rows/scene_rows.h"
+#include "scene/scene_rows.h"
 
 #define SOG_META "meta.json"
 #define SOG_VERSION 2

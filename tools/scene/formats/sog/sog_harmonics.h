@@ -5,7 +5,7 @@
 
 #include "scene/formats/sog/codebook.h"
 #include "scene/formats/sog/webp_texels.h"
-#include "scene/rows/scene_rows.h"
+#include "scene/scene_rows.h"
 
 typedef struct sog_harmonics {
     uint32_t count;                   /* entries of the palette */

@@ -14,7 +14,7 @@
 #include "scene/formats/sog/sog.h"
 #include "scene/formats/sog/sog_harmonics.h"
 #include "scene/formats/sog/webp_texels.h"
-#include "scene/rows/scene_order.h"
+#include "scene/scene_order.h"
 
 static const char *const names[SOG_PICTURES] = {"means_l.webp", "means_u.webp", "scales.webp", "quats.webp",
                                                 "sh0.webp"};

@@ -7,7 +7,7 @@
 
 #include <stdio.h>
 
-#include "scene/rows/scene_rows.h"
+#include "scene/scene_rows.h"
 
 #define SPZ_MAGIC "NGSP"
 #define SPZ_VERSION 4u /* version written; 1 to 4 are read */

@@ -3,8 +3,8 @@
 #ifndef TRIM3R_TOOLS_CHOSEN_ROWS_H
 #define TRIM3R_TOOLS_CHOSEN_ROWS_H
 
-#include "scene/rows/scene_extent.h"
-#include "scene/rows/scene_rows.h"
+#include "scene/scene_extent.h"
+#include "scene/scene_rows.h"
 
 typedef struct chosen_rows {
     scene_rows rows; /* those chosen; they need `all`, and this to stay where it is */

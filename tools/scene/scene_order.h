@@ -3,7 +3,7 @@
 #ifndef TRIM3R_TOOLS_SCENE_ORDER_H
 #define TRIM3R_TOOLS_SCENE_ORDER_H
 
-#include "scene/rows/scene_rows.h"
+#include "scene/scene_rows.h"
 
 /* Returns indices along a Z-order curve (Morton) through the bounding box of the means, 10 bits per axis; ties keep
  * their order. free() it; NULL: out of memory. */

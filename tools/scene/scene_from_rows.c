@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Converts rows to the fixed point of the runtime. */
-#include "scene/rows/scene_rows.h"
+#include "scene/scene_rows.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "core/scene_frame.h"
 #include "host/reason.h"
 #include "scene/gaussian_shape.h"
-#include "scene/rows/scene_extent.h"
+#include "scene/scene_extent.h"
 
 /* Widest scale of the fixed point, in scene units: such a Gaussian covers every picture. */
 #define SCALE_MOST 0x1p29

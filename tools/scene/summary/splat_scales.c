@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "scene/splat_scales.h"
+#include "scene/summary/splat_scales.h"
 
 #include <limits.h>
 #include <math.h>

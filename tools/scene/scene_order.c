@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "scene/rows/scene_order.h"
+#include "scene/scene_order.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "scene/rows/scene_extent.h"
+#include "scene/scene_extent.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "scene/scale_picture.h"
+#include "scene/summary/scale_picture.h"
 
 #include <inttypes.h>
 #include <math.h>

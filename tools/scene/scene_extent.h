@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "scene/rows/scene_rows.h"
+#include "scene/scene_rows.h"
 
 typedef struct scene_extent {
     double centre[3]; /* median of each coordinate, in the axes of the rows */

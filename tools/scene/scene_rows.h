@@ -8,8 +8,8 @@
 #include <stdint.h>
 
 #include "scene/harmonics.h"
-#include "scene/rows/scene_turn.h"
 #include "scene/scene_file.h"
+#include "scene/scene_turn.h"
 
 /* A Gaussian as 3DGS stores it. All numbers are finite, except that the logit may be either infinity and a log_scale
  * the negative one. */

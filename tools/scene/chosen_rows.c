@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "scene/rows/chosen_rows.h"
+#include "scene/chosen_rows.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

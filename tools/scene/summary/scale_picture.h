@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#include "scene/splat_scales.h"
+#include "scene/summary/splat_scales.h"
 
 typedef struct scale_panel {
     const char *name;

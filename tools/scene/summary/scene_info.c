@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "scene/scene_info.h"
+#include "scene/summary/scene_info.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -13,8 +13,8 @@
 #include "cli/tables/json_output.h"
 #include "core/camera.h"
 #include "recording/recording.h"
-#include "scene/scale_picture.h"
 #include "scene/scene_file.h"
+#include "scene/summary/scale_picture.h"
 
 #define ERROR_BYTES 512
 #define QUANTILES 5

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "scene/rows/scene_turn.h"
+#include "scene/scene_turn.h"
 
 #include <math.h>
 #include <string.h>
