@@ -12,7 +12,8 @@
 #include "host/text.h"
 #include "mcap/packer.h"
 #include "messages/fixed_camera.h"
-#include "messages/ros_messages.h"
+
+struct t3r_ros_image; /* messages/ros_messages.h */
 
 typedef struct t3r_triplet {
     uint32_t context[2];
@@ -79,7 +80,8 @@ typedef struct t3r_image_decoder {
     int (*decode)(void *user, t3r_text format, const uint8_t *bytes, size_t count, bool depth, uint64_t unit_q40,
                   t3r_decoded_image *out, char *error, size_t error_bytes);
     /* Converts an image of an encoding for which t3r_pixel_is_converted() holds. */
-    int (*convert)(void *user, const t3r_ros_image *image, t3r_decoded_image *out, char *error, size_t error_bytes);
+    int (*convert)(void *user, const struct t3r_ros_image *image, t3r_decoded_image *out, char *error,
+                   size_t error_bytes);
     void *user;
 } t3r_image_decoder;
 void t3r_recording_set_decoder(t3r_recording *recording, t3r_image_decoder decoder);

@@ -201,7 +201,7 @@ def test_refusals(room):
     path = folder("many_json", small, depth=False)
     with open(f"{path}/transforms.json", encoding="utf-8") as file:
         text = json.load(file)
-    text["frames"] = [dict(text["frames"][0], transform_matrix=np.eye(4).tolist())] * 1001
+    text["frames"] = [dict(text["frames"][0], cx=8, cy=8, transform_matrix=np.eye(4).tolist())] * 1001
     with open(f"{path}/transforms.json", "w", encoding="utf-8") as file:
         json.dump(text, file)
     good("import", path, "-o", f"{work}/many.mcap")

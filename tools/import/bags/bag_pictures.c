@@ -9,6 +9,7 @@
 #include "host/little_floats.h"
 #include "host/reason.h"
 #include "messages/pixel_layout.h"
+#include "messages/ros_messages.h"
 
 /* Precedes the picture of compressedDepth: how it was made, and two floats a and b. */
 #define DEPTH_HEADER_BYTES 12u
