@@ -70,7 +70,7 @@ static void reduce_square(picture *p, uint32_t n, uint32_t x, uint32_t y, size_t
         }
     }
     for (uint32_t c = 0; c < p->channels; c++) {
-        samples[to * p->channels + c] = count > 0 ? (uint8_t)((2 * sums[c] + count) / (2 * count)) : 0;
+        samples[to * p->channels + c] = (uint8_t)(count > 0 ? (2 * sums[c] + count) / (2 * count) : 0);
     }
     if (p->valid != NULL) {
         p->valid[to] = 2 * count >= n * n;
