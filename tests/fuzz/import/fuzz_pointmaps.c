@@ -33,7 +33,7 @@ static void check_view(pointmaps *maps, uint32_t index, float *depth)
     if (status != 0) {
         return;
     }
-    pointmaps_depth(maps, maps->poses != NULL ? &maps->poses[index] : &motion_none, 1, depth);
+    pointmaps_depth(maps, maps->poses != NULL ? &maps->poses[index] : &rigid_identity, 1, depth);
     for (size_t i = 0; i < 3 * pixels; i++) {
         if (!isfinite(maps->points[i])) {
             abort();
