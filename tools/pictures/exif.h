@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How a camera was held when it took a picture. */
+/* Orientation of a camera when it took a picture. */
 #ifndef TRIM3R_TOOLS_EXIF_H
 #define TRIM3R_TOOLS_EXIF_H
 

@@ -28,7 +28,7 @@
 #define EXIF_BYTES 65533u /* most bytes of EXIF that are kept of a JPEG: one marker */
 #define OPAQUE_FROM 128u  /* least alpha of a valid pixel */
 
-/* How much of a picture is read. */
+/* Limits of reading a picture. */
 typedef struct extent {
     uint32_t most_side;
     bool header_only;

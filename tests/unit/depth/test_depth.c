@@ -153,7 +153,7 @@ TEST(agreement)
     }
 }
 
-/* Of two brackets the narrower; of equal ones the horizontal. */
+/* The narrower of two brackets is taken; of equal ones the horizontal one. */
 TEST(nearer_pair)
 {
     canvas *c = canvas_new(0);

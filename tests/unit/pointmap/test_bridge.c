@@ -165,7 +165,7 @@ TEST(edges)
     free(s);
 }
 
-/* What was never measured up to the border stays unknown but for the corners that diagonals cut. */
+/* An area that is unmeasured up to the border stays unknown, except for corners that diagonals cut. */
 TEST(borders_stay)
 {
     rig *s = pair_new();
@@ -203,7 +203,7 @@ TEST(nothing_is_trusted)
 
 /* --- two views ---------------------------------------------------------------------------------------------------- */
 
-/* What the other view measured is exact, in steps of this view, and wanted last where budgets are small. */
+/* Depth from the other view is exact, in steps of this view, and small budgets take it last. */
 TEST(lent)
 {
     const uint64_t unit[] = {UNIT_Q40, UNIT_Q40 / 7, 3 * UNIT_Q40, UNIT_Q40 >> 4};
@@ -224,7 +224,7 @@ TEST(lent)
     }
 }
 
-/* Of two points of the other view on one pixel the nearer is lent. */
+/* If two points of the other view fall on one pixel, the nearer one gives the depth. */
 TEST(nearest_lent)
 {
     rig *s = pair_new();
@@ -290,7 +290,7 @@ TEST(seen_through)
     }
 }
 
-/* Of two bridges of one surface the second to settle is covered by the first, whichever view comes first. */
+/* If both views bridge one surface, the later bridge is covered by the earlier one, in either order of the views. */
 TEST(settled_cover)
 {
     for (uint32_t v = 0; v < PAIR; v++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What views of one surface tell of each other: points sought in another view, flying pixels, redundancy, exposure. */
+/* Comparisons of views of one surface: points located in another view, flying pixels, redundancy, exposure. */
 #include "rgbd_frame.h"
 #include "unit/rig.h"
 

@@ -112,7 +112,7 @@ TEST(bounded)
     free(s);
 }
 
-/* Of twice as many strips as planes fit, the most are found; and none if nothing is matched. */
+/* With twice as many strips as there is room for planes, all room is used; without a match no plane is found. */
 TEST(counted)
 {
     shot *s = shoot(0, W);

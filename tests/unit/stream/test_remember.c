@@ -86,7 +86,7 @@ static uint32_t numbers_of(const t3r_runtime *rt)
     return bits;
 }
 
-/* Of several keyframes of one place one is forgotten, and not the only one of another place, for any numbers. */
+/* The keyframe to be forgotten is one of several of one place, never the only one of another place. */
 TEST(forgets_what_is_shown_often)
 {
     const t3r_config config = stream_config(3);

@@ -145,7 +145,7 @@ static cJSON *topics_json(const t3r_recording *recording, const bag_frames *fram
     return list;
 }
 
-/* What a report is made of. */
+/* Contents of a report. */
 typedef struct report {
     const t3r_recording *recording;
     const bag_frames *frames;
