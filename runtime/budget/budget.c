@@ -249,6 +249,16 @@ void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settin
     }
 }
 
+void t3r_retain_below(const t3r_view *view, const t3r_budget_settings *settings, uint32_t threshold, uint32_t ties,
+                      t3r_cluster *clusters)
+{
+    clusters[0].threshold = threshold;
+    clusters[0].ties = ties;
+    clusters[0].density_q10 = (int32_t)threshold - T3R_KEY_ZERO;
+    clusters[settings->clusters] = (t3r_cluster){0};
+    set_masks(view, 1, settings, clusters);
+}
+
 int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings,
                             const t3r_cluster *clusters)
 {

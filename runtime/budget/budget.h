@@ -74,6 +74,11 @@ bool t3r_is_sparse(const t3r_view *views, uint32_t count, uint32_t gaussians);
 void t3r_allocate(const t3r_view *views, uint32_t count, const t3r_budget_settings *settings, t3r_cluster *clusters,
                   const t3r_budget_work *work);
 
+/* Sets the mask of a view whose keys are in its plane: the points with keys below the threshold, and the first `ties`
+ * at it. They are as dense as the threshold says. For one cluster. */
+void t3r_retain_below(const t3r_view *view, const t3r_budget_settings *settings, uint32_t threshold, uint32_t ties,
+                      t3r_cluster *clusters);
+
 /* Returns log2 of the density of retained points around a pixel after the last allocation, Q10, at most 0: the points
  * are 2^(-density / 2) pixels apart. */
 int32_t t3r_log_density_q10(const t3r_view *view, size_t pixel, const t3r_budget_settings *settings,

@@ -14,8 +14,8 @@ t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_by
     if (config == NULL) {
         return T3R_ERR_ARGUMENT;
     }
-    memset(config, 0, config_bytes); /* the caller's, of any size */
     if (digest != t3r_header_interface() || config_bytes != sizeof(t3r_config)) {
+        memset(config, 0, config_bytes); /* the caller's, of any size */
         return T3R_ERR_INTERFACE;
     }
     *(t3r_config *)config = (t3r_config){T3R_SETTINGS(DEFAULT)};

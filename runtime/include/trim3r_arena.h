@@ -291,11 +291,11 @@
     X(with, BUDGET_WORK, "counts by SuperCluster",                                                                     \
       T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * (T3R_CLUSTERS_(shape) + 1) * T3R_GROUP_COUNT_BYTES, T3R_AT_BUDGET,    \
       T3R_AT_BUDGET)                                                                                                   \
+    X(with, MAP_DENSITY, "density of the map", T3R_STREAMS_(shape) * T3R_VIEW_PIXELS_(shape) * 4, T3R_AT_BUDGET,      \
+      T3R_AT_BUDGET)                                                                                                   \
     X(with, HEAD_WORK, "head work",                                                                                    \
       T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * T3R_UP_(T3R_HEAD_WORK_(T3R_WIDTH_(shape), T3R_COLUMN_BYTES_(shape))), \
       T3R_AT_HEAD, T3R_AT_HEAD)                                                                                        \
-    X(with, MAP_VIEW, "map as a keyframe sees it", T3R_STREAMS_(shape) * T3R_VIEW_PIXELS_(shape) * 4, T3R_AT_REFINE,   \
-      T3R_AT_REFINE)                                                                                                   \
     X(with, BORDER_SUMS, "sums across workers' borders",                                                               \
       T3R_REFINES_(shape) * T3R_OTHER_WORKERS_(shape) * T3R_REFINE_BORDER_(T3R_GAUSSIANS_(shape)) *                    \
           (T3R_REFINE_SUMS_BYTES + 4),                                                                                 \

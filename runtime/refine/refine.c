@@ -235,7 +235,7 @@ typedef struct slice_job {
     t3r_gaussian *scene;
     const t3r_map_record *records; /* NULL: all Gaussians change */
     uint32_t idle_most;
-    bool settles;                   /* smaller steps for Gaussians that more keyframes saw */
+    bool remembers;                 /* a stream that remembers keyframes */
     const t3r_structure *structure; /* one for each view, or NULL */
 } slice_job;
 
@@ -266,14 +266,16 @@ static void solve_chunk(void *context, uint32_t index, uint32_t worker)
  * on. */
 static const uint16_t settled_q15[T3R_FITTED_MOST + 1] = {32768, 16384, 10923, 8192, 6554};
 
-static t3r_correction settled(const t3r_correction *whole, uint32_t fitted)
+/* Opacity and place settle, or a Gaussian that is seen again and again would drift off its surface. Colour and shape
+ * settle only where keyframes are remembered; else they follow the newest ones. */
+static t3r_correction settled(const t3r_correction *whole, uint32_t fitted, bool remembers)
 {
     const int32_t share_q15 = settled_q15[T3R_MIN(fitted, (uint32_t)T3R_FITTED_MOST)];
     t3r_correction c = *whole;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 3 && remembers; i++) {
         c.colour_q7[i] = (int16_t)t3r_round_shift32(c.colour_q7[i] * share_q15, 15);
     }
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < (remembers ? 6 : 3); i++) {
         c.step_q16[i] = (int16_t)t3r_round_shift32(c.step_q16[i] * share_q15, 15);
     }
     return c;
@@ -290,7 +292,7 @@ static void apply_chunk(void *context, uint32_t index, uint32_t worker)
         if (!T3R_FEATURE_STREAMS || job->records == NULL) {
             t3r_refine_apply(correction, &job->scene[i]);
         } else if (job->records[i].idle < job->idle_most) {
-            const t3r_correction part = settled(correction, job->settles ? job->records[i].fitted : 0);
+            const t3r_correction part = settled(correction, job->records[i].fitted, job->remembers);
             t3r_refine_apply(&part, &job->scene[i]);
         }
     }
@@ -427,7 +429,7 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t pas
                      .scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE),
                      .records = records,
                      .idle_most = rt->config.views,
-                     .settles = t3r_is_stream(&rt->config) && rt->config.remember > 0};
+                     .remembers = rt->config.remember > 0};
     const uint32_t slices = (rt->gaussians + w.slice - 1) / w.slice;
     uint32_t total = passes * slices * (rt->views + t3r_remembered_a_pass(rt)), done = 0;
     t3r_structure structure[T3R_MAX_VIEWS] = {0};

@@ -22,6 +22,7 @@
 #include "stage_hash.h"
 #include "stages.h"
 #include "state/state.h"
+#include "stream_density.h"
 #include "stream_map.h"
 #include "superclusters/one_cluster.h"
 
@@ -137,90 +138,50 @@ static t3r_status compare_keyframes(t3r_runtime *rt, t3r_view *views, uint32_t s
     return status == T3R_OK ? level_keyframe(rt, views, slot) : status;
 }
 
-/* --- the map as the keyframe sees it ---------------------------------------------------------------------------- */
+/* --- the keyframe joins the map ---------------------------------------------------------------------------------- */
 
-/* Marks pixels whose surface the map shows as covered; returns their number. */
-static uint32_t mark_shown(const t3r_pointmap *keyframe, const uint32_t *drawn_q20)
+static void measure_points(t3r_runtime *rt, const t3r_view *view, const t3r_workers *workers, t3r_stream_report *report)
 {
-    const t3r_view *view = keyframe->view;
-    size_t pixels = (size_t)view->width * view->height;
-    uint32_t shown = 0;
-    for (size_t i = 0; i < pixels; i++) {
-        uint8_t *validity = &view->validity[i];
-        if (drawn_q20[i] == 0 || t3r_is_marked(*validity) || !t3r_has_depth(*validity)) {
-            continue;
-        }
-        const int32_t z_q20 = t3r_depth_q20(keyframe->scale, view->depth[i]);
-        /* in a wide hole the drawn surface is taken as the true one */
-        if (t3r_is_bridged(*validity) || t3r_is_one_surface(z_q20, drawn_q20[i], 16)) {
-            *validity = t3r_marked(*validity, T3R_MARK_COVERED);
-            shown++;
-        }
-    }
-    return shown;
+    report->points = t3r_one_cluster(view, 1, t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS));
+    t3r_blur_texture(&rt->kernels, view, 1, workers);
 }
 
-static t3r_status see_map(t3r_runtime *rt, const t3r_view *views, uint32_t slot, t3r_stream_report *report)
+static t3r_status join_map(t3r_runtime *rt, t3r_view *views, uint32_t slot, t3r_stream_report *report)
 {
-    t3r_pointmap keyframe = t3r_pointmap_of(&views[slot], rt->frame.exponent);
-    if (!t3r_progress(rt, T3R_STAGE_RASTER, 0, 1)) {
-        return T3R_ERR_CANCELLED;
+    const t3r_view *view = &views[slot];
+    const t3r_budget_work work = t3r_budget_work_of(rt);
+    const t3r_pointmap keyframe = t3r_pointmap_of(view, rt->frame.exponent);
+    const t3r_status status = t3r_find_texture(rt, views, alone(slot));
+    if (status != T3R_OK) {
+        return status;
     }
+    measure_points(rt, view, &work.workers, report);
     t3r_map map = t3r_map_of(rt);
     report->removed = t3r_map_see(&map, &keyframe, rt->keyframes, rt->config.half_life);
     t3r_remembered_hold(rt, &map);
     rt->gaussians = map.count;
 
-    t3r_projection projection;
-    const t3r_config *config = &rt->config;
-    t3r_status status = t3r_projection_make(&rt->camera[slot], &rt->frame, config->width, config->height, &projection);
-    if (status != T3R_OK) {
-        return status;
-    }
-    t3r_raster_room room = t3r_refine_room(rt);
-    t3r_binning bin = t3r_raster_list(rt, &projection, &room);
-    t3r_target target = {
-        .width = config->width,
-        .height = config->height,
-        .depth_q20 = t3r_buffer_at(rt, T3R_BUFFER_MAP_VIEW),
-        .depth_stride_bytes = config->width * 4,
-    };
-    uint32_t passes;
-    status = t3r_raster_tiles(rt, &bin, &target, &passes);
-    if (status == T3R_OK) {
-        report->shown = mark_shown(&keyframe, target.depth_q20);
-        t3r_hash_pointmap(rt, views, slot, slot + 1);
-    }
-    return status;
-}
-
-/* --- new points ------------------------------------------------------------------------------------------------- */
-
-static t3r_status add_points(t3r_runtime *rt, t3r_view *views, uint32_t slot, t3r_stream_report *report)
-{
-    const t3r_view *view = &views[slot];
-    const t3r_budget_work work = t3r_budget_work_of(rt);
-    const t3r_status status = t3r_find_texture(rt, views, alone(slot));
-    if (status != T3R_OK) {
-        return status;
-    }
-    t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
-    report->points = t3r_one_cluster(view, 1, clusters);
-    t3r_blur_texture(&rt->kernels, view, 1, &work.workers);
-
-    t3r_budget_settings settings = t3r_budget_settings_of(rt, views);
-    t3r_map map = t3r_map_of(rt);
+    const t3r_map_density density = {&map, &keyframe, &work.workers, t3r_buffer_at(rt, T3R_BUFFER_MAP_DENSITY)};
+    const t3r_budget_settings settings = t3r_budget_settings_of(rt, views);
+    t3r_map_density_find(&density);
+    t3r_map_density_fit(&density);
+    report->removed += t3r_map_drop(&map);
+    rt->gaussians = map.count;
     t3r_budget_keys(view, 1, &settings, &work);
-    t3r_map_cut cut = t3r_map_compete(&map, view, &settings, rt->config.gaussians);
-    settings.gaussians = cut.added;
-    t3r_choose_points(rt, views, alone(slot), &settings);
+    t3r_map_density_raise_keys(&density, &settings);
+    const t3r_map_cut cut = t3r_map_compete(&map, view, &settings, rt->config.gaussians);
+    report->shown = t3r_map_density_mark(&density, cut.threshold);
+    report->crowded = map.count - cut.kept;
+    t3r_hash_pointmap(rt, views, slot, slot + 1);
+
+    t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
+    t3r_retain_below(view, &settings, cut.threshold, cut.point_ties, clusters);
+    t3r_hash_budget(rt, views, slot, slot + 1);
     if (!t3r_progress(rt, T3R_STAGE_HEAD, 0, 1)) {
         return T3R_ERR_CANCELLED;
     }
-    report->crowded = map.count - cut.kept;
     t3r_map_thin(&map, &cut);
-    uint32_t made = t3r_view_to_gaussians(rt, views, slot, &settings, map.gaussians + map.count);
-    t3r_pointmap keyframe = t3r_pointmap_of(view, rt->frame.exponent);
+    const uint32_t made = t3r_view_to_gaussians(rt, views, slot, &settings, map.gaussians + map.count);
     report->added = t3r_map_append(&map, made, &keyframe, &settings, clusters);
     rt->gaussians = map.count;
     t3r_hash_scene(rt, T3R_STAGE_HEAD);
@@ -249,10 +210,7 @@ static __attribute__((noinline)) t3r_status take(t3r_runtime *rt, uint32_t slot,
     leave_far_keyframes(rt, views, slot);
     t3r_views_of(rt, views); /* poses in the current frame */
     status = compare_keyframes(rt, views, slot);
-    if (status == T3R_OK) {
-        status = see_map(rt, views, slot, report);
-    }
-    return status == T3R_OK ? add_points(rt, views, slot, report) : status;
+    return status == T3R_OK ? join_map(rt, views, slot, report) : status;
 }
 
 static __attribute__((noinline)) t3r_status refine_map(t3r_runtime *rt)

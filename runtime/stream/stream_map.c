@@ -9,8 +9,10 @@
 #include "state/state.h"
 
 #define FINER_Q8 256        /* log2: a keyframe with pixels this much narrower on the surface replaces the Gaussian */
+#define LOST_Q10 4096       /* log2: a Gaussian that has faded so far and is hidden leaves */
 #define WIDEN_STEP_Q10 64   /* log2 of density: smaller changes wait until they add up */
-#define WIDEN_MOST_Q10 8192 /* bound of one step */
+#define SCALE_MOST_Q10 4096 /* log2: bound of one step of the width */
+#define WIDTH_MOST_Q10 2048 /* log2: widths are within a quarter of the spacing and four times it */
 
 t3r_map t3r_map_of(const t3r_runtime *rt)
 {
@@ -24,7 +26,7 @@ int32_t t3r_grain_q8(const t3r_view *view, int32_t z_q20)
     return t3r_round_shift32(log_z - log_f, 8);
 }
 
-typedef enum look { UNSEEN, SEEN_AFAR, SEEN, CONTRADICTED, COARSE } look;
+typedef enum look { UNSEEN, HIDDEN, SEEN_AFAR, SEEN, CONTRADICTED, COARSE } look;
 
 static look look_at(const t3r_gaussian *g, const t3r_map_record *record, const t3r_pointmap *keyframe)
 {
@@ -38,7 +40,7 @@ static look look_at(const t3r_gaussian *g, const t3r_map_record *record, const t
         int32_t wider_q8 = t3r_grain_q8(view, projected.z_q20) - record->grain_q8;
         return wider_q8 < -FINER_Q8 ? COARSE : wider_q8 <= T3R_AFAR_Q8 ? SEEN : SEEN_AFAR;
     }
-    return t3r_seen_through(keyframe, &projected, false) ? CONTRADICTED : UNSEEN;
+    return t3r_seen_through(keyframe, &projected, false) ? CONTRADICTED : HIDDEN;
 }
 
 static void move_to(t3r_map *map, uint32_t from, uint32_t to)
@@ -64,15 +66,29 @@ uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyfra
     for (uint32_t i = 0; i < map->count; i++) {
         t3r_map_record *record = &map->records[i];
         look seen = look_at(&map->gaussians[i], record, keyframe);
-        if (seen == CONTRADICTED || seen == COARSE) {
+        if (seen == CONTRADICTED || seen == COARSE || (seen == HIDDEN && record->faded_q10 >= LOST_Q10)) {
             continue;
         }
         record->idle = seen == SEEN ? 0 : (uint8_t)T3R_MIN(record->idle + 1, UINT8_MAX);
         record->fitted = (uint8_t)T3R_MIN(record->fitted + (seen == SEEN), T3R_FITTED_MOST);
-        record->faded_q10 = seen != UNSEEN ? 0 : (uint16_t)T3R_MIN(record->faded_q10 + fade, (uint32_t)UINT16_MAX);
+        record->faded_q10 =
+            seen == SEEN || seen == SEEN_AFAR ? 0 : (uint16_t)T3R_MIN(record->faded_q10 + fade, (uint32_t)UINT16_MAX);
         move_to(map, i, kept++);
     }
     uint32_t left = map->count - kept;
+    map->count = kept;
+    return left;
+}
+
+uint32_t t3r_map_drop(t3r_map *map)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < map->count; i++) {
+        if (map->records[i].key != T3R_MAP_KEY_LEAVES) {
+            move_to(map, i, kept++);
+        }
+    }
+    const uint32_t left = map->count - kept;
     map->count = kept;
     return left;
 }
@@ -147,18 +163,46 @@ t3r_map_cut t3r_map_compete(const t3r_map *map, const t3r_view *view, const t3r_
     const uint32_t places = most - gaussians - points;
     const uint32_t more_points = T3R_MIN(n.points[lower], places);
     const uint32_t ties = T3R_MIN(n.gaussians[lower], places - more_points);
-    return (t3r_map_cut){upper << 8 | lower, ties, points + more_points, gaussians + ties};
+    return (t3r_map_cut){upper << 8 | lower, ties, more_points, points + more_points, gaussians + ties};
 }
 
-/* Scales the width by 2^(thinned / 2), the growth of the spacing when 2^-thinned of the Gaussians are left. */
-static void widen(t3r_gaussian *g, int32_t thinned_q10)
+/* Multiplies the width by 2^by. */
+static void scale_width(t3r_gaussian *g, int32_t by_q10)
 {
-    int64_t scale_q16 = t3r_exp2_q16(T3R_MIN(thinned_q10, WIDEN_MOST_Q10) * 32); /* 2^(thinned / 2), at most 2^4 */
+    const int64_t scale_q16 = t3r_exp2_q16(t3r_clamp32(by_q10, -SCALE_MOST_Q10, SCALE_MOST_Q10) * 64);
     int64_t entry[9];
     for (int i = 0; i < 9; i++) {
         entry[i] = g->factor[i] * scale_q16;
     }
     t3r_pack_factor(entry, 16 - g->factor_exponent, g);
+}
+
+void t3r_map_set_density(t3r_gaussian *g, t3r_map_record *record, int32_t density_q10)
+{
+    density_q10 = t3r_clamp32(density_q10, T3R_LEAST_DENSITY_Q10, 0);
+    scale_width(g, (record->density_q10 - density_q10) / 2);
+    record->density_q10 = (int16_t)density_q10;
+}
+
+/* Returns log2 of the width in spacings of its density, of the root of the factor's sum of squares. */
+static int32_t log_width_q10(const t3r_gaussian *g, const t3r_map_record *record)
+{
+    uint64_t squares = 1; /* below 2^34 */
+    for (int i = 0; i < 9; i++) {
+        squares += (uint64_t)((int64_t)g->factor[i] * g->factor[i]);
+    }
+    const int32_t log_q10 = (t3r_log2_wide_q16(squares) >> 7) + g->factor_exponent * 1024;
+    const int32_t pixel_q10 = record->grain_q8 * 4 + (16 - 20 + 1) * 1024; /* z / f */
+    return log_q10 - pixel_q10 + record->density_q10 / 2;
+}
+
+void t3r_map_hold_width(t3r_gaussian *g, const t3r_map_record *record)
+{
+    const int32_t width_q10 = log_width_q10(g, record);
+    const int32_t held_q10 = t3r_clamp32(width_q10, -WIDTH_MOST_Q10, WIDTH_MOST_Q10);
+    if (held_q10 != width_q10) {
+        scale_width(g, held_q10 - width_q10);
+    }
 }
 
 void t3r_map_thin(t3r_map *map, const t3r_map_cut *cut)
@@ -178,11 +222,9 @@ void t3r_map_thin(t3r_map *map, const t3r_map_cut *cut)
         if (!stays) {
             continue;
         }
-        int32_t density_q10 = (int32_t)cut->threshold - T3R_KEY_ZERO + record->wanted_q10 - record->faded_q10;
-        density_q10 = t3r_clamp32(density_q10, T3R_LEAST_DENSITY_Q10, 0);
-        if (record->density_q10 - density_q10 >= WIDEN_STEP_Q10) {
-            widen(&map->gaussians[i], record->density_q10 - density_q10);
-            record->density_q10 = (int16_t)density_q10;
+        const int32_t density_q10 = (int32_t)cut->threshold - T3R_KEY_ZERO + record->wanted_q10 - record->faded_q10;
+        if (record->density_q10 - T3R_MAX(density_q10, T3R_LEAST_DENSITY_Q10) >= WIDEN_STEP_Q10) {
+            t3r_map_set_density(&map->gaussians[i], record, density_q10);
         }
         move_to(map, i, kept++);
     }

@@ -17,6 +17,9 @@
 /* Lower bound of keys in the map, 20 octaves: sure points of a keyframe outlast others only by a bounded time. */
 #define T3R_MAP_KEY_LEAST (T3R_KEY_ZERO - (20 << 10))
 
+/* Key of a Gaussian that leaves. Others' keys are at most T3R_KEY_ZERO. */
+#define T3R_MAP_KEY_LEAVES UINT16_MAX
+
 typedef struct t3r_map {
     t3r_gaussian *gaussians;
     t3r_map_record *records;
@@ -33,17 +36,27 @@ int32_t t3r_grain_q8(const t3r_view *view, int32_t z_q20);
  * earlier ones. Returns the number removed. */
 uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyframes, uint32_t half_life);
 
+/* Removes the Gaussians that leave. Returns their number. */
+uint32_t t3r_map_drop(t3r_map *map);
+
 /* The Gaussians of the map and the points of a keyframe that are kept when they compete for `most` places. */
 typedef struct t3r_map_cut {
-    uint32_t threshold; /* the largest key kept */
-    uint32_t ties;      /* kept Gaussians with that key, the newest ones */
-    uint32_t added;     /* kept points of the keyframe, those with its smallest keys */
-    uint32_t kept;      /* kept Gaussians */
+    uint32_t threshold;  /* the largest key kept */
+    uint32_t ties;       /* kept Gaussians with that key, the newest ones */
+    uint32_t point_ties; /* kept points with that key, the first ones */
+    uint32_t added;      /* kept points of the keyframe, those with its smallest keys */
+    uint32_t kept;       /* kept Gaussians */
 } t3r_map_cut;
 
 /* Chooses by keys; the points' come from t3r_budget_keys(). */
 t3r_map_cut t3r_map_compete(const t3r_map *map, const t3r_view *keyframe, const t3r_budget_settings *settings,
                             uint32_t most);
+
+/* Notes another density around a Gaussian and scales its width with the spacing, 2^(-density / 2). */
+void t3r_map_set_density(t3r_gaussian *g, t3r_map_record *record, int32_t density_q10);
+
+/* Keeps a width within a quarter of the spacing and four times it. */
+void t3r_map_hold_width(t3r_gaussian *g, const t3r_map_record *record);
 
 /* Removes the Gaussians that are not kept and widens the others. */
 void t3r_map_thin(t3r_map *map, const t3r_map_cut *cut);

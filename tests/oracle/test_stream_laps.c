@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A map of a still room in which the camera goes back and forth for ever: what is known stays as it is. After the first
+ * laps neither quality nor time nor the map's widths change. At night, with LONG, for 10,000 keyframes. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "host/cpu.h"
+#include "room/room.h"
+#include "test.h"
+#include "trim3r.h"
+
+enum { W = 64, H = 48, PIXELS = W * H, LAP = 70, STRIDE = 3, WINDOW = LAP, MOST = 20000 };
+
+#ifdef LONG
+enum { KEYFRAMES = 10000 };
+static const uint32_t caps[] = {500, 1500, 4000, 8000, 20000};
+#else
+enum { KEYFRAMES = 5 * WINDOW };
+static const uint32_t caps[] = {1500};
+#endif
+enum { CAPS = sizeof caps / sizeof *caps, CAP = 1500 };
+
+/* Means of a window of keyframes. */
+typedef struct lap {
+    double psnr, milliseconds, added, removed, gaussians, width;
+} lap;
+
+typedef struct walk {
+    t3r_runtime *rt;
+    uint8_t *arena;
+} walk;
+
+static walk start(t3r_config *config)
+{
+    walk w = {NULL, NULL};
+    t3r_plan_info plan;
+    assert_int_equal(t3r_plan(config, &plan), T3R_OK);
+    w.arena = aligned_alloc(T3R_ARENA_ALIGN, (plan.bytes + T3R_ARENA_ALIGN - 1) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN);
+    assert_non_null(w.arena);
+    assert_int_equal(t3r_init(&w.rt, w.arena, plan.bytes, config), T3R_OK);
+    (void)t3r_set_cpu(w.rt, t3r_cpu_features());
+    return w;
+}
+
+/* Returns the square error of frame `index`, drawn from the map. */
+static double error_of(const walk *w, uint32_t index)
+{
+    static uint8_t rgb[PIXELS * 3], drawn[PIXELS * 3];
+    t3r_camera camera;
+    room_frame(index, W, H, 1, rgb, NULL);
+    room_camera(index, W, H, &camera);
+    const t3r_target target = {.width = W, .height = H, .rgb = drawn, .rgb_stride_bytes = W * 3};
+    assert_int_equal(t3r_render(w->rt, &camera, &target), T3R_OK);
+    double sum = 0;
+    for (int i = 0; i < PIXELS * 3; i++) {
+        sum += (rgb[i] - drawn[i]) * (double)(rgb[i] - drawn[i]);
+    }
+    return sum / (PIXELS * 3);
+}
+
+static int by_value(const void *a, const void *b)
+{
+    return (*(const double *)a > *(const double *)b) - (*(const double *)a < *(const double *)b);
+}
+
+static double median_width(const walk *w)
+{
+    static double widths[MOST];
+    t3r_scene scene;
+    assert_int_equal(t3r_get_scene(w->rt, &scene), T3R_OK);
+    for (uint32_t i = 0; i < scene.count; i++) {
+        double squares = 0;
+        for (int k = 0; k < 9; k++) {
+            squares += scene.gaussians[i].factor[k] * (double)scene.gaussians[i].factor[k];
+        }
+        widths[i] = sqrt(squares) * exp2(scene.gaussians[i].factor_exponent);
+    }
+    qsort(widths, scene.count, sizeof *widths, by_value);
+    return widths[scene.count / 2];
+}
+
+/* Takes `count` keyframes from number `first` on, all of one place if `still`, and means what they did. Before each
+ * keyframe a frame between it and the previous one is drawn from the map. */
+static lap take(const walk *w, uint32_t first, uint32_t count, bool still)
+{
+    static uint8_t rgb[PIXELS * 3];
+    static uint16_t depth[PIXELS];
+    lap mean = {0};
+    for (uint32_t i = first; i < first + count; i++) {
+        const uint32_t frame = still ? 0 : i * STRIDE % LAP;
+        t3r_camera camera;
+        room_frame(frame, W, H, 1, rgb, depth);
+        room_camera(frame, W, H, &camera);
+        const t3r_frame captured = {.format = T3R_PIXEL_RGB24,
+                                    .width = W,
+                                    .height = H,
+                                    .planes = {rgb},
+                                    .stride_bytes = {W * 3},
+                                    .depth = (uint8_t *)depth,
+                                    .depth_width = W,
+                                    .depth_height = H,
+                                    .depth_stride_bytes = W * 2,
+                                    .depth_unit_q40 = ROOM_DEPTH_UNIT_Q40};
+        if (i > 0) {
+            mean.psnr += 10 * log10(255 * 255 / error_of(w, still ? 0 : frame + LAP - 1)) / count;
+        }
+        t3r_stream_report report;
+        const clock_t begin = clock();
+        assert_int_equal(t3r_stream_keyframe(w->rt, &captured, &camera, &report), T3R_OK);
+        mean.milliseconds += (double)(clock() - begin) * 1000 / CLOCKS_PER_SEC / count;
+        mean.added += (double)report.added / count;
+        mean.removed += (double)(report.removed + report.crowded) / count;
+        mean.gaussians += (double)report.gaussians / count;
+    }
+    mean.width = median_width(w);
+    return mean;
+}
+
+static void show(const char *what, const t3r_config *config, const lap *l)
+{
+    printf("%s, %u Gaussians, %u passes: %.2f dB, %.2f ms, %.1f added and %.1f removed a keyframe, %.0f in the map, "
+           "width %.4f\n",
+           what, config->gaussians, config->refine, l->psnr, l->milliseconds, l->added, l->removed, l->gaussians,
+           l->width);
+}
+
+/* Compares the last lap with that which begins at keyframe 70. */
+static void stays(t3r_config config)
+{
+    walk w = start(&config);
+    (void)take(&w, 0, WINDOW, false);
+    const lap early = take(&w, WINDOW, WINDOW, false);
+    (void)take(&w, 2 * WINDOW, KEYFRAMES - 3 * WINDOW, false);
+    const lap late = take(&w, KEYFRAMES - WINDOW, WINDOW, false);
+    show("early", &config, &early);
+    show("late", &config, &late);
+    assert_true(late.psnr > early.psnr - 0.1);
+    assert_true(late.milliseconds < early.milliseconds * 1.3); /* a shared machine */
+    assert_true(late.gaussians < early.gaussians * 1.1);
+    assert_true(config.refine > 0 || fabs(late.width / early.width - 1) < 0.1);
+    assert_true(fabs(late.added - late.removed) < 2);
+    free(w.arena);
+}
+
+static t3r_config config_of(uint32_t gaussians)
+{
+    t3r_config config = t3r_default_config(W, H, 4, gaussians);
+    config.stream = 1;
+    return config;
+}
+
+TEST(laps)
+{
+    for (uint32_t c = 0; c < CAPS; c++) {
+        stays(config_of(caps[c]));
+    }
+}
+
+TEST(laps_without_refinement)
+{
+    t3r_config config = config_of(CAP);
+    config.refine = 0;
+    stays(config);
+}
+
+TEST(laps_with_warm_passes)
+{
+    t3r_config config = config_of(CAP);
+    config.warm = 1;
+    stays(config);
+}
+
+TEST(laps_remembered)
+{
+    t3r_config config = config_of(CAP);
+    config.remember = 6;
+    stays(config);
+}
+
+/* A camera that stands still adds nothing, and nothing widens. */
+TEST(a_still_camera)
+{
+    t3r_config config = config_of(CAP);
+    config.refine = 0;
+    walk w = start(&config);
+    const lap first = take(&w, 0, 1, true);
+    const lap later = take(&w, 1, 100, true);
+    show("still", &config, &later);
+    assert_true(later.added < 0.5 && later.removed < 0.5);
+    assert_true(fabs(later.width / first.width - 1) < 0.05);
+    free(w.arena);
+}
