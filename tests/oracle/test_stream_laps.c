@@ -11,13 +11,13 @@
 #include "test.h"
 #include "trim3r.h"
 
-enum { W = 64, H = 48, PIXELS = W * H, LAP = 70, STRIDE = 3, WINDOW = LAP, MOST = 20000 };
+enum { W = 64, H = 48, PIXELS = W * H, LAP = 70, STRIDE = 3, MOST = 20000 };
 
 #ifdef LONG
-enum { KEYFRAMES = 10000 };
+enum { WINDOW = 5 * LAP, KEYFRAMES = 10000 };
 static const uint32_t caps[] = {500, 1500, 4000, 8000, 20000};
 #else
-enum { KEYFRAMES = 5 * WINDOW };
+enum { WINDOW = LAP, KEYFRAMES = 5 * LAP };
 static const uint32_t caps[] = {1500};
 #endif
 enum { CAPS = sizeof caps / sizeof *caps, CAP = 1500 };
@@ -126,7 +126,7 @@ static void show(const char *what, const t3r_config *config, const lap *l)
            l->width);
 }
 
-/* Compares the last lap with that which begins at keyframe 70. */
+/* Compares the last window, of whole laps, with the second one. */
 static void stays(t3r_config config)
 {
     walk w = start(&config);
