@@ -28,7 +28,9 @@ typedef struct t3r_projection {
     int32_t world_to_camera_q30[9];
     int32_t centre_q20[3];
     int32_t fx_q16, fy_q16, cx_q16, cy_q16;
-    int32_t limit_x_q24, limit_y_q24; /* bounds of |x / z| and |y / z| in the Jacobian: 1.3 half fields of view */
+    /* Bounds of |x / z| and |y / z| in the Jacobian: 1.3 times those of the picture's edge that is farther from the
+     * axis */
+    int32_t limit_x_q24, limit_y_q24;
     uint32_t width, height;
 } t3r_projection;
 

@@ -5,6 +5,16 @@
 #include "core/scene_frame.h"
 #include "raster_splat.h"
 
+/* Returns 1.3 times |x / z| at the picture's edge that is farther from the axis, at most T3R_ASIDE. Edges lie half a
+ * pixel beyond the centres of the first and the last pixel. side: pixels, at most T3R_MAX_SIDE. */
+static int32_t limit_q24(uint32_t side, int32_t centre_q16, int32_t f_q16)
+{
+    const int64_t before_q16 = (int64_t)centre_q16 + 0x8000, after_q16 = ((int64_t)side << 16) - before_q16;
+    /* |c| < 2^30 and side <= 2^12, so the distance is below 2^31 and the numerator below 2^59 */
+    const int64_t limit = 13 * T3R_MAX(before_q16, after_q16) * (1 << 24) / (10 * (int64_t)f_q16);
+    return (int32_t)T3R_MIN(limit, (int64_t)T3R_ASIDE << 24);
+}
+
 t3r_status t3r_projection_make(const t3r_camera *camera, const t3r_scene_frame *frame, uint32_t width, uint32_t height,
                                t3r_projection *projection)
 {
@@ -27,10 +37,8 @@ t3r_status t3r_projection_make(const t3r_camera *camera, const t3r_scene_frame *
     projection->fy_q16 = camera->fy_q16;
     projection->cx_q16 = camera->cx_q16;
     projection->cy_q16 = camera->cy_q16;
-    /* 1.3 (w / 2) / f = 13 w / (20 f), Q24; w < 2^13, so the numerator is below 2^57 */
-    int64_t most = (int64_t)T3R_ASIDE << 24;
-    projection->limit_x_q24 = (int32_t)T3R_MIN(((int64_t)(13 * width) << 40) / ((int64_t)20 * camera->fx_q16), most);
-    projection->limit_y_q24 = (int32_t)T3R_MIN(((int64_t)(13 * height) << 40) / ((int64_t)20 * camera->fy_q16), most);
+    projection->limit_x_q24 = limit_q24(width, camera->cx_q16, camera->fx_q16);
+    projection->limit_y_q24 = limit_q24(height, camera->cy_q16, camera->fy_q16);
     projection->width = width;
     projection->height = height;
     return T3R_OK;

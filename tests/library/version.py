@@ -9,7 +9,8 @@ from checks import check, done
 
 EPOCH = re.search(r"#define T3R_BITS_EPOCH (\d+)", (ROOT / "runtime/include/trim3r.h").read_text())[1]
 STATED = (  # file, text around the version, the version
-    ("CHANGELOG.md", r"\A(?s:.*?)^## (\d.*) - \d{4}-\d\d-\d\d$", f"{VERSION} (bits epoch {EPOCH})"),
+    ("CHANGELOG.md", r"\A(?s:.*?)^## (\d\S*) \(bits epoch \d+\) - \d{4}-\d\d-\d\d$", VERSION),
+    ("CHANGELOG.md", r"\A(?s:.*?)^## .*\(bits epoch (\d+)\)", EPOCH),
     ("docs/library.md", r"find_package\(trim3r (\S+) ", SERIES),
     ("docs/library.md", r"`libtrim3r(?:\.so\.)?(\d.*?)`", SERIES),
     ("docs/python.md", r"^(\d\S* \d+)$", f"{VERSION} {EPOCH}"),

@@ -318,7 +318,7 @@ TEST(near_plane)
     }
 }
 
-/* Culling by the side: |x|/z or |y|/z over 16, and the Jacobian held at 1.3 x the half field of view. */
+/* Culling by the side: |x|/z or |y|/z over 16, and the Jacobian held at 1.3 x the picture's edge. */
 TEST(far_off_axis)
 {
     static const recipe recipes[] = {
@@ -333,21 +333,67 @@ TEST(far_off_axis)
     }
 }
 
-/* The Jacobian is clamped at 1.3 half fields of view, or at |x|/z = 16, beyond which nothing is drawn. */
-TEST(fields_of_view)
+/* Returns the camera of the part of a picture that begins at a pixel, which may lie outside. */
+static t3r_camera part_of(t3r_camera whole, int32_t left, int32_t top)
+{
+    whole.cx_q16 -= left * (1 << 16);
+    whole.cy_q16 -= top * (1 << 16);
+    return whole;
+}
+
+/* The Jacobian is clamped at 1.3 times the edge that is farther from the axis, or at |x|/z = 16, beyond which nothing
+ * is drawn. The axis is in the middle, elsewhere in the picture, beside it, and as far away as cameras allow. */
+TEST(farther_edges)
 {
     static const struct {
         uint32_t width, height;
+        int32_t left, top;
         double x, y;
-    } cases[] = {{80, 40, 6.5, 3.25}, {400, 80, 16, 6.5}, {80, 4096, 6.5, 16}, {4096, 4096, 16, 16}};
+    } cases[] = {{80, 40, 0, 0, 6.5, 3.25},       {400, 80, 0, 0, 16, 6.5},           {80, 4096, 0, 0, 6.5, 16},
+                 {4096, 4096, 0, 0, 16, 16},      {40, 20, 8, -8, 4.55, 2.925},       {20, 10, 40, -30, 8.125, 5.6875},
+                 {16, 16, 16391, -16376, 16, 16}, {4096, 4096, 18431, -14336, 16, 16}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        const t3r_camera camera = plain_camera(8, cases[i].width, cases[i].height);
+        const t3r_camera camera =
+            part_of(plain_camera(8, cases[i].width, cases[i].height), cases[i].left, cases[i].top);
         t3r_projection projection;
         assert_int_equal(t3r_projection_make(&camera, &plain_frame, cases[i].width, cases[i].height, &projection),
                          T3R_OK);
-        assert_true(fabs(projection.limit_x_q24 / 16777216.0 - cases[i].x) < 1e-6);
-        assert_true(fabs(projection.limit_y_q24 / 16777216.0 - cases[i].y) < 1e-6);
+        assert_int_equal(projection.limit_x_q24, (int32_t)floor(cases[i].x * 16777216));
+        assert_int_equal(projection.limit_y_q24, (int32_t)floor(cases[i].y * 16777216));
     }
+}
+
+/* A crop in whole tiles that has the farther edges of a picture is the same pixels, bit for bit, and agrees with the
+ * oracle; its axis may be far outside. Other crops clamp the Jacobian of Gaussians outside them a little earlier. */
+TEST(crops)
+{
+    enum { WIDTH = 512, HEIGHT = 384 };
+    static const recipe r = {"whole picture", 3000, WIDTH, HEIGHT, 200, 0.5, 4, 1.4, 0.01, 0.4, 5, 0.1, 0.8};
+    static const struct {
+        const char *name;
+        uint32_t left, top, width, height;
+    } corners[] = {{"left half", 0, 0, 256, HEIGHT},       {"lower right quarter", 256, 192, 256, 192},
+                   {"upper left corner", 0, 0, 64, 48},    {"upper right corner", 448, 0, 64, 64},
+                   {"lower left corner", 0, 320, 64, 64},  {"lower right tile", 496, 368, 16, 16},
+                   {"beside the middle", 240, 0, 272, 384}};
+    t3r_gaussian *gaussians = cook(&r, 4000);
+    const t3r_camera camera = plain_camera(r.focal, WIDTH, HEIGHT);
+    drawing whole = draw_scene(&plain_frame, gaussians, r.count, &camera, WIDTH, HEIGHT, ARENA_AT_FULL);
+    for (size_t i = 0; i < sizeof corners / sizeof corners[0]; i++) {
+        const uint32_t left = corners[i].left, top = corners[i].top, width = corners[i].width;
+        const t3r_camera part = part_of(camera, (int32_t)left, (int32_t)top);
+        drawing got = draw_scene(&plain_frame, gaussians, r.count, &part, width, corners[i].height, ARENA_AT_FULL);
+        for (uint32_t y = 0; y < got.height; y++) {
+            const size_t from = (size_t)(top + y) * WIDTH + left, to = (size_t)y * width;
+            assert_memory_equal(got.rgb + 3 * to, whole.rgb + 3 * from, 3 * width);
+            assert_memory_equal(got.depth_q20 + to, whole.depth_q20 + from, 4 * width);
+            assert_memory_equal(got.alpha_q15 + to, whole.alpha_q15 + from, 2 * width);
+        }
+        drawing_free(&got);
+        check(corners[i].name, &plain_frame, gaussians, r.count, &part, width, corners[i].height);
+    }
+    drawing_free(&whole);
+    free(gaussians);
 }
 
 TEST(at_the_border)

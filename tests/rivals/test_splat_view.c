@@ -111,6 +111,19 @@ TEST(moved_cameras)
     free(gaussians);
 }
 
+/* The lower right corner of a picture; the optical axis is outside the corner. */
+TEST(corner)
+{
+    enum { WHOLE = 256, SIDE = 64 };
+    static const recipe r = {"corner", 300, WHOLE, WHOLE, 250, 0.5, 4, 0.05, 1, 5, 0.1};
+    t3r_gaussian *gaussians = cook(&r, 79);
+    t3r_camera camera = plain_camera(r.focal, WHOLE, WHOLE);
+    camera.cx_q16 -= (WHOLE - SIDE) << 16;
+    camera.cy_q16 -= (WHOLE - SIDE) << 16;
+    compare(r.name, &scene_frame, gaussians, r.count, &camera, SIDE, SIDE);
+    free(gaussians);
+}
+
 typedef struct gathered {
     const splat_view *view;
     float *rgb;

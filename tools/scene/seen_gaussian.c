@@ -2,7 +2,7 @@
 #include "scene/seen_gaussian.h"
 
 #define WIDENED 0.3 /* square pixels that the rasterizer adds; runtime/SPEC.md, "Raster" */
-#define HELD 1.3    /* half fields of view: bound of the Jacobian, as there */
+#define HELD 1.3    /* bound of the Jacobian over the tangent to the picture's farther edge, as there */
 
 t3r_status seen_from_camera(const t3r_camera *camera, const t3r_scene_frame *frame, uint32_t width, uint32_t height,
                             seen_from *out)
@@ -11,9 +11,10 @@ t3r_status seen_from_camera(const t3r_camera *camera, const t3r_scene_frame *fra
     return t3r_pose_in_scene(camera, frame, &out->pose);
 }
 
-static double held(double slope, double pixels, double focal)
+static double held(double slope, double pixels, double centre, double focal)
 {
-    const double most = HELD * pixels / (2 * focal);
+    const double before = centre + 0.5, after = pixels - before; /* from the axis to the edges */
+    const double most = HELD * (before > after ? before : after) / focal;
     return slope > most ? most : slope < -most ? -most : slope;
 }
 
@@ -66,7 +67,8 @@ static uint16_t mip_opacity_q15(const t3r_gaussian *gaussian, const seen_from *f
         return gaussian->opacity_q15; /* it is not drawn */
     }
     const double fx = from->camera.fx_q16 * 0x1p-16, fy = from->camera.fy_q16 * 0x1p-16;
-    const double u = held(seen[0] / seen[2], from->width, fx), v = held(seen[1] / seen[2], from->height, fy);
+    const double u = held(seen[0] / seen[2], from->width, from->camera.cx_q16 * 0x1p-16, fx),
+                 v = held(seen[1] / seen[2], from->height, from->camera.cy_q16 * 0x1p-16, fy);
     for (int k = 0; k < 3; k++) { /* pixels a scene unit along each axis of the scene */
         row[0][k] = fx / seen[2] * (r[3 * k] - u * r[3 * k + 2]);
         row[1][k] = fy / seen[2] * (r[3 * k + 1] - v * r[3 * k + 2]);

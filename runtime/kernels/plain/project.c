@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* EWA projection of 3-D covariances (Zwicker et al. 2001, "EWA volume splatting"), with the Jacobian clamped at 1.3
- * half fields of view and the 0.3 px^2 dilation of 3D Gaussian Splatting (Kerbl et al. 2023). */
+ * times the picture's farther edge and the 0.3 px^2 dilation of 3D Gaussian Splatting (Kerbl et al. 2023). */
 #include "kernels/project.h"
 
 #include "core/fixed.h"

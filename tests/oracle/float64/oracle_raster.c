@@ -179,8 +179,9 @@ static int project(const oracle_gaussian *g, const oracle_camera *c, splat *s)
     if (z <= ORACLE_NEAR || fabs(t[0]) > 16 * z || fabs(t[1]) > 16 * z || g->opacity * 255 < 1) {
         return 0;
     }
-    double slope_x = clamped(t[0] / z, 1.3 * (c->width / 2.0) / c->fx);
-    double slope_y = clamped(t[1] / z, 1.3 * (c->height / 2.0) / c->fy);
+    /* the farther edge, half a pixel beyond the outermost centres */
+    double slope_x = clamped(t[0] / z, 1.3 * fmax(c->cx + 0.5, c->width - 0.5 - c->cx) / c->fx);
+    double slope_y = clamped(t[1] / z, 1.3 * fmax(c->cy + 0.5, c->height - 0.5 - c->cy) / c->fy);
     double trace = 0, minors = 0;
     for (int k = 0; k < 3; k++) {
         s->gx[k] = clamped(c->fx / z * (f[k] - slope_x * f[6 + k]), ORACLE_MOST_PIXELS);

@@ -9,7 +9,7 @@
 #define NEAR (1.0 / 32)     /* camera z in scene units at which splats are culled */
 #define WIDEST 16.0         /* |x / z|, |y / z| beyond which they are */
 #define MOST_PIXELS 4096.0  /* entries of the projected factor are held within */
-#define FIELD_OF_SLOPES 1.3 /* slopes of the linearisation are clamped to this many half fields of view */
+#define FIELD_OF_SLOPES 1.3 /* slopes of the linearisation are clamped to this times the slope of the farther edge */
 #define KEY_MOST 2147483647.0
 
 static double clamped(double x, double limit)
@@ -83,10 +83,10 @@ static bool project(const splat_camera *camera, const double *p, projection *j)
     }
     project_shape(camera, p, j);
     const double focal[2] = {camera->fx, camera->fy};
-    const double side[2] = {camera->width, camera->height};
+    const double side[2] = {camera->width, camera->height}, centre[2] = {camera->cx, camera->cy};
     for (int d = 0; d < 2; d++) {
-        double slope = j->t[d] / z;
-        j->slope[d] = clamped(slope, FIELD_OF_SLOPES * side[d] / (2 * focal[d]));
+        double slope = j->t[d] / z, edge = fmax(centre[d] + 0.5, side[d] - 0.5 - centre[d]);
+        j->slope[d] = clamped(slope, FIELD_OF_SLOPES * edge / focal[d]);
         j->held[d] = j->slope[d] != slope;
         for (int k = 0; k < 3; k++) {
             double entry = focal[d] / z * (j->f[d * 3 + k] - j->slope[d] * j->f[6 + k]);
