@@ -4,11 +4,30 @@
 #ifndef TRIM3R_INTERFACE_H
 #define TRIM3R_INTERFACE_H
 
+#include <stddef.h>
+#include <stdint.h>
+
 #ifdef __cplusplus
 #define T3R_FIELD_BYTES_(type, field) sizeof(type::field)
+#define T3R_STATIC_ASSERT_ static_assert
+#define T3R_ALIGNOF_ alignof
 #else
 #define T3R_FIELD_BYTES_(type, field) sizeof(((const type *)0)->field)
+#define T3R_STATIC_ASSERT_ _Static_assert
+#define T3R_ALIGNOF_ _Alignof
 #endif
+
+/* A struct whose fields lie elsewhere if the program packs structs: under a #pragma pack that is still open, or with
+ * -fpack-struct. Such a program does not compile. */
+struct t3r_unpacked_ {
+    uint8_t before_number;
+    uint64_t number;
+    uint8_t before_pointer;
+    const void *pointer;
+};
+T3R_STATIC_ASSERT_(offsetof(struct t3r_unpacked_, number) % T3R_ALIGNOF_(uint64_t) == 0 &&
+                       offsetof(struct t3r_unpacked_, pointer) % T3R_ALIGNOF_(const void *) == 0,
+                   "trim3r.h is included where structs are packed, which changes its structs");
 
 /* FNV-1a by words instead of bytes. */
 #define T3R_DIGEST_(word) digest = (digest ^ (word)) * 1099511628211u;

@@ -18,7 +18,7 @@ SERIES = VERSION.rpartition(".")[0] # version part in the names of shared librar
 HEADS = ROOT / "quant" / "heads"
 HASH = (HERE / "golden_hash.txt").read_text().strip()
 FEATURES = ("comparison", "stereo", "streams", "learned", "refinement", "extras")
-WARNINGS = ["-Wall", "-Wextra", "-Werror"]
+WARNINGS = ["-Wall", "-Wextra", "-Wshadow", "-Werror"]
 
 
 def ended(*command, **options):

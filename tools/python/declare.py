@@ -16,6 +16,7 @@ MODULE = "_declarations"
 MARKER = re.compile(r'^# \d+ "([^"]*)"')
 NUMBER = re.compile(r"#define ([A-Z][A-Z0-9_]*[A-Z0-9]) (\d+|0x[0-9a-fA-F]+)[uU]?$")
 INLINE = re.compile(r"static inline [^;{]*\{.*?^\}$", re.M | re.S)
+ASSERTION = re.compile(r"^_Static_assert\(.*?\);$", re.M | re.S)
 FUNCTION = re.compile(r"^(?!typedef)[a-z_][\w \n*]*?\b(\w+)\([^;{}]*\);", re.M)
 DATA = re.compile(r"^extern const [\w *]*?\b(\w+)(?:\[\w*\])?;", re.M)
 
@@ -38,10 +39,11 @@ def passages_of(header, root, compiler):
 
 
 def declarations(text):
-    """Removes everything that cffi does not accept: bodies of functions, pragmas, macros that are no whole number."""
+    """Removes everything that cffi does not accept: bodies of functions, assertions, pragmas, macros that are no whole
+    number."""
     kept = [line for line in text.splitlines() if not line.startswith("#") or NUMBER.match(line)]
     kept = [NUMBER.sub(r"#define \1 \2", line) for line in kept]
-    return INLINE.sub("", "\n".join(kept) + "\n")
+    return ASSERTION.sub("", INLINE.sub("", "\n".join(kept) + "\n"))
 
 
 def settings_of(header, compiler):

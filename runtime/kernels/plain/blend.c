@@ -68,7 +68,7 @@ blend_lanes(t3r_tile *tile, const t3r_tile_splat *splat, uint32_t j, uint32_t co
     return b;
 }
 
-static inline void keep(blended b, uint16_t *weight_q16, int16_t *alpha_q15)
+static inline void keep_pixel(blended b, uint16_t *weight_q16, int16_t *alpha_q15)
 {
     t3r_lanes_store(b.weight, weight_q16);
     b.alpha = t3r_lanes_where_at_least(b.alpha, b.weight, 1);
@@ -99,7 +99,7 @@ static inline __attribute__((always_inline)) uint16_t blend_group(t3r_tile *rest
             const blended b = blend_lanes(tile, splat, j, column, q);
             if (rows != NULL) {
                 t3r_blended_row *to = &rows[j - splat->first];
-                keep(b, to->weight_q16 + first, to->alpha_q15 + first);
+                keep_pixel(b, to->weight_q16 + first, to->alpha_q15 + first);
                 any = t3r_lanes_or(any, b.weight);
             }
             T3R_EACH_LANE
