@@ -476,7 +476,10 @@ t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
 
 /* Chooses the inner loops for a processor with these T3R_CPU_... features; 0 = plain C, the default after t3r_init()
  * and t3r_attach(). The processor and its operating system must have them. No bit of any output changes. A firmware
- * that does not call it links none of the variants. */
+ * that does not call it links none of the variants. T3R_ERR_ARGUMENT: NULL; a bit without a name above; a feature of
+ * another architecture, or of another core than the firmware is compiled for; on x86-64 a feature that the processor or
+ * its operating system lacks. The loops then stay. On 64-bit Arm a program cannot ask for T3R_CPU_DOTPROD itself: the
+ * operating system says so. */
 t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features);
 
 /* Binds the weights of the head T3R_HEAD_LEARNED, a whole .t3w file in memory aligned to 16 (NULL: none). Only the

@@ -3,7 +3,7 @@
 """amalgamation.py [--all]: tools/amalgamate writes the same two files every time, each compiler accepts them in one
 call, and programs with them have the library's bits.
 
-gcc links a consumer with them. With --all, gcc and clang link the golden driver: every stage's hash. clang for
+gcc and clang find no shadowed name in them and no conversion that changes a number. gcc links a consumer with them. With --all, gcc and clang link the golden driver: every stage's hash. clang for
 WebAssembly links a consumer that Node.js runs, and arm-none-eabi-gcc links one for a Cortex-M7. A missing compiler is
 named.
 """
@@ -19,6 +19,7 @@ from checks import check, done, run
 
 GOLDEN = ROOT / "tests" / "golden"
 STAGES = (GOLDEN / "stages.txt").read_text()
+STRICT = ["-std=c11", *WARNINGS, "-Wpedantic", "-Wconversion", "-fsyntax-only"]
 FREESTANDING = ["-ffreestanding", "-nostdlib"]
 CORTEX_M7 = ["-mcpu=cortex-m7", "-mthumb", "-mfloat-abi=soft"]
 NODE = """
@@ -44,6 +45,15 @@ def compile_one(made, compiler, *flags):
     words, target = compiler.split(), made / (re.sub(r"\W+", "_", compiler) + ".o")
     run(*words, "-std=c11", *WARNINGS, *flags, "-c", made / "trim3r.c", "-o", target)
     return target
+
+
+def check_strict(made, compiler):
+    if not there(compiler):
+        return
+    run(compiler, *STRICT, made / "trim3r.c")
+    shadowed = made / f"shadowed_{compiler}.c"
+    shadowed.write_text('#include "trim3r.c"\nint planted;\nint twice(int planted);\nint twice(int planted) { return planted; }\n')
+    check("planted" in ended(compiler, *STRICT, shadowed).stderr, f"blind: {compiler} does not see a shadowed name")
 
 
 def check_consumer(made):
@@ -106,7 +116,8 @@ def main():
         (broken / "trim3r.h").write_bytes((made / "trim3r.h").read_bytes())
         (broken / "trim3r.c").write_text((made / "trim3r.c").read_text() + "static int twice;\nstatic char twice;\n")
         check(ended("cc", "-fsyntax-only", broken / "trim3r.c").returncode != 0, "blind: a name twice is not noticed")
-        jobs = [functools.partial(check_consumer, made)]
+        jobs = [functools.partial(check_strict, made, "gcc"), functools.partial(check_strict, made, "clang"),
+                functools.partial(check_consumer, made)]
         if "--all" in sys.argv:
             jobs += [functools.partial(check_golden, made, "gcc"), functools.partial(check_golden, made, "clang"),
                      functools.partial(check_arm, made), functools.partial(check_wasm, made)]

@@ -16,7 +16,7 @@ REAL_LITERAL = re.compile(r"(?<![\w.])(\d+\.\d*|\.\d+|\d+[eE][+-]?\d+)[fFlL]?(?!
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"][^>"]+[>"])', re.M)
 SYSTEM_HEADERS = {"<stddef.h>", "<stdint.h>", "<stdbool.h>"}
 VECTOR_HEADERS = {"<immintrin.h>", "<emmintrin.h>", "<tmmintrin.h>", "<arm_neon.h>", "<arm_mve.h>", "<arm_acle.h>",
-                  "<wasm_simd128.h>"}
+                  "<wasm_simd128.h>", "<cpuid.h>"}
 
 
 def without_comments_and_strings(text):

@@ -3,6 +3,7 @@
 #include "unit/unit.h"
 
 #include "core/scene_frame.h"
+#include "host/cpu.h"
 #include "image/image.h"
 #include "rgbd_frame.h"
 #include "state/state.h"
@@ -83,6 +84,31 @@ TEST(another_interface)
     assert_memory_equal(&config, &nothing, sizeof config - 4);
     assert_int_equal(t3r_default_config_as(t3r_header_interface(), NULL, sizeof config, SIDE, SIDE, 1, 1),
                      T3R_ERR_ARGUMENT);
+}
+
+/* Each feature is taken if the processor has it, and refused otherwise. */
+TEST(features_of_other_processors)
+{
+    const t3r_config config = some_config();
+    t3r_runtime *rt = opened(&config);
+    const uint32_t there = t3r_cpu_features();
+    for (uint32_t bit = 0; bit < 32; bit++) {
+        const uint32_t feature = UINT32_C(1) << bit;
+        const t3r_kernels before = rt->kernels;
+#if defined(__aarch64__)
+        const bool is_taken = (feature & (T3R_CPU_NEON | T3R_CPU_DOTPROD)) != 0;
+#else
+        const bool is_taken = (feature & there) != 0;
+#endif
+        assert_int_equal(t3r_set_cpu(rt, feature), is_taken ? T3R_OK : T3R_ERR_ARGUMENT);
+        if (!is_taken) {
+            assert_memory_equal(&rt->kernels, &before, sizeof before);
+            assert_int_equal(t3r_set_cpu(rt, there | feature), T3R_ERR_ARGUMENT);
+        }
+    }
+    assert_int_equal(t3r_set_cpu(rt, there), T3R_OK);
+    assert_int_equal(t3r_set_cpu(rt, UINT32_MAX), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_set_cpu(rt, 0), T3R_OK);
 }
 
 TEST(missing_pointers)
