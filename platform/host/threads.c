@@ -9,6 +9,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <sys/types.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -27,6 +28,7 @@ struct t3r_threads {
     pthread_cond_t job_posted, job_done;
     helper helpers[T3R_MAX_THREADS - 1];
     uint32_t helper_count;
+    pid_t process; /* the helpers' */
     bool looks;            /* spins: there are processors for all threads */
     _Atomic uint32_t busy; /* helpers that have not finished the current job */
     _Atomic uint64_t job;  /* number of the current job; it changes under the mutex */
@@ -116,6 +118,32 @@ static void *work(void *argument)
     }
 }
 
+/* Starts up to `count` helpers. Returns whether all of them run. */
+static bool start_helpers(t3r_threads *threads, uint32_t count)
+{
+    pthread_mutex_init(&threads->mutex, NULL);
+    pthread_cond_init(&threads->job_posted, NULL);
+    pthread_cond_init(&threads->job_done, NULL);
+    threads->process = getpid();
+    for (threads->helper_count = 0; threads->helper_count < count; threads->helper_count++) {
+        helper *next = &threads->helpers[threads->helper_count];
+        *next = (helper){.pool = threads, .worker = threads->helper_count + 1};
+        if (pthread_create(&next->thread, NULL, work, next) != 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Starts the helpers again in a child of fork(), which has none of its parent's threads; fewer if the system refuses. */
+static void follow_fork(t3r_threads *threads)
+{
+    if (threads->process != getpid()) {
+        atomic_store_explicit(&threads->job, 0, memory_order_relaxed);
+        (void)start_helpers(threads, threads->helper_count);
+    }
+}
+
 t3r_threads *t3r_threads_start(uint32_t count)
 {
     if (count == 0 || count > T3R_MAX_THREADS) {
@@ -125,24 +153,18 @@ t3r_threads *t3r_threads_start(uint32_t count)
     if (threads == NULL) {
         return NULL;
     }
-    pthread_mutex_init(&threads->mutex, NULL);
-    pthread_cond_init(&threads->job_posted, NULL);
-    pthread_cond_init(&threads->job_done, NULL);
     threads->looks = sysconf(_SC_NPROCESSORS_ONLN) >= (long)count;
-    for (uint32_t i = 0; i + 1 < count; i++) {
-        threads->helpers[i] = (helper){.pool = threads, .worker = i + 1};
-        if (pthread_create(&threads->helpers[i].thread, NULL, work, &threads->helpers[i]) != 0) {
-            t3r_threads_stop(threads);
-            return NULL;
-        }
-        threads->helper_count++;
+    if (!start_helpers(threads, count - 1)) {
+        t3r_threads_stop(threads);
+        return NULL;
     }
     return threads;
 }
 
 void t3r_threads_stop(t3r_threads *threads)
 {
-    if (threads == NULL) {
+    if (threads == NULL || threads->process != getpid()) {
+        free(threads); /* the threads are the parent's */
         return;
     }
     pthread_mutex_lock(&threads->mutex);
@@ -166,6 +188,7 @@ uint32_t t3r_threads_count(const t3r_threads *threads)
 void t3r_threads_run(void *pool, uint32_t count, t3r_thread_task *task, void *context)
 {
     t3r_threads *threads = pool;
+    follow_fork(threads);
     if (threads->helper_count == 0 || count < 2) {
         for (uint32_t i = 0; i < count; i++) {
             task(context, i, 0);
