@@ -47,11 +47,17 @@ def declarations(text):
 
 
 def settings_of(header, compiler):
-    """Python: {setting: (kind, help)}, out of the rows of T3R_SETTINGS."""
-    rows = "#define ROW(name, kind, low, high, usual, feature, from, group, option, help) #name: (#kind, help),\n"
+    """Python: {setting: (kind, help, least, most)}, out of the rows of T3R_SETTINGS; values with names have no range."""
+    rows = "#define ROW(name, kind, low, high, usual, feature, from, group, option, help) " \
+           "#name: (#kind, help, RANGE_##kind(low, high)),\n"
+    for kind in ("number", "q8", "toggle"):
+        rows += f"#define RANGE_{kind}(low, high) low, high\n"
+    for kind in ("wavelet", "allocation", "head", "depth"):
+        rows += f"#define RANGE_{kind}(low, high) 0, 0xffffffff\n"
     text = f'#include "{header}"\n{rows}SETTINGS = {{T3R_SETTINGS(ROW)}}\n'
     done = subprocess.run([*compiler, "-E", "-P", "-x", "c", "-"], input=text, check=True, capture_output=True, text=True)
-    return done.stdout[done.stdout.rindex("SETTINGS = {"):].replace("), ", "),\n            ")
+    rows = re.sub(r"\b(\d+)U\b", r"\1", done.stdout[done.stdout.rindex("SETTINGS = {"):]) # UINT32_MAX
+    return re.sub(r"\), (?=\")", "),\n            ", rows)
 
 
 def main():

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "api/checks.h"
 #include "cli/cli.h"
 #include "cli/files/whole_file.h"
 #include "cli/options/file_kind.h"
@@ -342,6 +343,26 @@ static int write_rows(const char *path, const scene_rows *rows, const scene_exte
     return result;
 }
 
+/* Checks that a file of the scene can be read again. */
+static int check_scene(const t3r_scene *scene, const scene_rows *rows, char *error, size_t error_bytes)
+{
+    if (scene->count == 0 || scene->count > T3R_MAX_GAUSSIANS) {
+        return t3r_reason(error, error_bytes, "%" PRIu32 " Gaussians: a file has 1..%d", scene->count,
+                          T3R_MAX_GAUSSIANS);
+    }
+    if (!t3r_is_scene_frame(&scene->frame)) {
+        return t3r_reason(error, error_bytes, "the scene's origin or exponent is out of its range");
+    }
+    for (uint32_t i = 0; i < scene->count; i++) {
+        if (!t3r_is_gaussian(&scene->gaussians[i])) {
+            return t3r_reason(error, error_bytes, "Gaussian %" PRIu32 ": a field is out of its range", i);
+        }
+    }
+    const scene_turn as_they_are = scene_turn_between(rows->axes, rows->axes, SCENE_UP_UNKNOWN);
+    t3r_scene_frame chosen;
+    return scene_rows_choose_frame(rows, &as_they_are, &chosen, error, error_bytes);
+}
+
 int scene_file_write(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
                      size_t error_bytes)
 {
@@ -351,6 +372,10 @@ int scene_file_write(const char *path, const t3r_scene *scene, int flags, const 
         .frame = scene->frame, .gaussians = (t3r_gaussian *)(uintptr_t)scene->gaussians, .count = scene->count};
     const scene_rows rows = scene_rows_of(&made);
     const scene_extent extent = {.typical = ldexp(1, scene->frame.exponent)};
+    char reason[256] = "";
+    if (check_scene(scene, &rows, reason, sizeof reason) != 0) {
+        return t3r_reason(error, error_bytes, "%s: %s", path, reason);
+    }
     return write_rows(path, &rows, &extent, flags, note, &written, error, error_bytes);
 }
 

@@ -73,7 +73,8 @@ int scene_file_parse(const char *name, const uint8_t *bytes, size_t count, int f
 /* Writes in the recording's world frame, in the format of the path's suffix; flags: 0, or a sum of these. `note` (NULL:
  * none), one line, becomes another comment. Floats lose the detail of a scene that is small and far from the world's
  * origin: it is written as by SCENE_FILE_LOCAL, with the origin in the file if the format has a place for it, and a
- * warning. Returns 0, or -1 with the reason in error[]. */
+ * warning. Refused are scenes that could not be read again: empty ones, fields out of range, an extent outside
+ * 2^-24..2^24 units. Returns 0, or -1 with the reason in error[]. */
 enum {
     SCENE_FILE_LOCAL = 1,    /* relative to the frame's origin: metres from the first context camera, for example */
     SCENE_FILE_COMMENTS = 2, /* header comments with bits epoch and scene frame; some readers reject comments */

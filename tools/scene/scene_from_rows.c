@@ -21,9 +21,8 @@ static int64_t to_q32(double value)
     return (int64_t)nearbyint(ldexp(value, 32));
 }
 
-/* Chooses a frame for a file without one: origin at the centre, typical distance in [1, 2) scene units. */
-static int choose_frame(const scene_rows *rows, const scene_turn *turn, t3r_scene_frame *frame, char *error,
-                        size_t error_bytes)
+int scene_rows_choose_frame(const scene_rows *rows, const scene_turn *turn, t3r_scene_frame *frame, char *error,
+                            size_t error_bytes)
 {
     scene_extent extent;
     if (scene_extent_of(rows, &extent, error, error_bytes) != 0) {
@@ -114,7 +113,7 @@ int scene_file_from_rows(const scene_rows *rows, scene_file *out, char *error, s
     scene_file scene = {.frame = rows->frame, .count = rows->count, .degree = rows->degree, .mip = rows->mip};
     const scene_turn turn = scene_turn_between(rows->axes, SCENE_AXES_AS_THEY_ARE, SCENE_UP_UNKNOWN);
     if ((rows->has_frame ? check_frame(&scene.frame, error, error_bytes)
-                         : choose_frame(rows, &turn, &scene.frame, error, error_bytes)) != 0) {
+                         : scene_rows_choose_frame(rows, &turn, &scene.frame, error, error_bytes)) != 0) {
         return -1;
     }
     scene.gaussians = malloc(rows->count * sizeof *scene.gaussians);

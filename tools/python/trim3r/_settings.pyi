@@ -2,4 +2,4 @@
 # Made by declare.py when the package is built.
 from typing import Dict, Tuple
 
-SETTINGS: Dict[str, Tuple[str, str]]
+SETTINGS: Dict[str, Tuple[str, str, int, int]]

@@ -5,6 +5,7 @@ from typing import List
 import numpy as np
 
 from ._native import address, ffi, lib
+from .arguments import setting, whole
 from .camera import Camera
 from .frame import Frame
 
@@ -31,10 +32,8 @@ def room(frames: int = 6, width: int = 256, height: int = 256, seed: int = 1) ->
     ValueError
         A number is out of its range.
     """
-    for name, value, low, high in (("frames", frames, 1, 1000), ("width", width, lib.T3R_MIN_SIDE, lib.T3R_MAX_SIDE),
-                                   ("height", height, lib.T3R_MIN_SIDE, lib.T3R_MAX_SIDE), ("seed", seed, 0, 2**32 - 1)):
-        if not low <= value <= high:
-            raise ValueError(f"{name} is {low}..{high}, not {value}")
+    frames, seed = whole("frames", frames, 1, 1000), setting("seed", seed)
+    width, height = setting("width", width), setting("height", height)
     made = []
     for index in range(frames):
         colour = np.empty((height, width, 3), dtype=np.uint8)
@@ -42,5 +41,5 @@ def room(frames: int = 6, width: int = 256, height: int = 256, seed: int = 1) ->
         camera = ffi.new("t3r_camera *")
         lib.room_frame(index, width, height, seed, address(colour, "uint8_t *"), address(depth, "uint16_t *"))
         lib.room_camera(index, width, height, camera)
-        made.append(Frame(colour, Camera.from_native(camera), depth))
+        made.append(Frame(colour, Camera.from_native(camera, (width, height)), depth))
     return made

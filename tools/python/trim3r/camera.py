@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Cameras: intrinsics, lens and pose."""
 import dataclasses
-from typing import Any, Sequence, Tuple
+from typing import Any, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._native import ffi, lib
-from .fixed import fixed
+from .arguments import fixed, pair, whole
+from .errors import InputError
 
 _LENSES = {"none": lib.T3R_DISTORTION_NONE, "radtan": lib.T3R_DISTORTION_RADTAN,
            "fisheye": lib.T3R_DISTORTION_FISHEYE}
 _COEFFICIENTS = {"none": 0, "radtan": 5, "fisheye": 4}
+# Of each field of integers: how many (0: one, alone), and their bits.
+_FIELDS = {"fx_q16": (0, 32), "fy_q16": (0, 32), "cx_q16": (0, 32), "cy_q16": (0, 32), "distortion_q24": (5, 32),
+           "position_q32": (3, 64), "rotation_q30": (4, 32)}
 _NEAR_ENOUGH = 1e-3  # of an entry of R R^T to the identity: poses of 32-bit floats pass, scaled or sheared ones do not
 
 
@@ -36,6 +40,8 @@ class Camera:
         "none", "radtan" (k1 k2 p1 p2 k3) or "fisheye" (k1 k2 k3 k4).
     distortion_q24 : tuple of 5 int
         The coefficients of the lens, in 1/2**24; those that it lacks are 0.
+    size : pair of int, optional
+        Width and height of that pixel grid. Frames and pictures of another size are refused. None: any size is taken.
     """
 
     fx_q16: int
@@ -46,10 +52,11 @@ class Camera:
     rotation_q30: Tuple[int, int, int, int] = (1 << 30, 0, 0, 0)
     distortion: str = "none"
     distortion_q24: Tuple[int, int, int, int, int] = (0, 0, 0, 0, 0)
+    size: Optional[Tuple[int, int]] = None
 
     @classmethod
     def calibrated(cls, fx: float, fy: float, cx: float, cy: float, pose: ArrayLike, distortion: str = "none",
-                   coefficients: Sequence[float] = ()) -> "Camera":
+                   coefficients: Sequence[float] = (), size: Optional[Tuple[int, int]] = None) -> "Camera":
         """A camera of floats.
 
         Parameters
@@ -62,6 +69,8 @@ class Camera:
             The lens: "none", "radtan" or "fisheye".
         coefficients : sequence of float
             Those of the lens in its order, at most as many as it has.
+        size : pair of int, optional
+            Width and height of the pixel grid that fx, fy, cx and cy are for.
 
         Raises
         ------
@@ -78,12 +87,21 @@ class Camera:
         x, y, z = (fixed(c, 32, "the pose's position", 64) for c in matrix[:3, 3])
         w, i, j, l = (fixed(c, 30, "the pose's rotation") for c in _quaternion(matrix[:3, :3]))
         return cls(fixed(fx, 16, "fx"), fixed(fy, 16, "fy"), fixed(cx, 16, "cx"), fixed(cy, 16, "cy"), (x, y, z),
-                   (w, i, j, l), distortion, (k[0], k[1], k[2], k[3], k[4]))
+                   (w, i, j, l), distortion, (k[0], k[1], k[2], k[3], k[4]), size)
 
     def at(self, pose: ArrayLike) -> "Camera":
         """The same camera at another pose, (4, 4) or (3, 4), camera to world. Raises ValueError as calibrated()."""
         posed = Camera.calibrated(self.fx, self.fy, self.cx, self.cy, pose)
         return dataclasses.replace(self, position_q32=posed.position_q32, rotation_q30=posed.rotation_q30)
+
+    def resized(self, width: int, height: int) -> "Camera":
+        """The camera of the same picture at another size in pixels. Raises ValueError where `size` is None or a number is
+        out of range."""
+        if self.size is None:
+            raise InputError("the camera's size is not known", "T3R_ERR_CAMERA")
+        old, new = _grid(self.size), _grid((width, height))
+        (fx, cx), (fy, cy) = (_resized(*axis) for axis in zip((self.fx_q16, self.fy_q16), (self.cx_q16, self.cy_q16), old, new))
+        return dataclasses.replace(self, fx_q16=fx, fy_q16=fy, cx_q16=cx, cy_q16=cy, size=new)
 
     @property
     def fx(self) -> float:
@@ -116,30 +134,58 @@ class Camera:
         matrix[:3, 3] = np.ldexp(np.array(self.position_q32, dtype=np.float64), -32)
         return matrix
 
-    def native(self) -> Any:
-        """A t3r_camera. Raises ValueError where a number does not fit its field."""
-        try:
-            return ffi.new("t3r_camera *", {
-                "fx_q16": self.fx_q16, "fy_q16": self.fy_q16, "cx_q16": self.cx_q16, "cy_q16": self.cy_q16,
-                "distortion": _LENSES[self.distortion], "distortion_q24": self.distortion_q24,
-                "position_q32": self.position_q32, "rotation_q30": self.rotation_q30})
-        except (OverflowError, IndexError, KeyError) as error:
-            raise ValueError(f"camera: {error}") from error
+    def native(self, size: Tuple[int, int]) -> Any:
+        """A t3r_camera for a picture of that width and height.
+
+        Raises InputError where it is for another size, or a number does not fit its field.
+        """
+        if self.size is not None and _grid(self.size) != size:
+            raise InputError(f"the camera is for {self.size[0]}x{self.size[1]} pixels, not for {size[0]}x{size[1]}: "
+                             "resized() makes one for another size", "T3R_ERR_CAMERA")
+        if self.distortion not in _LENSES:
+            raise InputError(f"distortion is one of {', '.join(_LENSES)}, not {self.distortion!r}", "T3R_ERR_CAMERA")
+        fields = {name: _integers(name, getattr(self, name), *field) for name, field in _FIELDS.items()}
+        return ffi.new("t3r_camera *", {**fields, "distortion": _LENSES[self.distortion]})
 
     @classmethod
-    def from_native(cls, camera: Any) -> "Camera":
-        """Makes a camera of a t3r_camera."""
+    def from_native(cls, camera: Any, size: Tuple[int, int]) -> "Camera":
+        """Makes a camera of a t3r_camera for a picture of that width and height."""
         lens = next(name for name, value in _LENSES.items() if value == camera.distortion)
         x, y, z = camera.position_q32
         w, i, j, k = camera.rotation_q30
         a, b, c, d, e = camera.distortion_q24
         return cls(camera.fx_q16, camera.fy_q16, camera.cx_q16, camera.cy_q16, (x, y, z), (w, i, j, k), lens,
-                   (a, b, c, d, e))
+                   (a, b, c, d, e), size)
+
+
+def _grid(size: Any) -> Tuple[int, int]:
+    """A width and a height in pixels, checked."""
+    width, height = pair("size", size)
+    return (whole("width", width, 1, lib.T3R_MAX_SIDE, "T3R_ERR_CAMERA"),
+            whole("height", height, 1, lib.T3R_MAX_SIDE, "T3R_ERR_CAMERA"))
+
+
+def _integers(name: str, value: Any, count: int, bits: int) -> Any:
+    """The integers of a field, checked: so many of them, or one where `count` is 0."""
+    low, high = -(1 << (bits - 1)), (1 << (bits - 1)) - 1
+    if count == 0:
+        return whole(name, value, low, high, "T3R_ERR_CAMERA")
+    if not isinstance(value, (tuple, list, np.ndarray)) or len(value) != count:
+        raise InputError(f"{name} has {count} integers, not {value!r}", "T3R_ERR_CAMERA")
+    return [whole(f"{name}[{i}]", each, low, high, "T3R_ERR_CAMERA") for i, each in enumerate(value)]
+
+
+def _resized(focal_q16: int, centre_q16: int, old: int, new: int) -> Tuple[int, int]:
+    """Focal length and principal point along an axis of another length, rounded half up."""
+    return (2 * focal_q16 * new + old) // (2 * old), (2 * (centre_q16 + 0x8000) * new + old) // (2 * old) - 0x8000
 
 
 def _rigid(pose: ArrayLike) -> "NDArray[np.float64]":
     """The pose as a matrix of 3 x 4, checked."""
-    matrix = np.asarray(pose, dtype=np.float64)
+    given = np.asarray(pose)
+    if given.dtype.kind not in "iufO":
+        raise TypeError(f"a pose holds numbers, not {given.dtype}")
+    matrix = given.astype(np.float64)
     if matrix.shape not in ((4, 4), (3, 4)):
         raise ValueError(f"a pose has the shape (4, 4) or (3, 4), not {matrix.shape}")
     if not np.isfinite(matrix).all():

@@ -4,6 +4,7 @@ from typing import Any, Dict, Mapping, Optional, Union
 
 from ._native import INTERFACE, check, ffi, lib, text_of, value_named
 from ._settings import SETTINGS
+from .arguments import setting
 from .errors import InputError
 from .heads import Head
 from .image_stage import default_config
@@ -29,18 +30,17 @@ def configuration(width: int, height: int, views: int, gaussians: Optional[int],
 
     Raises ValueError where one is out of its range, or there is no such setting.
     """
-    most = min(width * height * max(views, 1), _GAUSSIANS_MOST) if gaussians is None else gaussians
-    config = default_config(width, height, views, most)
+    if gaussians is None:
+        gaussians = min(setting("width", width) * setting("height", height) * max(setting("views", views), 1),
+                        _GAUSSIANS_MOST)
+    config = default_config(width, height, views, gaussians)
     config.head, config.head_column_bytes = head.value, head.column_bytes(width)
     for name, value in settings.items():
         if name not in SETTINGS:
             raise ValueError(f"there is no setting {name!r}; there are {', '.join(SETTINGS)}")
         if isinstance(value, str):
             value = setting_value(name, value)
-        try:
-            setattr(config, name, value)
-        except (OverflowError, TypeError) as error:
-            raise ValueError(f"{name}: {error}") from error
+        setattr(config, name, setting(name, value))
     reason = lib.t3r_config_error(config)
     if reason != ffi.NULL:
         raise InputError(text_of(reason), "T3R_ERR_CONFIG")

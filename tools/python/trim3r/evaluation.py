@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import measures
+from .arguments import pair
 from .configuration import Settings
 from .image_stage import camera_of, develop
 from .frame import Frame
@@ -79,7 +80,7 @@ def evaluate(context: Sequence[Frame], target: Frame, keep: Sequence[float] = (1
     ValueError
         As Reconstructor and its calls.
     """
-    width, height = size or context[0].size
+    width, height = pair("size", size or context[0].size)
     pictures = [develop(frame, width, height) for frame in (target, *context)]
     masks = _masks(context, pictures, width, height, depth, workers, settings)
     rows: List[Row] = []

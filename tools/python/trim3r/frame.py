@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._native import address, ffi, lib, value_named
+from .arguments import real
 from .camera import Camera
-from .fixed import fixed
+from .errors import InputError
 
 _CHANNELS = {"rgb24": 3, "bgr24": 3, "grey": 1, "yuyv": 2, "uyvy": 2, "nv12": 1}
 _STEPS_MOST = 65535
@@ -62,10 +63,7 @@ class Frame:
     def native_strip(self, height: int, depth_height: int) -> Tuple[Any, Any]:
         """The same of a frame with so many rows of colour and of depth, of which the arrays hold some, or none."""
         frame, kept = self._native(0)
-        try:
-            frame.height, frame.depth_height = height, depth_height
-        except OverflowError as error:
-            raise ValueError(f"height or depth_height: {error}") from error
+        frame.height, frame.depth_height = height, depth_height
         return frame, kept
 
     def _native(self, least_rows: int) -> Tuple[Any, Any]:
@@ -105,9 +103,10 @@ def _is_float(array: Any) -> bool:
 
 
 def _unit_q40(unit: float) -> int:
-    unit_q40 = fixed(unit, 40, "depth_unit", 48)
+    length = real("depth_unit", unit)
+    unit_q40 = round(length * 2**40) if 0 < length < 128 else 0
     if unit_q40 < 1:
-        raise ValueError(f"depth_unit is {unit}, not a positive length")
+        raise InputError(f"depth_unit is 2**-40 to 128, not {length}: it is out of range", "T3R_ERR_FRAME")
     return unit_q40
 
 

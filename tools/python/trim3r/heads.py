@@ -42,7 +42,7 @@ def head_of(name: HeadName) -> Head:
     OSError
         The file cannot be read.
     """
-    text = os.fspath(name)
+    text = os.fsdecode(name)
     if text == _ANALYTIC:
         return Head(lib.T3R_HEAD_ANALYTIC)
     if text in _SHIPPED:

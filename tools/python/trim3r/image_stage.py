@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from ._native import INTERFACE, address, check, ffi, lib
+from .arguments import setting
 from .camera import Camera
 from .errors import InputError
 from .frame import Frame
@@ -18,12 +19,10 @@ def arena_of(plan_bytes: int) -> "np.ndarray[Any, np.dtype[np.uint8]]":
 
 
 def default_config(width: int, height: int, views: int, gaussians: int) -> Any:
-    """A t3r_config of defaults. Raises ValueError where a number does not fit its field."""
+    """A t3r_config of defaults. Raises InputError where a number is out of its range."""
     config = ffi.new("t3r_config *")
-    try:
-        check(lib.t3r_default_config_as(INTERFACE, config, ffi.sizeof("t3r_config"), width, height, views, gaussians))
-    except OverflowError as error:
-        raise ValueError(f"width, height, views or gaussians: {error}") from error
+    check(lib.t3r_default_config_as(INTERFACE, config, ffi.sizeof("t3r_config"), setting("width", width),
+                                    setting("height", height), setting("views", views), setting("gaussians", gaussians)))
     return config
 
 
@@ -65,7 +64,7 @@ def develop(frame: Frame, width: int, height: int) -> Frame:
     depth = None if frame.depth is None else np.empty((height, width), dtype="<u2")
     native, kept = frame.native()
     steps = ffi.NULL if depth is None else address(depth, "uint16_t *")
-    check(lib.t3r_develop(runtime[0], native, camera_of(frame).native(), address(colour, "uint8_t *"), steps,
+    check(lib.t3r_develop(runtime[0], native, camera_of(frame).native(frame.size), address(colour, "uint8_t *"), steps,
                           undistorted))
     del kept
-    return Frame(colour, Camera.from_native(undistorted), depth, frame.depth_unit)
+    return Frame(colour, Camera.from_native(undistorted, (width, height)), depth, frame.depth_unit)

@@ -45,6 +45,8 @@ def _measure(metric: Callable[..., float], target: Picture8, image: Picture8, ma
         raise ValueError(f"the pictures have the shapes {target.shape} and {image.shape}")
     if 0 in target.shape:
         raise ValueError("the pictures are empty")
+    if mask is not None and not isinstance(mask, np.ndarray):
+        raise ValueError(f"the mask is a {type(mask).__name__}, not an array")
     if mask is not None and mask.shape != (height, width):
         raise ValueError(f"the mask has the shape {mask.shape}, not {(height, width)}")
     counted = None if mask is None else np.ascontiguousarray(mask != 0).view(np.uint8)

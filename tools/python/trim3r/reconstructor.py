@@ -3,6 +3,7 @@
 import collections
 import contextlib
 import os
+import sys
 import threading
 from typing import Any, Callable, Deque, Dict, Iterator, Optional, Tuple
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._native import INTERFACE, address, check, ffi, lib, text_of
+from .arguments import pair, real, whole
 from .camera import Camera
 from .configuration import Settings, configuration
 from .errors import DepthError, InputError, StateError
@@ -73,13 +75,13 @@ class Reconstructor:
         self._lock = threading.Lock()
         self._runtime: Any = None
         self._head = head_of(head)
-        render_width, render_height = render_size or (width, height)
+        render_width, render_height = pair("render_size", render_size or (width, height))
         self._config = configuration(width, height, views, gaussians, self._head, {
             "depth": depth, "workers": workers, "render_width": render_width, "render_height": render_height,
             "keep_analysis": 1, **settings})
         plan = ffi.new("t3r_plan_info *")
         check(lib.t3r_plan_as(INTERFACE, self._config, plan))
-        if arena_bytes is not None and arena_bytes < plan.min_bytes:
+        if arena_bytes is not None and whole("arena_bytes", arena_bytes, 0, sys.maxsize) < plan.min_bytes:
             raise InputError(f"an arena of {arena_bytes} bytes is too small: it takes {plan.min_bytes}", "T3R_ERR_ARENA")
         self._arena = arena_of(plan.bytes if arena_bytes is None else arena_bytes)
         runtime = ffi.new("t3r_runtime **")
@@ -114,7 +116,7 @@ class Reconstructor:
         """
         with self._at_work() as runtime:
             native, kept = frame.native()
-            camera = camera_of(frame).native()
+            camera = camera_of(frame).native(frame.size)
             if self._config.warm: # which discards the scene, and makes room
                 self._go_on()
             self._check(lib.t3r_add_view, runtime, native, camera)
@@ -158,23 +160,22 @@ class Reconstructor:
         A strip from row 0 of both begins a view. It discards one that came in part, as add_view(), build() and reset()
         do. `valid_points` is not known until a build.
         """
-        depth_row = row if depth_row is None else depth_row
-        depth_height = height if depth_height is None else depth_height
+        row, height = whole("row", row, 0, lib.T3R_MAX_SIDE), whole("height", height, 2, lib.T3R_MAX_SIDE)
+        depth_row = row if depth_row is None else whole("depth_row", depth_row, 0, lib.T3R_MAX_SIDE)
+        depth_height = height if depth_height is None else whole("depth_height", depth_height, 2, lib.T3R_MAX_SIDE)
         with self._at_work() as runtime:
             native, kept = strip.native_strip(height, depth_height)
-            camera = camera_of(strip).native()
+            camera = camera_of(strip).native((strip.size[0], height))
             rows, depth_rows = strip.size[1], 0 if strip.depth is None else strip.depth.shape[0]
-            if not all(0 <= first <= lib.T3R_MAX_SIDE for first in (row, depth_row)):
-                raise ValueError(f"rows are 0..{lib.T3R_MAX_SIDE}, not {row} and {depth_row}")
             if self._config.warm: # which discards the scene
                 self._go_on()
             self._check(lib.t3r_add_rows, runtime, native, camera, row, rows, depth_row, depth_rows)
             del kept
             stereo = self._config.depth == lib.T3R_DEPTH_STEREO
-            whole = row + rows == height and (stereo or depth_row + depth_rows == depth_height)
-            if whole:
+            is_whole = row + rows == height and (stereo or depth_row + depth_rows == depth_height)
+            if is_whole:
                 self._points.append(None)
-            return whole
+            return is_whole
 
     def reset(self) -> None:
         """Discards views and scene; the settings stay."""
@@ -257,7 +258,8 @@ class Reconstructor:
         Parameters
         ----------
         camera : Camera
-            For the pixel grid of the picture. Its lens is ignored: pictures are a pinhole's.
+            For the pixel grid of the picture: resized() makes one of a camera for another size. Its lens is ignored:
+            pictures are a pinhole's.
         size : pair of int, optional
             Width and height in pixels, at most render_size. That of `out`, else the working size, without it.
         out : ndarray of uint8, shape (H, W, 3), optional
@@ -276,26 +278,27 @@ class Reconstructor:
             There is no scene.
         """
         if out is None:
-            width, height = size or (self._config.width, self._config.height)
+            width, height = self._size(size)
             out = np.empty((height, width, 3), dtype=np.uint8)
-        elif size is not None and out.shape[:2] != (size[1], size[0]):
-            raise ValueError(f"out has the shape {out.shape}, not that of {size[0]}x{size[1]} pixels")
         check_plane("out", out, np.dtype(np.uint8), 3)
+        height, width = out.shape[:2]
+        if size is not None and self._size(size) != (width, height):
+            raise ValueError(f"out has the shape {out.shape}, not that of {size[0]}x{size[1]} pixels")
         if not out.flags.writeable:
             raise ValueError("out is read-only")
         with self._at_work() as runtime:
-            self._check(lib.t3r_render, runtime, camera.native(), target_of(out))
+            self._check(lib.t3r_render, runtime, camera.native((width, height)), target_of(out))
         return out
 
     def picture(self, camera: Camera, size: Optional[Tuple[int, int]] = None) -> Picture:
         """Draws the scene with its depth and alpha. Parameters and errors are those of render()."""
-        width, height = size or (self._config.width, self._config.height)
+        width, height = self._size(size)
         colour = np.empty((height, width, 3), dtype=np.uint8)
         depth, alpha = np.empty((height, width), dtype=np.uint32), np.empty((height, width), dtype=np.uint16)
         target = target_of(colour)
         put_planes(target, depth, alpha)
         with self._at_work() as runtime:
-            self._check(lib.t3r_render, runtime, camera.native(), target)
+            self._check(lib.t3r_render, runtime, camera.native((width, height)), target)
             scene = ffi.new("t3r_scene *")
             self._check(lib.t3r_get_scene, runtime, scene)
         return Picture(colour, depth, alpha, scene.frame.exponent)
@@ -354,6 +357,12 @@ class Reconstructor:
         finally:
             self._lock.release()
 
+    def _size(self, size: Optional[Tuple[int, int]]) -> Tuple[int, int]:
+        """Returns the width and height of a picture. None: the working size."""
+        width, height = pair("size", size or (self._config.width, self._config.height))
+        return (whole("width", width, 1, self._config.render_width, "T3R_ERR_ARGUMENT"),
+                whole("height", height, 1, self._config.render_height, "T3R_ERR_ARGUMENT"))
+
     def _check(self, function: Callable[..., int], *arguments: Any) -> None:
         check(self._hooks.run(function, *arguments))
 
@@ -403,12 +412,10 @@ class Reconstructor:
         if gaussians is not None and keep is not None:
             raise ValueError("a budget is either `gaussians` or `keep`")
         if gaussians is not None:
-            if not 1 <= gaussians <= most:
-                raise ValueError(f"gaussians is 1..{most}, not {gaussians}")
-            return gaussians
+            return whole("gaussians", gaussians, 1, most)
         if keep is None:
             return 0
-        if not 0 < keep <= 100:
+        if not 0 < real("keep", keep) <= 100:
             raise ValueError(f"keep is above 0 and at most 100 percent, not {keep}")
         points = self._matched(runtime) if self.valid_points is None else self.valid_points
         return min(int(most), max(1, int(np.floor(points * keep / 100 + 0.5))))

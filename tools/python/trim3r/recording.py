@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings: MCAP files of ROS 2 messages."""
-import os
-from typing import Any, Iterator, List, NamedTuple, Tuple, Union
+from typing import Any, Iterator, List, NamedTuple, Tuple
 
 import numpy as np
 
 from ._native import ERROR_BYTES, borrowed, ffi, lib, text_of
+from .arguments import Path, integer, readable
 from .camera import Camera
 from .errors import InputError
 from .frame import Colour, Frame
@@ -34,15 +34,17 @@ class Recording:
 
     Raises
     ------
+    OSError
+        The file cannot be opened.
     InputError
-        The file cannot be read; the text says what is wrong, and at which byte.
+        It is no recording; the text says what is wrong, and at which byte.
     """
 
-    def __init__(self, path: Union[str, "os.PathLike[str]"]) -> None:
+    def __init__(self, path: Path) -> None:
         error = ffi.new("char[]", ERROR_BYTES)
-        opened = lib.t3r_recording_open(os.fsencode(path), error, ERROR_BYTES)
+        opened = lib.t3r_recording_open(readable(path), error, ERROR_BYTES)
         if opened == ffi.NULL:
-            raise InputError(f"{os.fspath(path)}: {text_of(error)}")
+            raise InputError(text_of(error))
         self._recording = ffi.gc(opened, lib.t3r_recording_close)
 
     def __len__(self) -> int:
@@ -58,14 +60,15 @@ class Recording:
         InputError
             The frame cannot be read.
         """
-        count = len(self)
+        count, index = len(self), integer("index", index)
         if not -count <= index < count:
             raise IndexError(f"the recording has {count} frames, none with the number {index}")
         captured, error = ffi.new("t3r_capture_frame *"), ffi.new("char[]", ERROR_BYTES)
         if lib.t3r_recording_frame(self._recording, index % count, captured, error, ERROR_BYTES) != lib.T3R_CAPTURE_FRAME:
             raise InputError(f"frame {index}: {text_of(error)}")
         native = captured.frame
-        camera = Camera.from_native(captured.camera) if captured.has_pose and captured.has_intrinsics else None
+        camera = Camera.from_native(captured.camera, (native.width, native.height)) \
+            if captured.has_pose and captured.has_intrinsics else None
         return Frame(self._colour(native), camera, self._depth(native), native.depth_unit_q40 / (1 << 40),
                      text_of(lib.t3r_pixel_format_name(native.format)))
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._native import address, ffi
+from .arguments import real
 from .configuration import setting_value
 
 Importance = Sequence["NDArray[np.uint16]"]
@@ -18,7 +19,7 @@ def request_of(config: Any, views: int, gaussians: int, max_loss: float, allocat
 
     Raises ValueError where a field is out of its range.
     """
-    if not 0 <= max_loss <= _LOSS_MOST:
+    if not 0 <= real("max_loss", max_loss) <= _LOSS_MOST:
         raise ValueError(f"max_loss is 0..{_LOSS_MOST} dB, not {max_loss}")
     request = ffi.new("t3r_request *", {"gaussians": gaussians, "max_loss_q8": round(max_loss * 256)})
     if allocate is not None:

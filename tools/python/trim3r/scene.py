@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: Gaussians in the library's integers, and what they mean in world units."""
 import os
-from typing import Any, Callable, Tuple, Union
+from typing import Any, Callable, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._native import ERROR_BYTES, address, borrowed, dtype_of, ffi, lib, text_of
+from .arguments import Path, path_bytes, readable, whole, writable
 from .errors import InputError, StateError
 
 GAUSSIAN = dtype_of("t3r_gaussian")
+_ORIGIN_MOST = (1 << 62) - 1
+_EXPONENT_MOST = 24
+_POINTS_MOST = (1 << 32) - 1
 _COLOUR_ONE = 32640  # a level of 255, in 1/128
 
 
@@ -23,7 +27,7 @@ class Scene:
     Attributes
     ----------
     origin_q32 : tuple of 3 int
-        The origin of the scene's frame, in 1/2**32 world units.
+        The origin of the scene's frame, in 1/2**32 world units, between -2**62 and 2**62.
     exponent : int
         A scene unit is 2**exponent world units, -24..24.
     valid_points : int
@@ -35,21 +39,25 @@ class Scene:
         if gaussians.dtype != GAUSSIAN or gaussians.ndim != 1:
             raise ValueError("Gaussians are a one-dimensional array of trim3r.scene.GAUSSIAN")
         self._gaussians, self._fresh = gaussians, fresh
-        self.origin_q32, self.exponent, self.valid_points = origin_q32, exponent, valid_points
+        self.origin_q32, self.exponent = origin_q32, exponent
+        self.valid_points = whole("valid_points", valid_points, 0, _POINTS_MOST)
+        self.native_frame() # which checks it
 
     @classmethod
-    def read(cls, path: Union[str, "os.PathLike[str]"]) -> "Scene":
+    def read(cls, path: Path) -> "Scene":
         """A scene from a file: .ply, .splat, .spz, .glb and all that `trim3r convert` reads. Colours are those of
         harmonics of degree 0.
 
         Raises
         ------
+        OSError
+            The file cannot be opened.
         InputError
-            The file cannot be read; the text says what is wrong, and where.
+            It is no scene; the text says what is wrong, and where.
         """
         error = ffi.new("char[]", ERROR_BYTES)
         file = ffi.new("scene_file *")
-        if lib.scene_file_read(os.fsencode(path), 0, file, error, ERROR_BYTES) != 0:
+        if lib.scene_file_read(readable(path), 0, file, error, ERROR_BYTES) != 0:
             raise InputError(text_of(error))
         owner = ffi.gc(file, lib.scene_file_free)
         gaussians = borrowed(file.gaussians, file.count, owner, GAUSSIAN)
@@ -62,7 +70,7 @@ class Scene:
         x, y, z = frame.origin_q32
         return cls(gaussians, (x, y, z), frame.exponent, valid_points, fresh)
 
-    def save(self, path: Union[str, "os.PathLike[str]"], local: bool = False, comments: bool = False) -> None:
+    def save(self, path: Path, local: bool = False, comments: bool = False) -> None:
         """Writes a file in the format of its suffix: .ply, .splat, .spz, .glb and all that `trim3r build` writes.
 
         Parameters
@@ -77,10 +85,13 @@ class Scene:
 
         Raises
         ------
+        OSError
+            The folder of the file is not there.
         InputError
-            The suffix is that of no scene file, or the file cannot be written.
+            The suffix is that of no scene file, the scene is empty or a number of it out of range, or the file cannot be
+            written. What is there stays.
         """
-        if not lib.scene_file_is_written(os.fsencode(path)):
+        if not lib.scene_file_is_written(path_bytes(path)):
             names = ffi.new("char[]", lib.SCENE_FILE_SUFFIXES_BYTES)
             raise InputError(f"{os.fspath(path)}: scene files end in {text_of(lib.scene_file_suffixes(names))}")
         gaussians = np.ascontiguousarray(self.gaussians)
@@ -88,7 +99,7 @@ class Scene:
                                         "frame": self.native_frame()[0]})
         flags = (lib.SCENE_FILE_LOCAL if local else 0) | (lib.SCENE_FILE_COMMENTS if comments else 0)
         error = ffi.new("char[]", ERROR_BYTES)
-        if lib.scene_file_write(os.fsencode(path), scene, flags, ffi.NULL, error, ERROR_BYTES) != 0:
+        if lib.scene_file_write(writable(path), scene, flags, ffi.NULL, error, ERROR_BYTES) != 0:
             raise InputError(text_of(error))
 
     def copy(self) -> "Scene":
@@ -149,5 +160,9 @@ class Scene:
         return self.gaussians["confidence"].astype(np.float32) / np.float32(255)
 
     def native_frame(self) -> Any:
-        """A pointer to the t3r_scene_frame."""
-        return ffi.new("t3r_scene_frame *", {"origin_q32": self.origin_q32, "exponent": self.exponent})
+        """A pointer to the t3r_scene_frame. Raises InputError where a number is out of its range."""
+        if len(self.origin_q32) != 3:
+            raise InputError(f"origin_q32 has 3 integers, not {self.origin_q32!r}")
+        origin = [whole(f"origin_q32[{i}]", each, -_ORIGIN_MOST, _ORIGIN_MOST) for i, each in enumerate(self.origin_q32)]
+        exponent = whole("exponent", self.exponent, -_EXPONENT_MOST, _EXPONENT_MOST)
+        return ffi.new("t3r_scene_frame *", {"origin_q32": origin, "exponent": exponent})
