@@ -8,6 +8,7 @@
 
 #include <cjson/cJSON.h>
 
+#include "json_object.h"
 #include "quant_reason.h"
 #include "safetensors.h"
 
@@ -122,9 +123,6 @@ static int read_description(reader *r, const cJSON *root, head_graph *graph)
 {
     static const char *const keys[] = {"format", "name", "feature_set", "layers"};
     uint32_t format, feature_set;
-    if (!cJSON_IsObject(root)) {
-        return quant_reason(r->error, r->error_bytes, METADATA_KEY ": not a JSON object");
-    }
     if (check_keys(r, root, keys, sizeof keys / sizeof *keys) != 0 ||
         read_number(r, root, "format", -1, &format) != 0 ||
         read_number(r, root, "feature_set", -1, &feature_set) != 0) {
@@ -168,8 +166,8 @@ static int read_graph(reader *r, head_graph *graph)
     if (text == NULL) {
         return quant_reason(r->error, r->error_bytes, "__metadata__ has no \"" METADATA_KEY "\": not a head of trim3r");
     }
-    cJSON *root = cJSON_ParseWithOpts(text, NULL, 1);
-    int status = read_description(r, root, graph);
+    cJSON *root = json_object_parse(METADATA_KEY, text, strlen(text), r->error, r->error_bytes);
+    int status = root == NULL ? -1 : read_description(r, root, graph);
     cJSON_Delete(root);
     return status;
 }

@@ -9,6 +9,7 @@
 #include <cjson/cJSON.h>
 
 #include "core/little_endian.h"
+#include "json_object.h"
 #include "quant_reason.h"
 
 #define LENGTH_BYTES 8u
@@ -128,35 +129,6 @@ static int check_places(const reader *r, const safetensors *file)
     return status;
 }
 
-static int by_name(const void *left, const void *right)
-{
-    return strcmp(*(const char *const *)left, *(const char *const *)right);
-}
-
-/* Refuses duplicate keys, which cJSON keeps. */
-static int check_names(const reader *r, const cJSON *object, const char *where)
-{
-    size_t count = (size_t)cJSON_GetArraySize(object), i = 0;
-    const char **names = malloc((count + 1) * sizeof *names);
-    if (names == NULL) {
-        return quant_reason(r->error, r->error_bytes, "out of memory");
-    }
-    const cJSON *item;
-    cJSON_ArrayForEach(item, object)
-    {
-        names[i++] = item->string;
-    }
-    qsort(names, count, sizeof *names, by_name);
-    int status = 0;
-    for (i = 1; i < count && status == 0; i++) {
-        if (strcmp(names[i - 1], names[i]) == 0) {
-            status = quant_reason(r->error, r->error_bytes, "%s: '%.64s' stands there twice", where, names[i]);
-        }
-    }
-    free(names);
-    return status;
-}
-
 static int check_metadata(const reader *r, const cJSON *metadata)
 {
     const cJSON *item;
@@ -172,14 +144,13 @@ static int check_metadata(const reader *r, const cJSON *metadata)
             return quant_reason(r->error, r->error_bytes, METADATA ": '%.64s' is not a string", item->string);
         }
     }
-    return check_names(r, metadata, METADATA);
+    return 0;
 }
 
 static int read_tensors(const reader *r, safetensors *file)
 {
     const cJSON *item;
-    if (check_names(r, file->header, "header") != 0 ||
-        check_metadata(r, cJSON_GetObjectItemCaseSensitive(file->header, METADATA)) != 0) {
+    if (check_metadata(r, cJSON_GetObjectItemCaseSensitive(file->header, METADATA)) != 0) {
         return -1;
     }
     file->tensors = calloc((size_t)cJSON_GetArraySize(file->header) + 1, sizeof *file->tensors);
@@ -197,21 +168,6 @@ static int read_tensors(const reader *r, safetensors *file)
         file->count++;
     }
     return check_places(r, file);
-}
-
-/* Parses the header, which only spaces may follow. */
-static struct cJSON *parse_header(const char *text, size_t bytes)
-{
-    const char *end = NULL;
-    cJSON *header = cJSON_ParseWithLengthOpts(text, bytes, &end, 0);
-    while (header != NULL && end < text + bytes && *end == ' ') {
-        end++;
-    }
-    if (!cJSON_IsObject(header) || end != text + bytes) {
-        cJSON_Delete(header);
-        return NULL;
-    }
-    return header;
 }
 
 int safetensors_parse(safetensors *file, const void *bytes, size_t count, char *error, size_t error_bytes)
@@ -234,9 +190,10 @@ int safetensors_parse(safetensors *file, const void *bytes, size_t count, char *
                 .data_bytes = count - LENGTH_BYTES - header_bytes,
                 .error = error,
                 .error_bytes = error_bytes};
-    file->header = parse_header((const char *)b + LENGTH_BYTES, (size_t)header_bytes);
+    file->header =
+        json_object_parse("header", (const char *)b + LENGTH_BYTES, (size_t)header_bytes, error, error_bytes);
     if (file->header == NULL) {
-        return quant_reason(error, error_bytes, "the header is not one JSON object");
+        return -1;
     }
     if (read_tensors(&r, file) != 0) {
         safetensors_free(file);

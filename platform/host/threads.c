@@ -28,7 +28,7 @@ struct t3r_threads {
     pthread_cond_t job_posted, job_done;
     helper helpers[T3R_MAX_THREADS - 1];
     uint32_t helper_count;
-    pid_t process; /* the helpers' */
+    pid_t process;         /* the helpers' */
     bool looks;            /* spins: there are processors for all threads */
     _Atomic uint32_t busy; /* helpers that have not finished the current job */
     _Atomic uint64_t job;  /* number of the current job; it changes under the mutex */
@@ -135,7 +135,8 @@ static bool start_helpers(t3r_threads *threads, uint32_t count)
     return true;
 }
 
-/* Starts the helpers again in a child of fork(), which has none of its parent's threads; fewer if the system refuses. */
+/* Starts the helpers again in a child of fork(), which has none of its parent's threads; fewer if the system refuses.
+ */
 static void follow_fork(t3r_threads *threads)
 {
     if (threads->process != getpid()) {

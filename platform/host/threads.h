@@ -22,9 +22,9 @@ uint32_t t3r_threads_count(const t3r_threads *threads);
 typedef void t3r_thread_task(void *context, uint32_t index, uint32_t worker);
 
 /* Runs task(context, 0..count-1, worker) and returns when all are done; `worker` is the thread's number, 0 for the
- * caller, so t3r_config.workers must be at least the number of threads. Allocates nothing, but the first call in a child
- * of fork() starts threads of its own. Not reentrant: a task must not call it. `threads` comes first and untyped, so that
- * this function can be the hook itself, with hooks.user = the pool. */
+ * caller, so t3r_config.workers must be at least the number of threads. Allocates nothing, but the first call in a
+ * child of fork() starts threads of its own. Not reentrant: a task must not call it. `threads` comes first and untyped,
+ * so that this function can be the hook itself, with hooks.user = the pool. */
 void t3r_threads_run(void *threads, uint32_t count, t3r_thread_task *task, void *context);
 
 #endif

@@ -155,8 +155,12 @@ TEST(test_round_trip)
 TEST(test_description)
 {
     refuse(NULL, sound, TENSORS, 0, "__metadata__ has no \"trim3r\"");
-    refuse("nonsense", sound, TENSORS, 0, "trim3r: not a JSON object");
-    refuse("[]", sound, TENSORS, 0, "trim3r: not a JSON object");
+    refuse("nonsense", sound, TENSORS, 0, "trim3r: not one JSON object");
+    refuse("[]", sound, TENSORS, 0, "trim3r: not one JSON object");
+    refuse("{} {}", sound, TENSORS, 0, "trim3r: not one JSON object");
+    refuse_change(1, "\"format\":1", "\"format\":1,\"format\":1", "trim3r: 'format' stands there twice");
+    refuse_change(1, "\"kind\":", "\"kind\":\"conv\",\"kind\":", "layers: 'kind' stands there twice");
+    refuse_change(1, "\"tiny\"", "\"tiny\\\\u0000\"", "\\u0000 in a string");
     refuse_change(1, "\"format\":1", "\"format\":2", "trim3r: format: not 1");
     refuse_change(1, "\"format\":1", "\"format\":\"1\"", "trim3r: format: not a whole number");
     refuse_change(1, "\"format\":1,", "", "trim3r: format: missing");

@@ -117,6 +117,9 @@ TEST(test_tensors)
     refuse("{" TENSOR("a", "[1]", "0", "4") "," TENSOR("b", "[1]", "8", "12") "}", 12, "tensor 'b': a gap");
     refuse("{" TENSOR("a", "[1]", "4", "8") "}", 8, "tensor 'a': a gap");
     refuse("{" TENSOR("a", "[1]", "0", "4") "," TENSOR("a", "[1]", "4", "8") "}", 8, "'a' stands there twice");
+    refuse("{\"a\":{\"dtype\":\"F32\",\"shape\":[1],\"shape\":[1],\"data_offsets\":[0,4]}}", 4,
+           "a: 'shape' stands there twice");
+    refuse("{" TENSOR("a\\u0000b", "[1]", "0", "4") "}", 4, "header: \\u0000 in a string");
     refuse("{" TENSOR("\\u0007\\u00fc", "[2]", "0", "4") "}", 4, "tensor '?\?\?'");
 }
 

@@ -21,6 +21,13 @@ CONTENT = {
     "a file of another kind": b'{"a": 1, "b": 2}\n'}
 
 
+# The suffixes of each kind.
+SUFFIXES = {
+    "a recording": (".mcap",), "a scene": (".ply", ".splat", ".spz", ".glb", ".sog"), "a PNG picture": (".png",),
+    "an SVG picture": (".svg",), "a page": (".html",), "a table": (".csv",), "a weight file": (".t3w",),
+    "the C source of a head": (".c",), "a file of another kind": (".jpg", ".pdf", ".json")}
+
+
 def commands():
     return [line.split("\t")[0] for line in expect(0, "--commands").splitlines()]
 
@@ -155,6 +162,26 @@ def other_kinds():
             os.unlink("there")
 
 
+def wrong_names():
+    """No output has the suffix of another kind of file, in either case of letters, unless --force."""
+    rows = 0
+    for command in commands():
+        for row in (row for row in table(command) if row["writes"] and not row["folder"] and row["kinds"]):
+            for kind, suffixes in SUFFIXES.items():
+                for suffix in (*suffixes, suffixes[0].upper()):
+                    line = [command, *given(row, f"made{suffix}"), "absent"] # no command continues with that
+                    code, printed, message = run(*line)
+                    allowed = kind in row["kinds"]
+                    check(("the name is that of" in message) != allowed and (allowed or (code, printed) == (2, "")),
+                          f"{line}: {code} {message}")
+                    check("the name is that of" not in run(*line, "--force")[2], f"{line} --force: refused")
+                    check(not os.path.exists(f"made{suffix}"), f"{line}: a file")
+            code, _, message = run(command, *given(row, "made.any"), "absent")
+            check("the name is that of" not in message, f"{command}: a suffix of no kind: {message}")
+            rows += 1
+    check(rows > 20, f"only {rows} outputs were tried")
+
+
 def strange_inputs():
     os.mkfifo("pipe.t3w")
     os.mkdir("folder.t3w")
@@ -250,4 +277,4 @@ def names_of_others():
 
 
 if __name__ == "__main__":
-    in_scratch(all_are_named, every_pair, to_standard_output, other_kinds, strange_inputs, missing_folders, in_folders, names_of_others)
+    in_scratch(all_are_named, every_pair, to_standard_output, other_kinds, wrong_names, strange_inputs, missing_folders, in_folders, names_of_others)

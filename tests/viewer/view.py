@@ -72,6 +72,13 @@ def served(scene):
             check(ask(port)[0] == 200 and time.monotonic() - begun < 2, "clients that ask nothing delay none")
             for each in idle:
                 each.close()
+            deaf = [socket.create_connection(("127.0.0.1", port)) for _ in range(3)]
+            for each in deaf:
+                each.sendall(f"GET / HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n".encode())
+            begun = time.monotonic()
+            check(ask(port)[0] == 200 and time.monotonic() - begun < 2, "clients that read no answer delay none")
+            for each in deaf:
+                each.close()
             slow = socket.create_connection(("127.0.0.1", port))
             slow.settimeout(30)
             begun = time.monotonic()
@@ -89,9 +96,27 @@ def served(scene):
             server.wait(30)
 
 
+def served_at_port_80(scene):
+    """Browsers leave out HTTP's own port."""
+    with subprocess.Popen([TRIM3R, "view", scene, "--json", "--port", "80"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True) as server:
+        told = server.stdout.readline()
+        if told == "":
+            check("127.0.0.1:80: " in server.stderr.read(), "the system refuses the port: no reason")
+            print("SKIPPED, port 80 is not ours here")
+            return
+        try:
+            for host, status in (("127.0.0.1", 200), ("localhost", 200), ("127.0.0.1:8080", 403)):
+                check(ask(80, host=host)[0] == status, f"{host} at port 80")
+        finally:
+            server.terminate()
+            server.wait(30)
+
+
 with tempfile.TemporaryDirectory() as scratch:
     recording, made = need_page(TRIM3R, scratch)
     page_of_a_file(recording, made, scratch)
     refused(recording, made, scratch)
     served(made)
+    served_at_port_80(made)
 done()

@@ -34,6 +34,11 @@ static const struct {
 };
 enum { ROWS = sizeof kinds / sizeof kinds[0] };
 
+/* Suffixes of other kinds, which no picture, scene, page or table is written for. */
+static const char *const others[] = {".jpg", ".jpeg", ".webp", ".gif", ".bmp",
+                                     ".tif", ".tiff", ".exr",  ".pdf", ".json"};
+enum { OTHERS = sizeof others / sizeof others[0] };
+
 /* Returns the dot of the suffix, or NULL. */
 static const char *ending_of(const char *path)
 {
@@ -41,10 +46,10 @@ static const char *ending_of(const char *path)
     return dot != NULL && dot > slash ? dot : NULL;
 }
 
-static bool is_named(int row, const char *path)
+static bool ends_with(const char *path, const char *wanted)
 {
     const char *ending = ending_of(path);
-    return kinds[row].ending != NULL && ending != NULL && strcasecmp(ending, kinds[row].ending) == 0;
+    return wanted != NULL && ending != NULL && strcasecmp(ending, wanted) == 0;
 }
 
 /* Whether a text begins with a line of column names separated by commas, as the tables of eval and stress do. */
@@ -69,7 +74,7 @@ file_kind file_kind_of(const char *path)
     }
     for (int i = 0; i < ROWS && count > 0; i++) {
         if (kinds[i].begins != NULL && strncasecmp(text, kinds[i].begins, strlen(kinds[i].begins)) == 0 &&
-            (!kinds[i].by_name || is_named(i, path))) {
+            (!kinds[i].by_name || ends_with(path, kinds[i].ending))) {
             return kinds[i].kind;
         }
     }
@@ -79,8 +84,13 @@ file_kind file_kind_of(const char *path)
 file_kind file_kind_named(const char *path)
 {
     for (int i = 0; i < ROWS; i++) {
-        if (is_named(i, path)) {
+        if (ends_with(path, kinds[i].ending)) {
             return kinds[i].kind;
+        }
+    }
+    for (int i = 0; i < OTHERS; i++) {
+        if (ends_with(path, others[i])) {
+            return FILE_OTHER;
         }
     }
     return 0;
