@@ -21,7 +21,7 @@ sys.path[:0] = [str(HERE.parent / "import")]
 
 import folder_makers
 from checks import check
-from program import HEADS, expect, in_scratch, run
+from program import HEADS, TRIM3R, expect, in_scratch, run
 
 SOURCES = HERE.parent.parent
 # Where JSON of others is parsed: the function that all readers of the tools share, and that of heads.
@@ -86,7 +86,12 @@ def made():
     shutil.copy(os.path.join(HEADS, "small.safetensors"), "head.safetensors")
     pathlib.Path("bench.json").write_text(run("bench", "--json", "--runs", 1, "--stages", "kmeans_ms")[1])
     other = pathlib.Path("other")
-    other.write_text('#!/bin/sh\nexec cat "${0%/*}/bench.json"\n')
+    other.write_text(f"""#!/bin/sh
+case "$*" in
+  *--json*) exec cat "${{0%/*}}/bench.json" ;;
+  *) exec {TRIM3R} "$@" ;;
+esac
+""")
     other.chmod(other.stat().st_mode | stat.S_IXUSR)
     return (("nerf/transforms.json", whole, ("import", "nerf", "-o", "made.mcap", "--force")),
             ("record/metadata.json", whole, ("import", "record", "-o", "made.mcap", "--force")),

@@ -91,9 +91,10 @@ def check_scenes(folder):
     with refused(trim3r.InputError, "Gaussian 3"):
         trim3r.Scene(one, origin, 0).save(folder / "one.ply")
     for exponent in (-20, -4, 0, 10, 20):
+        near = tuple(int(np.ldexp(units, 32 + exponent)) for units in (1, 0, -5))
         for suffix in SUFFIXES:
             for flags in FLAGS:
-                check(written(trim3r.Scene(gaussians(), origin, exponent), folder / f"good{suffix}", **flags),
+                check(written(trim3r.Scene(gaussians(), near, exponent), folder / f"good{suffix}", **flags),
                       f"2^{exponent} as {suffix} with {flags}")
     edited = trim3r.Scene(gaussians(), origin, 0)
     edited.exponent = 1 << 40

@@ -160,7 +160,7 @@ TEST(test_description)
     refuse("{} {}", sound, TENSORS, 0, "trim3r: not one JSON object");
     refuse_change(1, "\"format\":1", "\"format\":1,\"format\":1", "trim3r: 'format' stands there twice");
     refuse_change(1, "\"kind\":", "\"kind\":\"conv\",\"kind\":", "layers: 'kind' stands there twice");
-    refuse_change(1, "\"tiny\"", "\"tiny\\\\u0000\"", "\\u0000 in a string");
+    refuse_change(1, "\"tiny\"", "\"tiny\\u0000\"", "\\u0000 in a string");
     refuse_change(1, "\"format\":1", "\"format\":2", "trim3r: format: not 1");
     refuse_change(1, "\"format\":1", "\"format\":\"1\"", "trim3r: format: not a whole number");
     refuse_change(1, "\"format\":1,", "", "trim3r: format: missing");

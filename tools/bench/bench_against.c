@@ -63,8 +63,9 @@ static cJSON *run_bench(const contest_state *s, const char *program, const char 
         (void)cli_error(CLI_BAD_INPUT, "%s: its bench --json ended with exit status %d%s", program, status,
                         s->contest->passed_count > 0 ? "; it may lack an option that is given here" : "");
     } else if (!cJSON_IsObject(found)) {
-        (void)cli_error(CLI_BAD_INPUT, "%s%s", status == 0 ? program : error,
-                        status == 0 ? ": its bench --json prints no JSON object" : "");
+        (void)(status == 0 ? cli_error(CLI_BAD_INPUT, "%s: its bench --json prints no JSON object: %s", program,
+                                       found == NULL ? error : "another value")
+                           : cli_error(CLI_BAD_INPUT, "%s", error));
         cJSON_Delete(found);
         found = NULL;
     }
