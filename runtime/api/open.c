@@ -5,7 +5,6 @@
 #include "core/hash.h"
 #include "core/memory.h"
 #include "image/image.h"
-#include "kernels/processor.h"
 #include "layout/arena.h"
 #include "state/state.h"
 
@@ -83,7 +82,7 @@ t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks)
 
 t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features)
 {
-    T3R_REFUSE_UNLESS(rt != NULL && (features & ~t3r_processor_features()) == 0, T3R_ERR_ARGUMENT);
+    T3R_REFUSE_UNLESS(rt != NULL && (features & ~t3r_kernels_features()) == 0, T3R_ERR_ARGUMENT);
     t3r_kernels_choose(&rt->kernels, features);
     return T3R_OK;
 }

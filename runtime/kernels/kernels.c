@@ -16,3 +16,8 @@ void t3r_kernels_choose(t3r_kernels *table, uint32_t cpu)
     T3R_VARIANTS(CHOOSE)
     table->strip_bytes = T3R_STRIP_BYTES(cpu);
 }
+
+uint32_t t3r_kernels_features(void)
+{
+    return T3R_X86_FEATURES | T3R_ARM_FEATURES | T3R_WASM_FEATURES;
+}

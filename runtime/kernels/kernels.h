@@ -104,4 +104,8 @@ extern const t3r_kernels t3r_kernels_c;
 /* Fills the table for a processor with these features, T3R_CPU_...; 0: plain C. */
 void t3r_kernels_choose(t3r_kernels *table, uint32_t cpu);
 
+/* Returns the T3R_CPU_... features that the processor can have. On x86-64 these are the features that the processor and
+ * its operating system have; elsewhere those of the architecture, or of the core that a firmware is compiled for. */
+uint32_t t3r_kernels_features(void);
+
 #endif

@@ -100,6 +100,17 @@
 #define T3R_ARM_STRIP_BYTES(cpu) 2u
 #endif
 
+/* Features of the architecture, or of the core that a firmware is compiled for. */
+#if defined(__aarch64__)
+#define T3R_ARM_FEATURES (T3R_CPU_NEON | T3R_CPU_DOTPROD)
+#elif defined(__ARM_FEATURE_MVE)
+#define T3R_ARM_FEATURES (T3R_CPU_MVE | T3R_CPU_DSP)
+#elif defined(__ARM_FEATURE_DSP)
+#define T3R_ARM_FEATURES T3R_CPU_DSP
+#else
+#define T3R_ARM_FEATURES 0u
+#endif
+
 #define T3R_DECLARE_(entry, features, function) __attribute__((visibility("hidden"))) t3r_##entry##_kernel function;
 T3R_ARM_VARIANTS(T3R_DECLARE_)
 #undef T3R_DECLARE_

@@ -38,6 +38,12 @@
 #define T3R_WASM_VARIANTS(X)
 #endif
 
+#if defined(__wasm_simd128__)
+#define T3R_WASM_FEATURES T3R_CPU_SIMD128
+#else
+#define T3R_WASM_FEATURES 0u
+#endif
+
 #define T3R_DECLARE_(entry, features, function) __attribute__((visibility("hidden"))) t3r_##entry##_kernel function;
 T3R_WASM_VARIANTS(T3R_DECLARE_)
 #undef T3R_DECLARE_

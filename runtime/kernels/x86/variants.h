@@ -5,6 +5,7 @@
 #define T3R_X86_VARIANTS_H
 
 #include "kernels/kernels.h"
+#include "kernels/x86/processor.h"
 #include "trim3r.h"
 
 #if defined(__x86_64__) && defined(__SSE2__)
@@ -134,6 +135,12 @@
 #else
 #define T3R_X86_VARIANTS(X)
 #define T3R_X86_STRIP_BYTES(cpu) 2u
+#endif
+
+#if defined(__x86_64__)
+#define T3R_X86_FEATURES t3r_x86_features()
+#else
+#define T3R_X86_FEATURES 0u
 #endif
 
 #define T3R_DECLARE_(entry, features, function) __attribute__((visibility("hidden"))) t3r_##entry##_kernel function;

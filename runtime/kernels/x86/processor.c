@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "kernels/processor.h"
+#include "kernels/x86/processor.h"
 
 #include "trim3r.h"
 
@@ -23,7 +23,7 @@ static uint32_t feature_if(uint32_t feature, uint32_t word, uint32_t bits)
     return (word & bits) == bits ? feature : 0;
 }
 
-uint32_t t3r_processor_features(void)
+uint32_t t3r_x86_features(void)
 {
     const uint32_t parts_of_avx512 = bit_AVX512F | bit_AVX512BW | bit_AVX512CD | bit_AVX512DQ | bit_AVX512VL;
     uint32_t a = 0, b = 0, c = 0, d = 0;
@@ -36,20 +36,5 @@ uint32_t t3r_processor_features(void)
     const uint32_t widest = feature_if(T3R_CPU_AVX512, b, parts_of_avx512);
     const uint32_t products = feature_if(T3R_CPU_VNNI, c, bit_AVX512VNNI);
     return narrow | feature_if(wide, saved, SAVED_YMM) | feature_if(widest | products, saved, SAVED_ZMM);
-}
-#else
-uint32_t t3r_processor_features(void)
-{
-#if defined(__aarch64__)
-    return T3R_CPU_NEON | T3R_CPU_DOTPROD;
-#elif defined(__ARM_FEATURE_MVE)
-    return T3R_CPU_MVE | T3R_CPU_DSP;
-#elif defined(__ARM_FEATURE_DSP)
-    return T3R_CPU_DSP;
-#elif defined(__wasm_simd128__)
-    return T3R_CPU_SIMD128;
-#else
-    return 0;
-#endif
 }
 #endif
