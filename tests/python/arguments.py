@@ -152,7 +152,7 @@ def check_reals(made):
     return found
 
 
-# What the library hands out, and parameters whose types hold numbers of arrays and of mappings.
+# Classes and calls that the library fills, and parameters whose types hold numbers of arrays and of mappings.
 HANDED_OUT = {"Row", "Triplet", "Picture", "Scene.in_frame", "Camera.native", "Camera.from_native", "Frame.native_strip"}
 OTHER = {"pose", "progress", "settings"}
 

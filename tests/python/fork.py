@@ -70,7 +70,7 @@ def check_pool():
 
 
 def check_at_work():
-    """A child that is made while another thread builds cannot go on with that build: it is told so at once."""
+    """A child that is made while another thread builds cannot go on with that build: StateError at once."""
     entered, leave = threading.Event(), threading.Event()
 
     def progress(*_):
@@ -88,7 +88,7 @@ def check_at_work():
             except trim3r.StateError as error:
                 check("at work" in str(error), f"{error}")
                 return
-            check(False, "a build that nobody continues is drawn")
+            check(False, "a build that no thread continues is drawn")
 
         check(in_child(work) == 0, "in a child of a process at work")
         leave.set()

@@ -100,8 +100,7 @@ def served_at_port_80(scene):
     """Browsers leave out HTTP's own port."""
     with subprocess.Popen([TRIM3R, "view", scene, "--json", "--port", "80"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           text=True) as server:
-        told = server.stdout.readline()
-        if told == "":
+        if server.stdout.readline() == "":
             check("127.0.0.1:80: " in server.stderr.read(), "the system refuses the port: no reason")
             print("SKIPPED, port 80 is not ours here")
             return

@@ -13,7 +13,7 @@ from .errors import InputError
 _LENSES = {"none": lib.T3R_DISTORTION_NONE, "radtan": lib.T3R_DISTORTION_RADTAN,
            "fisheye": lib.T3R_DISTORTION_FISHEYE}
 _COEFFICIENTS = {"none": 0, "radtan": 5, "fisheye": 4}
-# Of each field of integers: how many (0: one, alone), and their bits.
+# Each field of integers: the count (0: one, alone), and the bits of each.
 _FIELDS = {"fx_q16": (0, 32), "fy_q16": (0, 32), "cx_q16": (0, 32), "cy_q16": (0, 32), "distortion_q24": (5, 32),
            "position_q32": (3, 64), "rotation_q30": (4, 32)}
 _NEAR_ENOUGH = 1e-3  # of an entry of R R^T to the identity: poses of 32-bit floats pass, scaled or sheared ones do not

@@ -89,7 +89,7 @@ class Scene:
             The folder of the file is not there.
         InputError
             The suffix is that of no scene file, the scene is empty or a number of it out of range, or the file cannot be
-            written. What is there stays.
+            written. An existing file stays.
         """
         if not lib.scene_file_is_written(path_bytes(path)):
             names = ffi.new("char[]", lib.SCENE_FILE_SUFFIXES_BYTES)
