@@ -49,7 +49,7 @@ static int check_source(const checker *c, uint32_t source)
         return from_point && source != c->n - 1 ? fail(c, "reads a point layer that is not the one before it") : 0;
     }
     if (from_point) {
-        return fail(c, "a layer that is no point layer stands behind one");
+        return fail(c, "a layer of another kind follows a point layer");
     }
     if ((from == NULL ? 0 : from->level) + layer->stride - 1 < layer->level) {
         return fail(c, "a source is finer than its stride allows");
@@ -124,7 +124,7 @@ static int check_whole(checker *c)
     for (c->n = 1; c->n <= c->graph->count; c->n++) {
         const head_layer *layer = &c->graph->layers[c->n - 1];
         if (c->n > 1 && layer->kind != T3R_LAYER_POINT && layer[-1].kind == T3R_LAYER_POINT) {
-            return fail(c, "a layer that is no point layer stands behind one");
+            return fail(c, "a layer of another kind follows a point layer");
         }
         bool is_read = c->n == c->graph->count;
         for (uint32_t m = c->n; m < c->graph->count && !is_read; m++) {

@@ -122,7 +122,7 @@ static int check_places(const reader *r, const safetensors *file)
         end = sorted[i].bytes + 4 * sorted[i].elements;
     }
     if (status == 0 && end != r->data + r->data_bytes) {
-        status = quant_reason(r->error, r->error_bytes, "%llu bytes behind the last tensor belong to none",
+        status = quant_reason(r->error, r->error_bytes, "%llu bytes after the last tensor belong to none",
                               (unsigned long long)(r->data + r->data_bytes - end));
     }
     free(sorted);

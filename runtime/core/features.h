@@ -16,7 +16,7 @@ static inline bool t3r_has(uint32_t features)
 /* The feature that a setting needs, and the value from which it needs it. */
 #define T3R_NEED_(name, kind, low, high, usual, feature, from, ...)                                                    \
     T3R_FEATURE_OF_##name = T3R_HAS_##feature, T3R_FROM_##name = (from),
-enum { T3R_SETTINGS(T3R_NEED_) T3R_NEEDS_COUNT };
+enum { T3R_SETTINGS(T3R_NEED_) };
 
 /* The feature, T3R_HAS_..., that a value of a setting needs. */
 #define T3R_NEED(name, value) ((value) >= T3R_FROM_##name ? (uint32_t)T3R_FEATURE_OF_##name : 0u)

@@ -88,7 +88,8 @@ T3R_HEADS(T3R_HEAD_FUNCTION_)
 
 /* Returns the work bytes that a learned head needs for views of this width. */
 size_t t3r_head_learned_work_bytes(const void *weights, uint32_t width);
-/* Returns the work bytes with room for packed layers, which are faster; SIZE_MAX if they cannot be packed. */
+/* Returns the work bytes with room for packed layers, which are faster; SIZE_MAX if they cannot be packed. This is for
+ * planning: a head packs its layers whenever they fit. */
 size_t t3r_head_learned_packed_bytes(const void *weights, uint32_t width);
 
 #endif

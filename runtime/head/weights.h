@@ -125,7 +125,7 @@ typedef struct t3r_layer {
     X(DEPTHWISE, "a depthwise layer's outputs must be its inputs")                                                     \
     X(SOURCE, "a layer's source is none that it may read")                                                             \
     X(INPUTS, "a layer's inputs are not the channels of its sources")                                                  \
-    X(BEHIND_POINT, "a layer stands behind a point layer")                                                             \
+    X(BEHIND_POINT, "a layer follows a point layer")                                                                   \
     X(BLOCK, "a layer's block lies outside the file or is not aligned to 16")                                          \
     X(MULTIPLIER, "a multiplier or shift is out of range")                                                             \
     X(SUMS, "a layer's sums could leave their accumulators")                                                           \

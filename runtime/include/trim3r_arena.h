@@ -200,11 +200,10 @@
 #define T3R_BUILDS_(shape) (T3R_VIEWS_(shape) > 0 ? (size_t)1 : (size_t)0)
 #define T3R_STREAMS_(shape) (T3R_KEEP_(shape) == T3R_KEEP_MAP ? (size_t)1 : (size_t)0)
 #define T3R_REFINES_(shape)                                                                                            \
-    (T3R_BUILDS_(shape) * (T3R_REFINE_(shape) + T3R_STREAMS_(shape) > 0 ? (size_t)1 : (size_t)0))
-
+    (T3R_VIEWS_(shape) > 0 && T3R_REFINE_(shape) + T3R_STREAMS_(shape) > 0 ? (size_t)1 : (size_t)0)
 /* 1 if planes outlive a build for the next one; a stream keeps its map in any case. */
 #define T3R_FOLLOWS_(shape)                                                                                            \
-    (T3R_BUILDS_(shape) * (1 - T3R_STREAMS_(shape)) * (T3R_WARM_(shape) != 0 ? (size_t)1 : (size_t)0))
+    (T3R_VIEWS_(shape) > 0 && T3R_KEEP_(shape) != T3R_KEEP_MAP && T3R_WARM_(shape) != 0 ? (size_t)1 : (size_t)0)
 
 #define T3R_OTHER_WORKERS_(shape) (T3R_WORKERS_(shape) - 1) /* all but the first */
 #define T3R_VIEW_PIXELS_(shape) (T3R_WIDTH_(shape) * T3R_HEIGHT_(shape))
@@ -213,8 +212,8 @@
 #define T3R_ANALYSED_(shape) (T3R_STREAMS_(shape) ? T3R_BUILDS_(shape) : T3R_VIEWS_(shape))
 #define T3R_ANALYSED_PIXELS_(shape) (T3R_VIEW_PIXELS_(shape) * T3R_ANALYSED_(shape))
 /* The last stage that needs the planes or the analysis, if a build needs them until `stage`. */
-#define T3R_LAST_(shape, stage) (T3R_KEEP_(shape) + T3R_FOLLOWS_(shape) > 0 ? T3R_AT_RASTER : (stage))
-#define T3R_LAST_ANALYSIS_(shape, stage) (T3R_KEEP_(shape) && !T3R_STREAMS_(shape) ? T3R_AT_RASTER : (stage))
+#define T3R_LAST_(shape, stage) (T3R_KEEP_(shape) + T3R_WARM_(shape) > 0 ? T3R_AT_RASTER : (stage))
+#define T3R_LAST_ANALYSIS_(shape, stage) (T3R_KEEP_(shape) == 1 ? T3R_AT_RASTER : (stage))
 
 /* Memory for a splat's rows while its tile is drawn: from 129 Gaussians on, the sort's is large enough. */
 #define T3R_KEPT_LEAST_BYTES 1028
@@ -222,18 +221,15 @@
     ((size_t)(gaussians)*8 < T3R_KEPT_LEAST_BYTES ? T3R_UP_(T3R_KEPT_LEAST_BYTES) : (size_t)0)
 /* Refinement works in one buffer: first splats, depth order, tile table and corrections of all Gaussians, then sums of
  * at least one Gaussian in eight and at most all, last tile lists. */
-#define T3R_REFINE_FIXED_BYTES_(shape)                                                                                 \
-    (T3R_KEPT_BYTES_(T3R_GAUSSIANS_(shape)) + T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_SPLAT_BYTES) +                       \
-     T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_ORDER_BYTES + T3R_SORT_BYTES) +                                               \
-     T3R_UP_(T3R_TILES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape)) * 4) +                                                  \
-     T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_CORRECTION_BYTES))
-#define T3R_REFINE_BYTES_(shape)                                                                                       \
-    (T3R_REFINES_(shape) *                                                                                             \
-     (T3R_REFINE_FIXED_BYTES_(shape) + T3R_UP_((T3R_GAUSSIANS_(shape) + 7) / 8 * T3R_REFINE_SUMS_BYTES) +              \
-      T3R_UP_(T3R_GAUSSIANS_(shape) * 4)))
-#define T3R_REFINE_FULL_BYTES_(shape)                                                                                  \
-    (T3R_REFINES_(shape) * (T3R_REFINE_FIXED_BYTES_(shape) + T3R_UP_(T3R_GAUSSIANS_(shape) * T3R_REFINE_SUMS_BYTES) +  \
-                            T3R_UP_(T3R_GAUSSIANS_(shape) * 16)))
+#define T3R_REFINE_FIXED_BYTES_(width, height, gaussians)                                                              \
+    (T3R_KEPT_BYTES_(gaussians) + T3R_UP_((gaussians)*T3R_SPLAT_BYTES) +                                               \
+     T3R_UP_((gaussians)*T3R_ORDER_BYTES + T3R_SORT_BYTES) + T3R_UP_(T3R_TILES_(width, height) * 4) +                  \
+     T3R_UP_((gaussians)*T3R_CORRECTION_BYTES))
+#define T3R_REFINE_WORK_(shape, sums, lists)                                                                           \
+    (T3R_REFINES_(shape) * (T3R_REFINE_FIXED_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape), T3R_GAUSSIANS_(shape)) +    \
+                            T3R_UP_((sums)*T3R_REFINE_SUMS_BYTES) + T3R_UP_((lists)*4)))
+#define T3R_REFINE_BYTES_(shape) T3R_REFINE_WORK_(shape, (T3R_GAUSSIANS_(shape) + 7) / 8, T3R_GAUSSIANS_(shape))
+#define T3R_REFINE_FULL_BYTES_(shape) T3R_REFINE_WORK_(shape, T3R_GAUSSIANS_(shape), T3R_GAUSSIANS_(shape) * 4)
 
 /* Tile lists: at least one entry per Gaussian. With four entries per Gaussian and one per pixel, a pass takes a whole
  * view unless most splats are many tiles wide. */
@@ -247,8 +243,11 @@
  *
  * Buffers come in the order of their first stage. `scene` and nothing else is laid from the arena's end, so lifetimes
  * nest, and a stage needs the sum over its live buffers. `tile lists` and `refinement work` grow: with more bytes than
- * these least ones they save passes. `head work` may go on up to the scene. */
-#define T3R_BUFFERS(X, with, shape)                                                                                    \
+ * these least ones they save passes. `head work` may go on up to the scene.
+ *
+ * The table is in parts, so that a constant expression names a buffer in those stages alone that may need it: buffers
+ * that live ALWAYS, FROM a stage on, and IN a single stage. */
+#define T3R_BUFFERS_ALWAYS_(X, with, shape)                                                                            \
     X(with, HEADER, "state", T3R_HEADER_BYTES, T3R_AT_IMAGE, T3R_AT_RASTER)                                            \
     X(with, MAP_RECORDS, "map records", T3R_STREAMS_(shape) * T3R_GAUSSIANS_(shape) * T3R_MAP_RECORD_BYTES,            \
       T3R_AT_IMAGE, T3R_AT_RASTER)                                                                                     \
@@ -258,59 +257,89 @@
     X(with, KEPT_TEXTURE, "kept textures", T3R_FOLLOWS_(shape) * T3R_ALL_PIXELS_(shape) * 2, T3R_AT_IMAGE,             \
       T3R_AT_RASTER)                                                                                                   \
     X(with, KEPT_CLUSTERS, "kept SuperClusters", T3R_FOLLOWS_(shape) * T3R_CLUSTERS_(shape) * T3R_CLUSTER_BYTES,       \
-      T3R_AT_IMAGE, T3R_AT_RASTER)                                                                                     \
+      T3R_AT_IMAGE, T3R_AT_RASTER)
+#define T3R_BUFFERS_FROM_IMAGE_(X, with, shape)                                                                        \
     X(with, COLOUR, "colour planes", T3R_ALL_PIXELS_(shape) * 3, T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))        \
     X(with, DEPTH, "depth planes", T3R_ALL_PIXELS_(shape) * 2, T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))          \
-    X(with, VALIDITY, "validity planes", T3R_ALL_PIXELS_(shape), T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))        \
+    X(with, VALIDITY, "validity planes", T3R_ALL_PIXELS_(shape), T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))
+#define T3R_BUFFERS_IN_IMAGE_(X, with, shape)                                                                          \
     X(with, IMAGE_WORK, "undistortion and resize work",                                                                \
       T3R_BUILDS_(shape) * T3R_IMAGE_WORK_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape), T3R_WORKERS_(shape)),          \
-      T3R_AT_IMAGE, T3R_AT_IMAGE)                                                                                      \
+      T3R_AT_IMAGE, T3R_AT_IMAGE)
+#define T3R_BUFFERS_IN_DEPTH_(X, with, shape)                                                                          \
     X(with, STEREO_WORK, "stereo work",                                                                                \
       T3R_STEREO_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape), T3R_VIEWS_(shape), T3R_STEREO_(shape)), T3R_AT_DEPTH,   \
-      T3R_AT_DEPTH)                                                                                                    \
+      T3R_AT_DEPTH)
+#define T3R_BUFFERS_IN_POINTMAP_(X, with, shape)                                                                       \
     X(with, POINTMAP_WORK, "comparison of views",                                                                      \
-      T3R_BUILDS_(shape) * (T3R_VIEW_PIXELS_(shape) + 3 * T3R_RATIO_BINS) * 4, T3R_AT_POINTMAP, T3R_AT_POINTMAP)       \
+      T3R_BUILDS_(shape) * (T3R_VIEW_PIXELS_(shape) + 3 * T3R_RATIO_BINS) * 4, T3R_AT_POINTMAP, T3R_AT_POINTMAP)
+#define T3R_BUFFERS_FROM_WAVELET_(X, with, shape)                                                                      \
     X(with, TEXTURE, "texture planes", T3R_ANALYSED_PIXELS_(shape) * 2, T3R_AT_WAVELET,                                \
-      T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                                          \
+      T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))
+#define T3R_BUFFERS_IN_WAVELET_(X, with, shape)                                                                        \
     X(with, WAVELET_WORK, "wavelet work",                                                                              \
       T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * T3R_WAVELET_WORK_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape)),       \
-      T3R_AT_WAVELET, T3R_AT_WAVELET)                                                                                  \
+      T3R_AT_WAVELET, T3R_AT_WAVELET)
+#define T3R_BUFFERS_FROM_SUPERCLUSTERS_(X, with, shape)                                                                \
     X(with, LABELS, "SuperCluster labels", T3R_ANALYSED_PIXELS_(shape), T3R_AT_SUPERCLUSTERS,                          \
       T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                                          \
     X(with, CLUSTERS, "SuperClusters", T3R_BUILDS_(shape) * (T3R_CLUSTERS_(shape) + 1) * T3R_CLUSTER_BYTES,            \
-      T3R_AT_SUPERCLUSTERS, T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                    \
+      T3R_AT_SUPERCLUSTERS, T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))
+#define T3R_BUFFERS_IN_SUPERCLUSTERS_(X, with, shape)                                                                  \
     X(with, CLUSTER_WORK, "K-means work", T3R_BUILDS_(shape) * T3R_CLUSTER_WORK_BYTES(T3R_CLUSTERS_(shape)),           \
       T3R_AT_SUPERCLUSTERS, T3R_AT_SUPERCLUSTERS)                                                                      \
     X(with, CLUSTER_SUMS, "workers' K-means sums",                                                                     \
       T3R_BUILDS_(shape) * T3R_OTHER_WORKERS_(shape) * T3R_CLUSTER_SUMS_BYTES(T3R_CLUSTERS_(shape)),                   \
-      T3R_AT_SUPERCLUSTERS, T3R_AT_SUPERCLUSTERS)                                                                      \
+      T3R_AT_SUPERCLUSTERS, T3R_AT_SUPERCLUSTERS)
+#define T3R_BUFFERS_FROM_BUDGET_(X, with, shape)                                                                       \
     X(with, MASK, "masks", (T3R_VIEW_PIXELS_(shape) + 31) / 32 * T3R_ANALYSED_(shape) * 4, T3R_AT_BUDGET,              \
       T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))                                                                          \
     X(with, KEYS, "budget keys", T3R_ANALYSED_PIXELS_(shape) * 2, T3R_AT_BUDGET,                                       \
-      T3R_STREAMS_(shape) ? T3R_AT_HEAD : T3R_AT_BUDGET)                                                               \
+      T3R_STREAMS_(shape) ? T3R_AT_HEAD : T3R_AT_BUDGET)
+#define T3R_BUFFERS_IN_BUDGET_(X, with, shape)                                                                         \
     X(with, BUDGET_WORK, "counts by SuperCluster",                                                                     \
       T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * (T3R_CLUSTERS_(shape) + 1) * T3R_GROUP_COUNT_BYTES, T3R_AT_BUDGET,    \
       T3R_AT_BUDGET)                                                                                                   \
-    X(with, MAP_DENSITY, "density of the map", T3R_STREAMS_(shape) * T3R_VIEW_PIXELS_(shape) * 4, T3R_AT_BUDGET,      \
-      T3R_AT_BUDGET)                                                                                                   \
+    X(with, MAP_DENSITY, "density of the map", T3R_STREAMS_(shape) * T3R_VIEW_PIXELS_(shape) * 4, T3R_AT_BUDGET,       \
+      T3R_AT_BUDGET)
+#define T3R_BUFFERS_IN_HEAD_(X, with, shape)                                                                           \
     X(with, HEAD_WORK, "head work",                                                                                    \
       T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * T3R_UP_(T3R_HEAD_WORK_(T3R_WIDTH_(shape), T3R_COLUMN_BYTES_(shape))), \
-      T3R_AT_HEAD, T3R_AT_HEAD)                                                                                        \
+      T3R_AT_HEAD, T3R_AT_HEAD)
+#define T3R_BUFFERS_IN_REFINE_(X, with, shape)                                                                         \
     X(with, BORDER_SUMS, "sums across workers' borders",                                                               \
       T3R_REFINES_(shape) * T3R_OTHER_WORKERS_(shape) * T3R_REFINE_BORDER_(T3R_GAUSSIANS_(shape)) *                    \
           (T3R_REFINE_SUMS_BYTES + 4),                                                                                 \
       T3R_AT_REFINE, T3R_AT_REFINE)                                                                                    \
     X(with, WANTED, "workers' compared tiles", T3R_REFINES_(shape) * T3R_OTHER_WORKERS_(shape) * T3R_WANTED_BYTES,     \
       T3R_AT_REFINE, T3R_AT_REFINE)                                                                                    \
-    X(with, REFINE_WORK, "refinement work", T3R_REFINE_BYTES_(shape), T3R_AT_REFINE, T3R_AT_REFINE)                    \
+    X(with, REFINE_WORK, "refinement work", T3R_REFINE_BYTES_(shape), T3R_AT_REFINE, T3R_AT_REFINE)
+#define T3R_BUFFERS_IN_RASTER_(X, with, shape)                                                                         \
     X(with, SPLATS, "projected splats", T3R_GAUSSIANS_(shape) * T3R_SPLAT_BYTES, T3R_AT_RASTER, T3R_AT_RASTER)         \
     X(with, ORDER, "depth order", T3R_GAUSSIANS_(shape) * T3R_ORDER_BYTES + T3R_SORT_BYTES, T3R_AT_RASTER,             \
       T3R_AT_RASTER)                                                                                                   \
     X(with, TILES, "tile table", T3R_TILES_(T3R_RENDER_WIDTH_(shape), T3R_RENDER_HEIGHT_(shape)) * 4, T3R_AT_RASTER,   \
       T3R_AT_RASTER)                                                                                                   \
-    X(with, LISTS, "tile lists", T3R_LISTS_LEAST_BYTES_(shape), T3R_AT_RASTER, T3R_AT_RASTER)                          \
+    X(with, LISTS, "tile lists", T3R_LISTS_LEAST_BYTES_(shape), T3R_AT_RASTER, T3R_AT_RASTER)
+#define T3R_BUFFERS_SCENE_(X, with, shape)                                                                             \
     X(with, SCENE, "scene", T3R_GAUSSIANS_(shape) * T3R_GAUSSIAN_BYTES,                                                \
       T3R_STREAMS_(shape) ? T3R_AT_IMAGE : T3R_AT_HEAD, T3R_AT_RASTER)
+#define T3R_BUFFERS(X, with, shape)                                                                                    \
+    T3R_BUFFERS_ALWAYS_(X, with, shape)                                                                                \
+    T3R_BUFFERS_FROM_IMAGE_(X, with, shape)                                                                            \
+    T3R_BUFFERS_IN_IMAGE_(X, with, shape)                                                                              \
+    T3R_BUFFERS_IN_DEPTH_(X, with, shape)                                                                              \
+    T3R_BUFFERS_IN_POINTMAP_(X, with, shape)                                                                           \
+    T3R_BUFFERS_FROM_WAVELET_(X, with, shape)                                                                          \
+    T3R_BUFFERS_IN_WAVELET_(X, with, shape)                                                                            \
+    T3R_BUFFERS_FROM_SUPERCLUSTERS_(X, with, shape)                                                                    \
+    T3R_BUFFERS_IN_SUPERCLUSTERS_(X, with, shape)                                                                      \
+    T3R_BUFFERS_FROM_BUDGET_(X, with, shape)                                                                           \
+    T3R_BUFFERS_IN_BUDGET_(X, with, shape)                                                                             \
+    T3R_BUFFERS_IN_HEAD_(X, with, shape)                                                                               \
+    T3R_BUFFERS_IN_REFINE_(X, with, shape)                                                                             \
+    T3R_BUFFERS_IN_RASTER_(X, with, shape)                                                                             \
+    T3R_BUFFERS_SCENE_(X, with, shape)
 
 #define T3R_NAME_(with, NAME, text, bytes, first, last) T3R_BUFFER_##NAME,
 enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
@@ -319,17 +348,33 @@ enum t3r_buffer { T3R_BUFFERS(T3R_NAME_, 0, 0) T3R_BUFFER_COUNT };
 
 #define T3R_LIVE_(stage, NAME, text, bytes, first, last)                                                               \
     +((first) <= (stage) && (stage) <= (last) ? T3R_UP_(bytes) : (size_t)0)
-#define T3R_STAGE_BYTES_(stage, shape) (0 T3R_BUFFERS(T3R_LIVE_, stage, shape))
-/* Every argument is repeated 2^depth times, so the tree is kept flat. */
+/* Bytes of those buffers that may have begun by a stage and may outlive one */
+#define T3R_LASTING_IMAGE_(stage, shape)                                                                               \
+    T3R_BUFFERS_FROM_IMAGE_(T3R_LIVE_, stage, shape) T3R_BUFFERS_SCENE_(T3R_LIVE_, stage, shape)
+#define T3R_LASTING_DEPTH_(stage, shape) T3R_LASTING_IMAGE_(stage, shape)
+#define T3R_LASTING_POINTMAP_(stage, shape) T3R_LASTING_IMAGE_(stage, shape)
+#define T3R_LASTING_WAVELET_(stage, shape)                                                                             \
+    T3R_LASTING_IMAGE_(stage, shape) T3R_BUFFERS_FROM_WAVELET_(T3R_LIVE_, stage, shape)
+#define T3R_LASTING_SUPERCLUSTERS_(stage, shape)                                                                       \
+    T3R_LASTING_WAVELET_(stage, shape) T3R_BUFFERS_FROM_SUPERCLUSTERS_(T3R_LIVE_, stage, shape)
+#define T3R_LASTING_BUDGET_(stage, shape)                                                                              \
+    T3R_LASTING_SUPERCLUSTERS_(stage, shape) T3R_BUFFERS_FROM_BUDGET_(T3R_LIVE_, stage, shape)
+#define T3R_LASTING_HEAD_(stage, shape) T3R_LASTING_BUDGET_(stage, shape)
+#define T3R_LASTING_REFINE_(stage, shape) T3R_LASTING_BUDGET_(stage, shape)
+#define T3R_LASTING_RASTER_(stage, shape) T3R_LASTING_BUDGET_(stage, shape)
+/* Bytes of a stage beside those buffers that live always */
+#define T3R_STAGE_BYTES_(STAGE, shape)                                                                                 \
+    (0 T3R_LASTING_##STAGE##_(T3R_AT_##STAGE, shape) T3R_BUFFERS_IN_##STAGE##_(T3R_LIVE_, T3R_AT_##STAGE, shape))
+/* Every argument is repeated 2^depth times, so the tree is flat, and long ones stand near its root. */
 #define T3R_MOST_(a, b, c, d) T3R_MAX_(T3R_MAX_(a, b), T3R_MAX_(c, d))
 #define T3R_MOST_OF_STAGES_(shape, more_refine, more_raster)                                                           \
-    T3R_MAX_(                                                                                                          \
-        T3R_MAX_(T3R_STAGE_BYTES_(T3R_AT_POINTMAP, shape),                                                             \
-                 T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_IMAGE, shape), T3R_STAGE_BYTES_(T3R_AT_DEPTH, shape),               \
-                           T3R_STAGE_BYTES_(T3R_AT_WAVELET, shape), T3R_STAGE_BYTES_(T3R_AT_SUPERCLUSTERS, shape))),   \
-        T3R_MOST_(T3R_STAGE_BYTES_(T3R_AT_BUDGET, shape), T3R_STAGE_BYTES_(T3R_AT_HEAD, shape),                        \
-                  T3R_STAGE_BYTES_(T3R_AT_REFINE, shape) + (more_refine),                                              \
-                  T3R_STAGE_BYTES_(T3R_AT_RASTER, shape) + (more_raster)))
+    (0 T3R_BUFFERS_ALWAYS_(T3R_LIVE_, T3R_AT_IMAGE, shape) +                                                           \
+     T3R_MAX_(T3R_MAX_(T3R_STAGE_BYTES_(DEPTH, shape),                                                                 \
+                       T3R_MOST_(T3R_STAGE_BYTES_(IMAGE, shape), T3R_STAGE_BYTES_(POINTMAP, shape),                    \
+                                 T3R_STAGE_BYTES_(WAVELET, shape), T3R_STAGE_BYTES_(HEAD, shape))),                    \
+              T3R_MOST_(T3R_STAGE_BYTES_(SUPERCLUSTERS, shape), T3R_STAGE_BYTES_(BUDGET, shape),                       \
+                        T3R_STAGE_BYTES_(REFINE, shape) + (more_refine),                                               \
+                        T3R_STAGE_BYTES_(RASTER, shape) + (more_raster))))
 #define T3R_MIN_BYTES_(shape) T3R_MOST_OF_STAGES_(shape, 0, 0)
 #define T3R_FULL_BYTES_(shape)                                                                                         \
     T3R_MOST_OF_STAGES_(shape, T3R_UP_(T3R_REFINE_FULL_BYTES_(shape)) - T3R_UP_(T3R_REFINE_BYTES_(shape)),             \

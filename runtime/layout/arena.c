@@ -55,16 +55,6 @@ static void read_table(const t3r_config *c, buffer_table *table)
     table->full_refine = T3R_UP_(T3R_REFINE_FULL_BYTES_(SHAPE));
 }
 
-uint32_t t3r_refine_slices(const t3r_config *c, const t3r_layout *layout)
-{
-    if (layout->refine_bytes == 0) {
-        return 1;
-    }
-    const size_t fixed = T3R_REFINE_FIXED_BYTES_(SHAPE) + T3R_UP_((size_t)c->max_gaussians * sizeof(uint32_t));
-    const size_t slice = (layout->refine_bytes - fixed) / T3R_REFINE_SUMS_BYTES; /* at least every eighth */
-    return slice >= c->gaussians ? 1 : (uint32_t)((c->gaussians + slice - 1) / slice);
-}
-
 static bool alive_together(const buffer_row *a, const buffer_row *b)
 {
     return a->first <= b->last && b->first <= a->last;

@@ -20,9 +20,6 @@ typedef struct t3r_layout {
  * the same). The configuration must have passed t3r_config_error(). */
 t3r_status t3r_lay_out(const t3r_config *config, size_t arena_bytes, t3r_layout *layout);
 
-/* Returns the number of parts into which refinement divides the Gaussians, at least 1: each needs a drawing. */
-uint32_t t3r_refine_slices(const t3r_config *config, const t3r_layout *layout);
-
 const char *t3r_buffer_name(enum t3r_buffer buffer);
 void t3r_buffer_lifetime(const t3r_config *config, enum t3r_buffer buffer, t3r_stage *first, t3r_stage *last);
 

@@ -6,10 +6,17 @@
 #include "refine.h"
 #include "state/state.h"
 
+uint32_t t3r_refine_slice_gaussians(const t3r_config *config, size_t bytes)
+{
+    const size_t most = config->max_gaussians, least_lists = T3R_UP_(most * sizeof(uint32_t));
+    const size_t taken = T3R_REFINE_FIXED_BYTES_(config->width, config->height, most) + least_lists;
+    return (uint32_t)T3R_MIN((bytes - taken) / T3R_REFINE_SUMS_BYTES, most);
+}
+
 t3r_refine_layout t3r_refine_layout_of(const t3r_runtime *rt)
 {
     const t3r_config *c = &rt->config;
-    size_t most = c->max_gaussians, least_lists = T3R_UP_(most * sizeof(uint32_t));
+    const size_t most = c->max_gaussians;
     t3r_cut cut = t3r_cut_of(t3r_buffer_at(rt, T3R_BUFFER_REFINE_WORK), rt->refine_bytes);
     t3r_refine_layout w;
     w.room.splats = t3r_take(&cut, most * T3R_SPLAT_BYTES);
@@ -17,7 +24,7 @@ t3r_refine_layout t3r_refine_layout_of(const t3r_runtime *rt)
     w.room.table = t3r_take(&cut, T3R_TILES_(c->width, c->height) * sizeof(uint32_t));
     w.corrections = t3r_take(&cut, most * T3R_CORRECTION_BYTES);
     w.kept = t3r_take(&cut, T3R_KEPT_BYTES_(most));
-    w.slice = (uint32_t)T3R_MIN((t3r_cut_left(&cut) - least_lists) / T3R_REFINE_SUMS_BYTES, most);
+    w.slice = t3r_refine_slice_gaussians(c, rt->refine_bytes);
     w.sums = t3r_take(&cut, (size_t)w.slice * T3R_REFINE_SUMS_BYTES); /* the remaining bytes are a multiple of the
                                                                        * alignment */
     w.room.capacity = T3R_MIN((uint64_t)t3r_cut_left(&cut) / sizeof(uint32_t), (uint64_t)UINT32_MAX);

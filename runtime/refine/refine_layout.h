@@ -20,6 +20,9 @@ typedef struct t3r_refine_layout {
     uint32_t kept_words;
 } t3r_refine_layout;
 
+/* Returns the Gaussians whose sums fit into a refinement work buffer of so many bytes, 1..max_gaussians. */
+uint32_t t3r_refine_slice_gaussians(const t3r_config *config, size_t bytes);
+
 t3r_refine_layout t3r_refine_layout_of(const t3r_runtime *rt);
 
 #endif

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""ram.py TRIM3R FOLDER: the settings for 128 KiB of RAM run on a Cortex-M3 whose RAM has exactly that size, with
-data, a strip of a frame, picture, arena and stack in it, and make the bits of this machine. The watchdog is reset
-in time."""
+"""ram.py TRIM3R FOLDER: runs the settings that `trim3r plan` gives for 128 KiB of RAM on an emulated Cortex-M3.
+
+The board has exactly so much RAM. It holds data, a strip of a frame, the picture, the arena and the stack. The bits
+must be those of this machine, and the firmware must reset its watchdog in time."""
 import json
 import pathlib
 import re

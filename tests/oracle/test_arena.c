@@ -9,7 +9,7 @@
 #include "oracle/float64/drawing.h"
 #include "test.h"
 
-/* The embedded default: what a firmware declares. A compiler takes a second for each macro. */
+/* The embedded default: what a firmware declares. */
 enum {
     LEAST = T3R_ARENA_MIN_BYTES(256, 256, 2, 13107),
     FULL = T3R_ARENA_BYTES(256, 256, 2, 13107),

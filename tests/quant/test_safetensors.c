@@ -91,7 +91,7 @@ TEST(test_frame)
     refuse("[]", 0, "not one JSON object");
     refuse("{} x", 0, "not one JSON object");
     refuse("{\"a\":", 0, "not one JSON object");
-    refuse("{}", 3, "3 bytes behind the last tensor");
+    refuse("{}", 3, "3 bytes after the last tensor");
 }
 
 TEST(test_tensors)

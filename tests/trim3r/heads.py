@@ -81,7 +81,7 @@ def presets():
         planned = ["plan", "--size", "64x64", "--keep", 20]
         check(expect_json(*planned, "--preset", preset) == expect_json(*planned, *same), f"plan --preset {preset} is not {same}")
     check(len(set(hashes.values())) == len(hashes), f"presets give the same scene: {hashes}")
-    check(expect_json(*base, "--preset", "fast", "--head", "small")["head"] == "small", "what stands behind --preset changes nothing")
+    check(expect_json(*base, "--preset", "fast", "--head", "small")["head"] == "small", "--head after --preset replaces the head")
     for command in (base, ["plan", "--size", "64x64", "--keep", 20]):
         expect(2, *command, "--preset", "quick", err="--preset does not know 'quick'; there are fast, balanced, best")
 

@@ -7,8 +7,6 @@
 #include "cli/options/processor_options.h"
 #include "planning/work.h"
 
-#define CALIBRATE_ROUNDS 5u /* runs of each trial; the least time of a stage counts */
-
 /* Returns CLI_OK, or an exit status of cli.h after a message. `errors` receives for each stage the largest error of its
  * fitted times over the trials, relative to the measured time; NULL = not wanted. */
 int calibrate(const processor_options *processor, uint32_t rounds, work_prices *prices, double errors[T3R_STAGE_COUNT]);

@@ -7,6 +7,7 @@
 #include "head/weights.h"
 #include "layout/arena.h"
 #include "pointmap/align.h"
+#include "refine/refine_layout.h"
 #include "refine/view_levels.h"
 #include "state/state.h"
 #include "stereo/stereo_views.h"
@@ -139,6 +140,13 @@ static void count_head(const t3r_config *c, const t3r_layout *layout, const void
 /* With fewer Gaussians less of a tile's splats is kept while it is drawn, and more is made again. */
 #define KEEPS_ALL 1024u
 
+/* Returns the number of parts into which refinement divides the Gaussians: each needs a drawing. */
+static uint32_t count_slices(const t3r_config *c, size_t refine_bytes)
+{
+    const uint32_t slice = refine_bytes > 0 ? t3r_refine_slice_gaussians(c, refine_bytes) : c->gaussians;
+    return (c->gaussians + slice - 1) / slice;
+}
+
 static void count_drawing(const t3r_config *c, const sizes *s, uint32_t slices, uint64_t *units)
 {
     /* each slice lists the views, and draws the tiles that its Gaussians reach into: measured, a third of them */
@@ -172,7 +180,7 @@ t3r_status work_count(const t3r_config *config, size_t bytes, const void *weight
         count_analysis(config, &s, counts->units);
         count_head(config, &layout, weights, &s, counts->units);
     }
-    count_drawing(config, &s, t3r_refine_slices(config, &layout), counts->units);
+    count_drawing(config, &s, count_slices(config, layout.refine_bytes), counts->units);
     return T3R_OK;
 }
 

@@ -110,11 +110,11 @@ static void say_lost(const t3r_recording *recording, char *text, size_t bytes)
         text[0] = '\0';
     } else if (cut.offset == cut.file_bytes) {
         snprintf(text, bytes,
-                 "the end and its index alone: the file stops at byte %" PRIu64 ", after %" PRIu64 " whole messages",
+                 "only the end and its index: the file stops at byte %" PRIu64 ", after %" PRIu64 " complete messages",
                  cut.offset, cut.messages);
     } else {
         snprintf(text, bytes,
-                 "everything after %" PRIu64 " whole messages: the file is cut or damaged from byte %" PRIu64
+                 "everything after %" PRIu64 " complete messages: the file is cut or damaged from byte %" PRIu64
                  " of %" PRIu64 " on",
                  cut.messages, cut.offset, cut.file_bytes);
     }
