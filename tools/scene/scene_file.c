@@ -391,25 +391,56 @@ int scene_file_write(const char *path, const t3r_scene *scene, int flags, const 
     return write_rows(path, &rows, &extent, flags, note, &written, error, error_bytes);
 }
 
-/* ---- converting -------------------------------------------------------------------------------------------------- */
+/* ---- rows in doubles --------------------------------------------------------------------------------------------- */
+
+typedef struct noting_sink {
+    const scene_sink *next;
+    const char *path;
+    bool is_reached; /* a reason is the sink's own */
+} noting_sink;
+
+static int take_noting(void *user, const scene_rows *rows, char *error, size_t error_bytes)
+{
+    noting_sink *noting = user;
+    noting->is_reached = true;
+    warn_of_text(noting->path, rows->remark);
+    return noting->next->take(noting->next->user, rows, error, error_bytes);
+}
+
+int scene_file_take(const char *path, int flags, const scene_sink *sink, char *error, size_t error_bytes)
+{
+    size_t count;
+    uint32_t dropped;
+    uint8_t *bytes = read_bytes(path, &count, error, error_bytes);
+    if (bytes == NULL) {
+        return -1;
+    }
+    char reason[512] = "";
+    noting_sink noting = {.next = sink, .path = path};
+    const scene_sink noted = {take_noting, &noting};
+    const int result = parse_rows(path, bytes, count, flags, &noted, &dropped, reason, sizeof reason);
+    free(bytes);
+    warn_of_dropped(path, dropped);
+    return result == 0         ? 0
+           : noting.is_reached ? t3r_reason(error, error_bytes, "%s", reason)
+                               : t3r_reason(error, error_bytes, "%s: %s", path, reason);
+}
 
 typedef struct conversion {
     const char *from, *to;
     int flags;
     scene_conversion *out;
-    bool is_read; /* a reason is about the file that is written */
 } conversion;
 
 static int take_conversion(void *user, const scene_rows *rows, char *error, size_t error_bytes)
 {
-    conversion *c = user;
+    const conversion *c = user;
     const int kept = rows->has_frame ? SCENE_FILE_COMMENTS | (rows->local ? SCENE_FILE_LOCAL : 0) : 0;
     scene_extent extent;
-    if (scene_extent_of(rows, &extent, error, error_bytes) != 0) {
-        return -1;
+    char reason[256] = "";
+    if (scene_extent_of(rows, &extent, reason, sizeof reason) != 0) {
+        return t3r_reason(error, error_bytes, "%s: %s", c->from, reason);
     }
-    c->is_read = true;
-    warn_of_text(c->from, rows->remark);
     c->out->degree_read = rows->degree;
     return write_rows(c->to, rows, &extent, c->flags | kept, NULL, c->out, error, error_bytes);
 }
@@ -417,20 +448,7 @@ static int take_conversion(void *user, const scene_rows *rows, char *error, size
 int scene_file_convert(const char *from, const char *to, int flags, scene_conversion *out, char *error,
                        size_t error_bytes)
 {
-    size_t count;
-    uint32_t dropped;
     *out = (scene_conversion){0};
-    uint8_t *bytes = read_bytes(from, &count, error, error_bytes);
-    if (bytes == NULL) {
-        return -1;
-    }
-    char reason[512] = "";
     conversion to_do = {.from = from, .to = to, .flags = flags, .out = out};
-    const scene_sink sink = {take_conversion, &to_do};
-    const int result = parse_rows(from, bytes, count, flags, &sink, &dropped, reason, sizeof reason);
-    free(bytes);
-    warn_of_dropped(from, dropped);
-    return result == 0     ? 0
-           : to_do.is_read ? t3r_reason(error, error_bytes, "%s", reason)
-                           : t3r_reason(error, error_bytes, "%s: %s", from, reason);
+    return scene_file_take(from, flags, &(scene_sink){take_conversion, &to_do}, error, error_bytes);
 }

@@ -49,6 +49,10 @@ typedef struct scene_sink {
     void *user;
 } scene_sink;
 
+/* Hands the rows of a file to a sink; flags: as for scene_file_read(). Prints a warning of what is not read. Returns 0,
+ * or -1 with the reason in error[]; the sink's reasons have to name their file. */
+int scene_file_take(const char *path, int flags, const scene_sink *sink, char *error, size_t error_bytes);
+
 /* ---- the runtime's fixed point ---- */
 
 /* Chooses a frame for rows of a file without one, as they are turned: origin at the centre, typical distance in [1, 2)

@@ -6,22 +6,21 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "cli/cli.h"
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
 #include "pictures/picture.h"
-#include "scene/gaussian_shape.h"
 #include "scene/scene_file.h"
 #include "scene/scene_options.h"
+#include "scene/summary/scene_difference.h"
 
 #define ERROR_BYTES 512
 
 typedef struct diff_options {
     const char *path[2];
-    int flags; /* for scene_file_read() */
+    int flags; /* for scene_difference_of() */
     bool json;
 } diff_options;
 
@@ -66,97 +65,56 @@ static const struct argp argp = {
     .children = children,
 };
 
-typedef struct scene_difference {
-    uint32_t different; /* Gaussians that are not the same */
-    uint32_t first;     /* the first of them */
-    double position;    /* largest distance, world units */
-    double covariance;  /* largest entry of the difference against the largest of either */
-    double colour;      /* of 255 */
-    double opacity;     /* of 1 */
-} scene_difference;
-
-static double covariance_difference(const t3r_gaussian *a, int a_exponent, const t3r_gaussian *b, int b_exponent)
+static void print_scene_difference_json(const scene_difference *d)
 {
-    double p[9], q[9], most = 0, difference = 0;
-    gaussian_covariance(a, p);
-    gaussian_covariance(b, q);
-    for (int i = 0; i < 9; i++) {
-        double x = ldexp(p[i], 2 * a_exponent), y = ldexp(q[i], 2 * b_exponent);
-        most = fmax(most, fmax(fabs(x), fabs(y)));
-        difference = fmax(difference, fabs(x - y));
+    cJSON *root = cJSON_CreateObject();
+    cJSON_AddBoolToObject(root, "equal", scene_difference_none(d));
+    cJSON *counts = cJSON_AddArrayToObject(root, "gaussians"), *degrees = cJSON_AddArrayToObject(root, "degree"),
+          *marks = cJSON_AddArrayToObject(root, "mip");
+    for (int i = 0; i < 2; i++) {
+        cJSON_AddItemToArray(counts, cJSON_CreateNumber(d->count[i]));
+        cJSON_AddItemToArray(degrees, cJSON_CreateNumber(d->degree[i]));
+        cJSON_AddItemToArray(marks, cJSON_CreateBool(d->mip[i]));
     }
-    return most > 0 ? difference / most : 0;
+    json_add_integer(root, "different", d->different);
+    if (d->different > 0) {
+        json_add_integer(root, "first", d->first);
+    }
+    cJSON_AddNumberToObject(root, "position", d->position);
+    cJSON_AddNumberToObject(root, "covariance", d->covariance);
+    cJSON_AddNumberToObject(root, "colour", d->colour);
+    cJSON_AddNumberToObject(root, "opacity", d->opacity);
+    cJSON_AddNumberToObject(root, "harmonics", d->harmonics);
+    json_print(root);
 }
 
-static scene_difference compare_scenes(const scene_file *a, const scene_file *b)
+static void print_scene_difference(const scene_difference *d)
 {
-    scene_difference d = {0};
-    uint32_t count = a->count < b->count ? a->count : b->count;
-    bool same_frame = memcmp(a->frame.origin_q32, b->frame.origin_q32, sizeof a->frame.origin_q32) == 0 &&
-                      a->frame.exponent == b->frame.exponent;
-    for (uint32_t i = 0; i < count; i++) {
-        const t3r_gaussian *g = &a->gaussians[i], *h = &b->gaussians[i];
-        if (same_frame && memcmp(g, h, sizeof *g) == 0) { /* the record has no padding */
-            continue;
-        }
-        d.first = d.different == 0 ? i : d.first;
-        d.different++;
-        double square = 0;
-        for (int axis = 0; axis < 3; axis++) {
-            double origin = ldexp((double)(a->frame.origin_q32[axis] - b->frame.origin_q32[axis]), -32);
-            double distance = origin + ldexp(g->position_q20[axis], a->frame.exponent - 20) -
-                              ldexp(h->position_q20[axis], b->frame.exponent - 20);
-            square += distance * distance;
-            d.colour = fmax(d.colour, fabs((double)g->colour_q7[axis] - h->colour_q7[axis]) / 128);
-        }
-        d.position = fmax(d.position, sqrt(square));
-        d.opacity = fmax(d.opacity, fabs((double)g->opacity_q15 - h->opacity_q15) / 32768);
-        d.covariance = fmax(d.covariance, covariance_difference(g, a->frame.exponent, h, b->frame.exponent));
+    if (scene_difference_none(d)) {
+        printf("equal: %" PRIu32 " Gaussians\n", d->count[0]);
+        return;
     }
-    return d;
+    printf("%" PRIu32 " and %" PRIu32 " Gaussians", d->count[0], d->count[1]);
+    if (d->mip[0] != d->mip[1]) {
+        printf("; the %s scene alone is marked for mip-splatting", d->mip[0] ? "first" : "second");
+    }
+    if (d->different > 0) {
+        printf("; %" PRIu32 " differ, the first is %" PRIu32 "\nlargest differences: position %g world units, "
+               "covariance %g of its size, colour %g of 255, opacity %g, harmonics %g",
+               d->different, d->first, d->position, d->covariance, d->colour, d->opacity, d->harmonics);
+    }
+    putchar('\n');
 }
 
 static int diff_scenes(const diff_options *o)
 {
-    scene_file scene[2] = {0};
+    scene_difference d;
     char error[ERROR_BYTES] = "";
-    for (int i = 0; i < 2; i++) {
-        if (scene_file_read(o->path[i], o->flags, &scene[i], error, sizeof error) != 0) {
-            scene_file_free(&scene[0]);
-            return cli_error(CLI_BAD_INPUT, "%s", error);
-        }
+    if (scene_difference_of(o->path, o->flags, &d, error, sizeof error) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    scene_difference d = compare_scenes(&scene[0], &scene[1]);
-    bool equal = d.different == 0 && scene[0].count == scene[1].count;
-    if (o->json) {
-        cJSON *root = cJSON_CreateObject();
-        cJSON_AddBoolToObject(root, "equal", equal);
-        cJSON *counts = cJSON_AddArrayToObject(root, "gaussians");
-        cJSON_AddItemToArray(counts, cJSON_CreateNumber(scene[0].count));
-        cJSON_AddItemToArray(counts, cJSON_CreateNumber(scene[1].count));
-        json_add_integer(root, "different", d.different);
-        if (d.different > 0) {
-            json_add_integer(root, "first", d.first);
-        }
-        cJSON_AddNumberToObject(root, "position", d.position);
-        cJSON_AddNumberToObject(root, "covariance", d.covariance);
-        cJSON_AddNumberToObject(root, "colour", d.colour);
-        cJSON_AddNumberToObject(root, "opacity", d.opacity);
-        json_print(root);
-    } else if (equal) {
-        printf("equal: %" PRIu32 " Gaussians\n", scene[0].count);
-    } else {
-        printf("%" PRIu32 " and %" PRIu32 " Gaussians", scene[0].count, scene[1].count);
-        if (d.different > 0) {
-            printf("; %" PRIu32 " differ, the first is %" PRIu32 "\nlargest differences: position %g world units, "
-                   "covariance %g of its size, colour %g of 255, opacity %g",
-                   d.different, d.first, d.position, d.covariance, d.colour, d.opacity);
-        }
-        putchar('\n');
-    }
-    scene_file_free(&scene[0]);
-    scene_file_free(&scene[1]);
-    return equal ? CLI_OK : CLI_BAD_INPUT;
+    (o->json ? print_scene_difference_json : print_scene_difference)(&d);
+    return scene_difference_none(&d) ? CLI_OK : CLI_BAD_INPUT;
 }
 
 typedef struct picture_difference {

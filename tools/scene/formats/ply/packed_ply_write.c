@@ -105,8 +105,9 @@ static uint32_t pack_colour(const chunk *c, const scene_row *row)
 static void write_header(FILE *file, const scene_source *source)
 {
     const uint32_t count = source->rows->count;
-    fprintf(file, "ply\nformat binary_little_endian 1.0\nelement chunk %" PRIu32 "\n",
-            (count + PACKED_PLY_CHUNK - 1) / PACKED_PLY_CHUNK);
+    fputs("ply\nformat binary_little_endian 1.0\n", file);
+    fputs(source->rows->mip ? PLY_MIP_COMMENT "\n" : "", file);
+    fprintf(file, "element chunk %" PRIu32 "\n", (count + PACKED_PLY_CHUNK - 1) / PACKED_PLY_CHUNK);
     for (int i = 0; i < PACKED_BOUNDS; i++) {
         fprintf(file, "property float %s\n", packed_ply_bounds[i]);
     }
@@ -185,6 +186,7 @@ static int packed_ply_write(FILE *file, const scene_source *source, char *error,
 const scene_format scene_format_packed_ply = {.suffix = ".compressed.ply",
                                               .magic = "ply",
                                               .degree = 3,
+                                              .holds_mip = true,
                                               .shares_bits = true,
                                               .parse = ply_parse,
                                               .write = packed_ply_write};

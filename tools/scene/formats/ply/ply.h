@@ -8,6 +8,9 @@
 
 #include "scene/scene_rows.h"
 
+/* The comment of Brush for scenes of mip-splatting. Of the comments on this that a file has, the last one counts. */
+#define PLY_MIP_COMMENT "comment SplatRenderMode: mip"
+
 /* like scene_format's */
 int ply_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes);
 int ply_write(FILE *file, const scene_source *source, char *error, size_t error_bytes);

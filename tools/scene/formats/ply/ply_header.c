@@ -4,8 +4,10 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #include "host/reason.h"
+#include "scene/formats/ply/ply.h"
 
 #define MAX_HEADER_BYTES 262144u
 #define MAX_LINE_BYTES 512u
@@ -61,6 +63,21 @@ static int next_line(const reader *r, size_t *at, char line[MAX_LINE_BYTES])
     return length == whole || is_remark(line) ? 0 : FAIL(r, "byte %zu: a header line is too long", start);
 }
 
+/* Reads a comment of Brush or of Postshot on mip-splatting. */
+static void read_render_mode(const char *line, ply_header *h)
+{
+    static const struct {
+        const char *line;
+        bool mip;
+    } modes[] = {{PLY_MIP_COMMENT, true},
+                 {"comment SplatRenderMode: default", false},
+                 {"comment antialiased 1", true},
+                 {"comment antialiased 0", false}};
+    for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++) {
+        h->mip = strcasecmp(line, modes[i].line) == 0 ? modes[i].mip : h->mip;
+    }
+}
+
 static void read_comment(const char *line, ply_header *h)
 {
     int local, end = 0;
@@ -75,8 +92,8 @@ static void read_comment(const char *line, ply_header *h)
         h->has_origin = true;
     } else if (sscanf(line, "comment trim3r local %d%n", &local, &end) == 1 && line[end] == '\0') {
         h->local = local != 0;
-    } else if (strcmp(line, "comment SplatRenderMode: mip") == 0) {
-        h->mip = true;
+    } else {
+        read_render_mode(line, h);
     }
 }
 

@@ -41,7 +41,7 @@ typedef struct ply_header {
     uint32_t property_count;
     bool has_exponent, has_origin, local;
     t3r_scene_frame frame; /* as given in comments */
-    bool mip;              /* a comment says "SplatRenderMode: mip" */
+    bool mip;              /* a comment says "SplatRenderMode: mip" or "antialiased 1" */
 } ply_header;
 
 /* Each returns 0, or -1 with "byte: what" in error[]. */

@@ -45,9 +45,7 @@ static void put_vertex(FILE *file, const scene_row *row, uint32_t degree)
 static void write_header(FILE *file, const scene_source *source)
 {
     fputs("ply\nformat binary_little_endian 1.0\n", file);
-    if (source->rows->mip) {
-        fputs("comment SplatRenderMode: mip\n", file);
-    }
+    fputs(source->rows->mip ? PLY_MIP_COMMENT "\n" : "", file);
     if (source->flags & SCENE_FILE_COMMENTS) {
         fprintf(file, "comment trim3r bits_epoch %d\n", T3R_BITS_EPOCH);
         fprintf(file, "comment trim3r exponent %" PRId32 "\n", source->frame.exponent);

@@ -3,5 +3,10 @@
 
 #include "scene/scene_format.h"
 
-const scene_format scene_format_sog = {
-    .suffix = ".sog", .magic = "PK\x03\x04", .degree = 3, .shares_bits = true, .parse = sog_parse, .write = sog_write};
+const scene_format scene_format_sog = {.suffix = ".sog",
+                                       .magic = "PK\x03\x04",
+                                       .degree = 3,
+                                       .holds_mip = true,
+                                       .shares_bits = true,
+                                       .parse = sog_parse,
+                                       .write = sog_write};

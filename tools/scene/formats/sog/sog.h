@@ -19,6 +19,9 @@ enum { SOG_MEANS_LOW, SOG_MEANS_HIGH, SOG_SCALES, SOG_ROTATIONS, SOG_COLOURS, SO
 /* Centroids of harmonics in a row of their picture; a texel per coefficient. */
 #define SOG_CENTROIDS_A_ROW 64u
 
+/* The value of "model" in SOG_META for scenes of mip-splatting. */
+#define SOG_MODEL_MIP "antialiased"
+
 /* like scene_format's */
 int sog_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes);
 int sog_write(FILE *file, const scene_source *source, char *error, size_t error_bytes);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/tables/json_input.h"
 #include "host/reason.h"
@@ -17,6 +18,7 @@ enum { CENTROIDS_MOST = 65536 }; /* limit of a label's 16 bits */
 
 typedef struct sog_file {
     uint32_t count, degree;
+    bool mip;
     webp_texels pictures[SOG_PICTURES], centroids, labels;
     uint32_t centroid_count;
     double low[3], high[3];
@@ -146,6 +148,8 @@ static int read_meta(const reader *r, const cJSON *meta, uint64_t packed, sog_fi
     if (out->count == 0) {
         return FAIL(r, SOG_META ": the file holds no Gaussians");
     }
+    const cJSON *model = get(meta, "model");
+    out->mip = cJSON_IsString(model) && strcmp(model->valuestring, SOG_MODEL_MIP) == 0;
     const uint64_t most = 2 * (uint64_t)out->count + 4096; /* writers pad rows and columns */
     for (int i = 0; i < SOG_PICTURES; i++) {
         if (read_picture(r, meta, files[i].part, files[i].index, out->count, most, &out->pictures[i]) != 0) {
@@ -240,7 +244,8 @@ int sog_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *
     int result = read_archive(&r, count, &sog);
     sog_archive_close(r.archive);
     if (result == 0) {
-        const scene_rows rows = {.count = sog.count, .degree = sog.degree, .read = read_row, .user = &sog};
+        const scene_rows rows = {
+            .count = sog.count, .degree = sog.degree, .mip = sog.mip, .read = read_row, .user = &sog};
         result = sink->take(sink->user, &rows, error, error_bytes);
     }
     for (int i = 0; i < SOG_PICTURES; i++) {

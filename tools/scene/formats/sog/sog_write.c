@@ -24,6 +24,7 @@ typedef struct sog_file {
     webp_texels pictures[SOG_PICTURES];
     double low[3], high[3]; /* bounds of the logarithms of positions */
     double scales[CODEBOOK_VALUES], colours[CODEBOOK_VALUES];
+    bool mip;
     uint32_t degree; /* 0: no harmonics */
     sog_harmonics harmonics;
 } sog_file;
@@ -142,6 +143,9 @@ static char *make_meta(const sog_file *sog, uint32_t count)
     cJSON_AddStringToObject(item, "generator", "trim3r");
     cJSON_AddNumberToObject(root, "version", SOG_VERSION);
     cJSON_AddNumberToObject(root, "count", count);
+    if (sog->mip) {
+        cJSON_AddStringToObject(root, "model", SOG_MODEL_MIP);
+    }
     item = cJSON_AddObjectToObject(root, "means");
     cJSON_AddItemToObject(item, "mins", cJSON_CreateDoubleArray(sog->low, 3));
     cJSON_AddItemToObject(item, "maxs", cJSON_CreateDoubleArray(sog->high, 3));
@@ -269,7 +273,7 @@ static int write_archive(FILE *file, const sog_file *sog, uint32_t count, char *
 int sog_write(FILE *file, const scene_source *source, char *error, size_t error_bytes)
 {
     const uint32_t count = source->rows->count;
-    sog_file sog = {.degree = source->degree};
+    sog_file sog = {.mip = source->rows->mip, .degree = source->degree};
     int result = survey(source, &sog) == 0 && begin_pictures(&sog, count) == 0 && fill_pictures(source, &sog) == 0
                      ? 0
                      : t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", count);
