@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Gaussians as numbers, and the scene files that the standard library can write or read."""
 import dataclasses
+import functools
 import gzip
 import json
 import math
 import re
 import struct
 
+SETS = 16
 ZERO = 0.28209479177387814  # the harmonic of degree 0: colour = 0.5 + ZERO x coefficient
 TYPES = {"char": "b", "uchar": "B", "short": "h", "ushort": "H", "int": "i", "uint": "I", "float": "f", "double": "d"}
 
@@ -37,17 +39,20 @@ class Gaussian:
 
 
 def helix(degree, count=60, coefficients=1.0, colours=(0.0, 1.0)):
-    """A helix along x, so that x identifies a Gaussian; harmonics up to +-coefficients, colours in a range."""
+    """A helix along x, so that x identifies a Gaussian; harmonics up to +-coefficients, colours in a range. Gaussians share
+    sets of harmonics, as .sog needs."""
     made, low, high = [], *colours
     for i in range(count):
         def wave(k, i=i):
             return math.sin(1.7 * i + 2.3 * k + 0.1 * i * k)
 
+        harmonics = functools.partial(wave, i=i % SETS)
+
         made.append(Gaussian(
             [i * 0.05 - 1.5, math.cos(i * 0.3), 2 + math.sin(i * 0.3)], [-4 + wave(k) for k in range(3)],
             [0.3 + wave(3), wave(4), wave(5), wave(6)], 3 * wave(7),
             [(low + (high - low) * (0.5 + wave(8 + k) / 2) - 0.5) / ZERO for k in range(3)],
-            [[coefficients * wave(11 + 3 * k + channel) for channel in range(3)] for k in range((degree + 1) ** 2 - 1)]))
+            [[coefficients * harmonics(11 + 3 * k + channel) for channel in range(3)] for k in range((degree + 1) ** 2 - 1)]))
     return made
 
 
@@ -193,6 +198,19 @@ def write_spz(path, rows, version, packed=True, mip=False):
     data = struct.pack("<4sIIBBBB", b"NGSP", version, len(rows), 0, 12, int(mip), 0) + body
     with open(path, "wb") as file:
         file.write(gzip.compress(data, mtime=0) if packed else data)
+
+
+def declare_axes(path, axes):
+    """Writes a copy of a .spz of version 4 with an extension that declares its axes, 0..16; returns the copy's path."""
+    with open(path, "rb") as file:
+        data = bytearray(file.read())
+    table = struct.unpack_from("<I", data, 16)[0]
+    data[14] |= 2
+    struct.pack_into("<I", data, 16, table + 12)
+    copy = f"axes_{axes}.spz"
+    with open(copy, "wb") as file:
+        file.write(data[:table] + struct.pack("<III", 0xADBE0003, 4, axes) + data[table:])
+    return copy
 
 
 def smallest_three(turn):

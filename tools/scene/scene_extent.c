@@ -43,12 +43,23 @@ static double distance_of(const double position[3], const double centre[3])
     return hypot(hypot(position[0] - centre[0], position[1] - centre[1]), position[2] - centre[2]);
 }
 
-/* Fills positions[] and the largest log_scale. */
-static int read_positions(const scene_rows *rows, double (*positions)[3], double *largest, char *error,
-                          size_t error_bytes)
+static double largest_coefficient(const scene_row *row, uint32_t degree)
+{
+    double largest = 0;
+    for (uint32_t i = 0; i < 3 * harmonics_rest(degree); i++) {
+        const double size = fabs(row->rest[i / 3][i % 3]);
+        largest = size > largest ? size : largest;
+    }
+    return largest;
+}
+
+/* Fills positions[], the largest log_scale and the largest coefficient. */
+static int read_positions(const scene_rows *rows, double (*positions)[3], double *largest, double *harmonics,
+                          char *error, size_t error_bytes)
 {
     scene_row row;
     *largest = -INFINITY;
+    *harmonics = 0;
     for (uint32_t i = 0; i < rows->count; i++) {
         if (scene_rows_read(rows, i, &row, error, error_bytes) != 0) {
             return -1;
@@ -57,6 +68,7 @@ static int read_positions(const scene_rows *rows, double (*positions)[3], double
             positions[i][axis] = row.position[axis];
             *largest = fmax(*largest, row.log_scale[axis]);
         }
+        *harmonics = fmax(*harmonics, largest_coefficient(&row, rows->degree));
     }
     return 0;
 }
@@ -103,12 +115,13 @@ static scene_extent measure(double (*positions)[3], double *values, uint32_t cou
 int scene_extent_of(const scene_rows *rows, scene_extent *out, char *error, size_t error_bytes)
 {
     double(*positions)[3] = malloc(rows->count * sizeof *positions);
-    double *values = malloc(rows->count * sizeof *values), largest;
+    double *values = malloc(rows->count * sizeof *values), largest, harmonics;
     int result = positions != NULL && values != NULL
-                     ? read_positions(rows, positions, &largest, error, error_bytes)
+                     ? read_positions(rows, positions, &largest, &harmonics, error, error_bytes)
                      : t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", rows->count);
     if (result == 0) {
         *out = measure(positions, values, rows->count, largest);
+        out->harmonics = harmonics;
     }
     free(positions);
     free(values);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Place and size of a scene. All values are medians, so that a few Gaussians far away change nothing. */
+/* Place and size of a scene, by medians, so that a few Gaussians far away change nothing. */
 #ifndef TRIM3R_TOOLS_SCENE_EXTENT_H
 #define TRIM3R_TOOLS_SCENE_EXTENT_H
 
@@ -11,6 +11,7 @@ typedef struct scene_extent {
     double centre[3]; /* median of each coordinate, in the axes of the rows */
     double typical;   /* median distance from the centre; if all share one place, the size of the largest; > 0 */
     uint32_t far;     /* Gaussians beyond the reach */
+    double harmonics; /* the largest coefficient above degree 0, without its sign */
 } scene_extent;
 
 /* The reach of the fixed point, and of formats that share their bits among all Gaussians, in units of the largest power

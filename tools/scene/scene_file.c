@@ -309,6 +309,10 @@ static int write_all(const char *path, const scene_rows *rows, const scene_exten
     if (moves) {
         warn_of_origin(path, format, &source);
     }
+    if (source.degree > 0 && format->harmonics > 0 && extent->harmonics > format->harmonics) {
+        (void)cli_error(CLI_OK, "warning: %s: harmonics of up to %.3g are cut off at %.3g, the most of this format",
+                        path, extent->harmonics, format->harmonics);
+    }
     if (rows->mip && !format->holds_mip) {
         warn_of_text(path,
                      "this format has no place for the mark of mip-splatting (antialiased): viewers will draw the "

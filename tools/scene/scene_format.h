@@ -15,6 +15,7 @@ typedef struct scene_format {
     const char *foreign; /* error for files with other first bytes; NULL: as magic */
     scene_axes axes;     /* of written files; the reader knows its own */
     uint32_t degree;     /* highest degree of harmonics that is written, 0..3 */
+    double harmonics;    /* the largest coefficient above degree 0 that is written; 0: any */
     bool holds_origin;   /* a file can say where its origin is in the world */
     bool holds_mip;      /* a file can say that its opacities are those of mip-splatting */
     bool shares_bits;    /* the farthest Gaussian decides how exactly the others' positions are written */

@@ -30,7 +30,19 @@ void t3r_any_bytes(unsigned char *bytes, unsigned long count);
 void t3r_bound_broken(void);
 #define T3R_BOUND(condition) ((condition) ? (void)0 : t3r_bound_broken())
 
-/* Replaces the builtin, of which Eva knows only the result's range. */
+/* Replace builtins, of which Eva knows only the result's range. */
+static inline unsigned t3r_swapped32(unsigned x)
+{
+    return x >> 24 | (x >> 8 & 0xff00u) | (x << 8 & 0xff0000u) | x << 24;
+}
+#define __builtin_bswap32(x) t3r_swapped32(x)
+
+static inline unsigned long long t3r_swapped64(unsigned long long x)
+{
+    return (unsigned long long)t3r_swapped32((unsigned)x) << 32 | t3r_swapped32((unsigned)(x >> 32));
+}
+#define __builtin_bswap64(x) t3r_swapped64(x)
+
 static inline int t3r_leading_zeros(unsigned x)
 {
     int zeros = 0;

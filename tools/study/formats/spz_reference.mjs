@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 // node spz_reference.mjs <JOBS.json: .spz files by the reference code of the format, @adobe/spz. A job is
 //   {"read": IN.spz, "to": OUT.ply}: what it reads, as a 3DGS .ply with the axes of one;
-//   {"write": OUT.spz, "from": IN.ply, "version": 1..4, "axes": 0..16, "mip": whether}: axes 0 = none declared.
+//   {"write": OUT.spz, "from": IN.ply, "mip": whether}: the latest version, harmonics with all their bits.
 import { readFile, writeFile } from "node:fs/promises";
 import createSpzModule from "@adobe/spz";
 
 const PLACES = ["x", "y", "z"], COLOURS = ["f_dc_0", "f_dc_1", "f_dc_2"];
 const SCALES = ["scale_0", "scale_1", "scale_2"], ROTATIONS = ["rot_1", "rot_2", "rot_3", "rot_0"]; // x y z w
 const spz = await createSpzModule();
-const axesOf = (number) => spz.CoordinateSystem.values[number], RDF = axesOf(6); // a .ply's: x right, y down, z forward
+const { RDF } = spz.CoordinateSystem; // a .ply's axes: x right, y down, z forward
 
 // Coefficients lie channel by channel in a .ply, and coefficient by coefficient in .spz.
 const restNames = (degree) => {
@@ -50,12 +50,7 @@ async function writePly(path, cloud) {
 async function write(job) {
     const cloud = await readPly(job.from);
     cloud.antialiased = job.mip;
-    if (job.axes > 0) {
-        const declared = new spz.SpzExtensionCoordinateSystemAdobe();
-        declared.coordinateSystem = axesOf(job.axes);
-        cloud.extensions = [declared];
-    }
-    const bytes = spz.saveSpzToBuffer(cloud, { version: job.version, from: RDF, sh1Bits: 8, shRestBits: 8 });
+    const bytes = spz.saveSpzToBuffer(cloud, { version: spz.LATEST_SPZ_HEADER_VERSION, from: RDF, sh1Bits: 8, shRestBits: 8 });
     await writeFile(job.write, bytes);
 }
 

@@ -19,20 +19,33 @@ static uint32_t entries_of(uint32_t count)
     return entries;
 }
 
-/* Returns the coefficients above degree 0 of all Gaussians in Q12, clamped to 8; free() them. NULL: out of memory. */
-static int16_t *coefficients_of(const scene_source *source)
+/* Returns the largest coefficient above degree 0, and at least what a scale of 1/4096 holds. */
+static double largest_coefficient(const scene_source *source)
+{
+    double largest = INT16_MAX / 4096.0;
+    for (uint32_t i = 0; i < source->rows->count; i++) {
+        scene_row row;
+        scene_source_row(source, i, &row);
+        for (uint32_t k = 0; k < 3 * harmonics_rest(source->degree); k++) {
+            largest = fmax(largest, fabs(row.rest[k / 3][k % 3]));
+        }
+    }
+    return largest;
+}
+
+/* Returns the coefficients above degree 0 of all Gaussians, times `scale`; free() them. NULL: out of memory. */
+static int16_t *coefficients_of(const scene_source *source, double scale)
 {
     const uint32_t width = 3 * harmonics_rest(source->degree);
-    int16_t *all_q12 = malloc((size_t)source->rows->count * width * sizeof *all_q12);
-    for (uint32_t i = 0; i < source->rows->count && all_q12 != NULL; i++) {
+    int16_t *scaled = malloc((size_t)source->rows->count * width * sizeof *scaled);
+    for (uint32_t i = 0; i < source->rows->count && scaled != NULL; i++) {
         scene_row row;
         scene_source_row(source, i, &row);
         for (uint32_t k = 0; k < width; k++) {
-            const double value = nearbyint(row.rest[k / 3][k % 3] * 4096);
-            all_q12[(size_t)i * width + k] = (int16_t)fmax(fmin(value, INT16_MAX), INT16_MIN);
+            scaled[(size_t)i * width + k] = (int16_t)nearbyint(row.rest[k / 3][k % 3] * scale);
         }
     }
-    return all_q12;
+    return scaled;
 }
 
 static int begin_texels(webp_texels *out, uint32_t width, uint32_t height)
@@ -82,14 +95,15 @@ int sog_harmonics_make(const scene_source *source, const uint32_t *order, uint32
     const uint32_t count = source->rows->count, values = 3 * harmonics_rest(source->degree);
     palette made;
     *out = (sog_harmonics){0};
-    int16_t *all_q12 = coefficients_of(source);
-    const bool is_made = all_q12 != NULL && palette_make(all_q12, count, values, values, entries_of(count), &made) == 0;
-    free(all_q12);
+    const double scale = INT16_MAX / largest_coefficient(source);
+    int16_t *scaled = coefficients_of(source, scale);
+    const bool is_made = scaled != NULL && palette_make(scaled, count, values, values, entries_of(count), &made) == 0;
+    free(scaled);
     if (!is_made) {
         return -1;
     }
     for (size_t i = 0; i < (size_t)made.rows * made.width; i++) {
-        made.means[i] /= 4096;
+        made.means[i] /= scale;
     }
     const int result = fill_centroids(&made, out) == 0 && begin_texels(&out->labels, width, height) == 0 ? 0 : -1;
     if (result == 0) {
