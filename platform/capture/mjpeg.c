@@ -7,6 +7,7 @@
 
 #include <jpeglib.h>
 
+#include "jpeg_damage.h"
 #include "jpeg_scans.h"
 
 struct t3r_mjpeg {
@@ -14,6 +15,7 @@ struct t3r_mjpeg {
     struct jpeg_error_mgr errors;
     t3r_jpeg_scans scans;
     jmp_buf back;
+    bool ends_early; /* the image has no end marker */
     char message[JMSG_LENGTH_MAX];
 };
 
@@ -24,10 +26,10 @@ static void give_up(j_common_ptr jpeg)
     longjmp(self->back, 1);
 }
 
-/* Treats warnings as errors: they mean damaged data. */
 static void emit(j_common_ptr jpeg, int level)
 {
-    if (level < 0) {
+    t3r_mjpeg *self = jpeg->client_data;
+    if (!t3r_jpeg_is_harmless(jpeg, level, &self->ends_early)) {
         give_up(jpeg);
     }
 }
@@ -81,6 +83,7 @@ const char *t3r_mjpeg_decode(t3r_mjpeg *self, const uint8_t *jpeg, size_t bytes,
         jpeg_abort_decompress(&self->jpeg);
         return self->message;
     }
+    self->ends_early = false;
     jpeg_mem_src(&self->jpeg, jpeg, (unsigned long)bytes);
     jpeg_read_header(&self->jpeg, TRUE);
     if (self->jpeg.image_width != width || self->jpeg.image_height != height) {
@@ -94,6 +97,9 @@ const char *t3r_mjpeg_decode(t3r_mjpeg *self, const uint8_t *jpeg, size_t bytes,
     while (self->jpeg.output_scanline < height) {
         JSAMPROW row = rgb + (size_t)self->jpeg.output_scanline * width * 3;
         jpeg_read_scanlines(&self->jpeg, &row, 1);
+    }
+    if (self->ends_early && !t3r_jpeg_is_whole(&self->jpeg)) {
+        refuse((j_common_ptr)&self->jpeg, "the image ends before its last scans");
     }
     jpeg_finish_decompress(&self->jpeg);
     return NULL;

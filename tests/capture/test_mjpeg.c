@@ -103,6 +103,30 @@ TEST(pictures_are_decoded_with_and_without_tables)
     t3r_mjpeg_close(NULL);
 }
 
+/* As files are (test_picture.c). */
+TEST(stray_bytes_and_a_missing_end_are_borne)
+{
+    uint8_t jpeg[4096], rgb[WIDTH * HEIGHT * 3], again[WIDTH * HEIGHT * 3];
+    t3r_mjpeg *decoder = t3r_mjpeg_open();
+    assert_non_null(decoder);
+    uint32_t bytes = compress(2, jpeg, sizeof jpeg);
+    assert_null(t3r_mjpeg_decode(decoder, jpeg, bytes, WIDTH, HEIGHT, rgb));
+    assert_null(t3r_mjpeg_decode(decoder, jpeg, bytes - 2, WIDTH, HEIGHT, again)); /* without the end marker */
+    assert_memory_equal(rgb, again, sizeof rgb);
+    static const uint8_t stray[3] = {0, 0x55, 0xaa};
+    const uint32_t places[2] = {2, bytes - 2}; /* before the first segment, and before the end */
+    for (uint32_t i = 0; i < 2; i++) {
+        uint8_t with[4096 + sizeof stray];
+        memcpy(with, jpeg, places[i]);
+        memcpy(with + places[i], stray, sizeof stray);
+        memcpy(with + places[i] + sizeof stray, jpeg + places[i], bytes - places[i]);
+        memset(again, 0, sizeof again);
+        assert_null(t3r_mjpeg_decode(decoder, with, bytes + sizeof stray, WIDTH, HEIGHT, again));
+        assert_memory_equal(rgb, again, sizeof rgb);
+    }
+    t3r_mjpeg_close(decoder);
+}
+
 /* Progressive, with any number of scans: the means first, then one coefficient of one colour per scan, one bit more
  * each time. */
 TEST(many_scans_are_refused_early)

@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <jerror.h>
 #include <jpeglib.h>
 #include <png.h>
 
+#include "capture/jpeg_damage.h"
 #include "capture/jpeg_scans.h"
 #include "cli/files/whole_file.h"
 #include "host/file_bytes.h"
@@ -259,30 +259,11 @@ static void jpeg_on_error(j_common_ptr jpeg)
     jpeg_fail((jpeg_work *)jpeg->err, message);
 }
 
-/* Treats warnings as errors: for truncated or damaged data the library only warns, and fills in grey. Stray bytes
- * before a marker, which some cameras write, are harmless; so is a missing end marker, if all pixels are there. */
 static void jpeg_on_message(j_common_ptr jpeg, int level)
 {
-    jpeg_work *work = (jpeg_work *)jpeg->err;
-    if (level < 0 && jpeg->err->msg_code == JWRN_JPEG_EOF) {
-        work->ends_early = true;
-    } else if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) {
+    if (!t3r_jpeg_is_harmless(jpeg, level, &((jpeg_work *)jpeg->err)->ends_early)) {
         jpeg_on_error(jpeg);
     }
-}
-
-/* Whether the file that ended early has all its pixels: lost data within a scan of Huffman codes is an error of its
- * own, so one scan of all components is whole. Of several scans the last ones may be lost. */
-static bool jpeg_is_whole(jpeg_work *work)
-{
-    const struct jpeg_decompress_struct *jpeg = &work->jpeg;
-    bool whole = !jpeg->arith_code && (!jpeg_has_multiple_scans(&work->jpeg) || jpeg->coef_bits != NULL);
-    for (int c = 0; c < jpeg->num_components && whole && jpeg->coef_bits != NULL; c++) {
-        for (int i = 0; i < DCTSIZE2 && whole; i++) {
-            whole = jpeg->coef_bits[c][i] == 0; /* to the last bit */
-        }
-    }
-    return whole;
 }
 
 /* Returns the orientation that a marker with EXIF states. */
@@ -338,7 +319,7 @@ static int jpeg_decode(jpeg_work *work, FILE *file, picture *out)
         JSAMPROW row = (JSAMPROW)out->samples + (size_t)work->jpeg.output_scanline * out->width * out->channels;
         jpeg_read_scanlines(&work->jpeg, &row, 1);
     }
-    if (work->ends_early && !jpeg_is_whole(work)) {
+    if (work->ends_early && !t3r_jpeg_is_whole(&work->jpeg)) {
         jpeg_fail(work, "the file ends before its last scans");
     }
     jpeg_finish_decompress(&work->jpeg);
