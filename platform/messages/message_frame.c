@@ -149,7 +149,7 @@ static const char *read_distortion(const t3r_ros_camera_info *info, t3r_camera *
     camera->distortion = fisheye ? T3R_DISTORTION_FISHEYE : T3R_DISTORTION_RADTAN;
     if (used > (fisheye ? 4 : 5)) {
         return fisheye ? "D has more than the 4 coefficients of equidistant"
-                       : "D has terms beyond k1 k2 p1 p2 k3, which are not supported";
+                       : "D has terms beyond k1 k2 p1 p2 k3, which only trim3r import reads";
     }
     for (uint32_t i = 0; i < used; i++) {
         if (!t3r_fixed_coefficient(info->d_f64[i], camera->distortion, i, &camera->distortion_q24[i])) {
@@ -196,6 +196,17 @@ const char *t3r_message_intrinsics(const t3r_ros_camera_info *info, t3r_camera *
     return read_distortion(info, camera);
 }
 
+bool t3r_message_is_bent(const t3r_ros_camera_info *info)
+{
+    bool bent =
+        t3r_text_is(info->distortion_model, "plumb_bob") || t3r_text_is(info->distortion_model, "rational_polynomial");
+    for (uint32_t i = 0; i < info->d_count; i++) {
+        int64_t part;
+        bent = bent && t3r_fixed_from_double(info->d_f64[i], 24, &part) == 0 && (i < 8 || part == 0);
+    }
+    return bent;
+}
+
 const char *t3r_message_rectify(t3r_ros_camera_info *info)
 {
     bool distorted = false;
@@ -213,6 +224,8 @@ const char *t3r_message_rectify(t3r_ros_camera_info *info)
     return NULL;
 }
 
+static const char *const no_direction = "a rotation has no direction: it is zero or not a number";
+
 /* Whether a quaternion's largest part is between 2^-20 and 2^19, so that it can be normalised. */
 static bool has_direction(const uint64_t rotation_f64[4])
 {
@@ -228,6 +241,23 @@ static bool has_direction(const uint64_t rotation_f64[4])
     return largest >= INT64_C(1) << 10 && largest <= INT64_C(1) << 49;
 }
 
+/* Converts a quaternion to fixed point. Returns -1 or 1 if its norm is below 1/2 or above 3/2, the range of t3r_camera,
+ * else 0. */
+static int convert_rotation(const uint64_t rotation_f64[4], uint32_t fraction_bits, int32_t xyzw[4])
+{
+    const int64_t most = INT64_C(3) << 29; /* 3/2, so that the sum below is at most 9 x 2^60 */
+    uint64_t norm2_q60 = 0;
+    for (uint32_t i = 0; i < 4; i++) {
+        int64_t part;
+        if (t3r_fixed_from_double(rotation_f64[i], fraction_bits, &part) != 0 || part > most || part < -most) {
+            return 1;
+        }
+        xyzw[i] = (int32_t)part;
+        norm2_q60 += (uint64_t)(part * part);
+    }
+    return norm2_q60 < UINT64_C(1) << 58 ? -1 : norm2_q60 > UINT64_C(9) << 58 ? 1 : 0;
+}
+
 const char *t3r_message_pose_error(const t3r_ros_pose *pose)
 {
     for (uint32_t i = 0; i < 3; i++) {
@@ -236,7 +266,7 @@ const char *t3r_message_pose_error(const t3r_ros_pose *pose)
             return "a position is not a number within -2^31..2^31";
         }
     }
-    return has_direction(pose->rotation_f64) ? NULL : "a rotation has no direction: it is zero or not a number";
+    return has_direction(pose->rotation_f64) ? NULL : no_direction;
 }
 
 const char *t3r_message_transform_error(const t3r_ros_pose *transform)
@@ -253,20 +283,27 @@ const char *t3r_message_transform_error(const t3r_ros_pose *transform)
 const char *t3r_message_pose(const t3r_ros_pose *pose, t3r_camera *camera)
 {
 #define POSITION_RANGE " is not a number within -2^30..2^30"
-#define ROTATION_RANGE " is not a number within -1.5..1.5"
     static const char *const positions[3] = {"position.x" POSITION_RANGE, "position.y" POSITION_RANGE,
                                              "position.z" POSITION_RANGE};
-    static const char *const rotations[4] = {"orientation.x" ROTATION_RANGE, "orientation.y" ROTATION_RANGE,
-                                             "orientation.z" ROTATION_RANGE, "orientation.w" ROTATION_RANGE};
     for (uint32_t i = 0; i < 3; i++) {
         if (!t3r_fixed_position(pose->position_f64[i], &camera->position_q32[i])) {
             return positions[i];
         }
     }
-    for (uint32_t i = 0; i < 4; i++) {
-        if (!t3r_fixed_rotation(pose->rotation_f64[i], &camera->rotation_q30[(i + 1) % 4])) {
-            return rotations[i];
+    if (!has_direction(pose->rotation_f64)) {
+        return no_direction;
+    }
+    int32_t xyzw[4] = {0};
+    uint32_t fraction_bits = 30; /* others scale by powers of two, since only the direction counts */
+    for (uint32_t steps = 0; steps < 32; steps++) {
+        const int order = convert_rotation(pose->rotation_f64, fraction_bits, xyzw);
+        if (order == 0) {
+            break;
         }
+        fraction_bits = order > 0 ? fraction_bits - 1 : fraction_bits + 1;
+    }
+    for (uint32_t i = 0; i < 4; i++) {
+        camera->rotation_q30[(i + 1) % 4] = xyzw[i];
     }
     return NULL;
 }

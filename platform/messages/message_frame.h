@@ -26,6 +26,9 @@ uint32_t t3r_message_to_z16(const t3r_ros_image *image, uint64_t unit_q40, uint8
 
 /* Fills in focal lengths, centre and distortion; the caller must compare the size in `info`. */
 const char *t3r_message_intrinsics(const t3r_ros_camera_info *info, t3r_camera *camera);
+/* Whether only the range or the number of the coefficients of a lens in radial-tangential or rational form refuses it:
+ * import redraws the images of such a lens. */
+bool t3r_message_is_bent(const t3r_ros_camera_info *info);
 /* Replaces K and D by what holds for rectified images: the left part of P, and no distortion. */
 const char *t3r_message_rectify(t3r_ros_camera_info *info);
 /* Checks that a pose is one: a position of numbers and a rotation with a direction. Drivers send others while they do
@@ -33,7 +36,7 @@ const char *t3r_message_rectify(t3r_ros_camera_info *info);
 const char *t3r_message_pose_error(const t3r_ros_pose *pose);
 /* Checks the same of a transform, and that its two frames have names, and different ones. */
 const char *t3r_message_transform_error(const t3r_ros_pose *transform);
-/* Fills in position and rotation. */
+/* Fills in position and rotation, whose norm is brought into the range of t3r_camera by a power of two. */
 const char *t3r_message_pose(const t3r_ros_pose *pose, t3r_camera *camera);
 
 #endif
