@@ -2,6 +2,7 @@
 #include "chunk_codec.h"
 
 #include <lz4frame.h>
+#include <string.h>
 #include <zstd.h>
 
 static const char *const cut_short = "its compressed data are cut short";
@@ -77,4 +78,16 @@ const char *t3r_chunk_decompress(t3r_text compression, const uint8_t *in, size_t
 {
     return t3r_text_is(compression, "lz4") ? decompress_lz4(in, in_bytes, out, room, produced)
                                            : decompress_zstd(in, in_bytes, out, room, produced);
+}
+
+bool t3r_zstd_is(const uint8_t *bytes, size_t count)
+{
+    static const uint8_t magic[4] = {0x28, 0xb5, 0x2f, 0xfd};
+    return count >= sizeof magic && memcmp(bytes, magic, sizeof magic) == 0;
+}
+
+uint64_t t3r_zstd_bytes(const uint8_t *bytes, size_t count)
+{
+    const unsigned long long stated = ZSTD_getFrameContentSize(bytes, count);
+    return stated == ZSTD_CONTENTSIZE_UNKNOWN || stated == ZSTD_CONTENTSIZE_ERROR ? 0 : stated;
 }

@@ -122,7 +122,7 @@ static int count_message(walk *w)
         return w->chunks->message_bytes <= T3R_LIMIT_INDEX_BYTES ? 0 : -1;
     }
     w->chunks->bytes += T3R_LIMIT_MESSAGE_BYTES;
-    return w->chunks->bytes <= t3r_limit_unpacked_whole(w->limit) ? 0 : -1;
+    return w->chunks->bytes <= t3r_limit_unpacked_whole(w->chunks->packed_bytes) ? 0 : -1;
 }
 
 /* Walks the records of a chunk. A record that reaches past the end is an error; in a cut chunk it ends the chunk.
@@ -170,7 +170,8 @@ static int reserve_chunk(walk *w)
 /* Refuses chunks of `bytes` bytes, before memory is allocated; 0 if they are allowed. */
 static int check_unpacked(walk *w, t3r_mcap_place place, uint64_t bytes)
 {
-    const uint64_t most = w->chunks->spill != NULL ? t3r_limit_unpacked(w->limit) : t3r_limit_unpacked_whole(w->limit);
+    const uint64_t most = w->chunks->spill != NULL ? t3r_limit_unpacked(w->chunks->packed_bytes)
+                                                   : t3r_limit_unpacked_whole(w->chunks->packed_bytes);
     const uint64_t all = w->chunks->bytes;
     if (all <= most && bytes <= most - all) {
         return 0;
@@ -179,7 +180,7 @@ static int check_unpacked(walk *w, t3r_mcap_place place, uint64_t bytes)
     snprintf(what, sizeof what,
              "it unpacks to %" PRIu64 " bytes, those before it to %" PRIu64 ": a file of %" PRIu64
              " may unpack to %" PRIu64 "; one without compression is read at any size",
-             bytes, all, w->limit, most);
+             bytes, all, w->chunks->packed_bytes, most);
     return malformed(w, T3R_MCAP_CHUNK, place, what);
 }
 

@@ -38,6 +38,7 @@ typedef struct t3r_mcap_visitor {
 typedef struct t3r_mcap_chunks {
     uint8_t **data;
     size_t count, capacity;
+    uint64_t packed_bytes; /* stored bytes of the files so far, which the caller adds: they limit `bytes` */
     uint64_t bytes;   /* decompressed so far, kept or not; without a spill it includes what a visitor needs for messages
                            that it keeps */
     t3r_spill *spill; /* holds chunks that do not fit in memory; NULL: they are refused */

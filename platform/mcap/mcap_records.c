@@ -117,8 +117,7 @@ bool t3r_mcap_pair_of(t3r_mcap_fields *pairs, t3r_text *key, t3r_text *value)
     return !pairs->failed;
 }
 
-/* Returns what another file is, by its first bytes, and what turns it into a recording; NULL if it is not known. */
-static const char *other_file(const uint8_t *bytes, size_t count)
+const char *t3r_mcap_other_file(const uint8_t *bytes, size_t count)
 {
     static const struct {
         size_t at, bytes;
@@ -150,7 +149,7 @@ const char *t3r_mcap_magic_error(const uint8_t *bytes, size_t count)
     if (memcmp(bytes, T3R_MCAP_MAGIC, compared) != 0) {
         bool other_version = count >= T3R_MCAP_MAGIC_BYTES && memcmp(bytes, T3R_MCAP_MAGIC, 5) == 0 &&
                              memcmp(bytes + 6, &T3R_MCAP_MAGIC[6], 2) == 0;
-        const char *other = other_file(bytes, count);
+        const char *other = t3r_mcap_other_file(bytes, count);
         return other_version   ? "byte 5: an MCAP version other than 0"
                : other != NULL ? other
                                : "byte 0: not an MCAP file";

@@ -87,6 +87,8 @@ bool t3r_mcap_pair_of(t3r_mcap_fields *pairs, t3r_text *key, t3r_text *value);
 /* The command that makes an MCAP file of ROS 2 from a bag of ROS 1. */
 #define T3R_MCAP_FROM_ROS1 "rosbags-convert --src FILE.bag --dst FOLDER --dst-storage mcap makes a bag of ROS 2"
 
+/* Returns what another file is, by its first bytes, and what turns it into a recording; NULL if it is not known. */
+const char *t3r_mcap_other_file(const uint8_t *bytes, size_t count);
 /* Returns an error in the first bytes of a file, 8 or more if available, or NULL. */
 const char *t3r_mcap_magic_error(const uint8_t *bytes, size_t count);
 

@@ -16,6 +16,7 @@ typedef struct t3r_capture_frame {
     int64_t depth_stamp_ns; /* time of the depth image; equal to stamp_ns if they are one image */
     bool has_pose;          /* camera's pose is known */
     bool has_intrinsics;    /* camera's intrinsics are known */
+    bool straightened;      /* redrawn without the lens's distortion, which `camera` cannot hold */
     t3r_frame frame;        /* frame.depth is NULL without depth */
     t3r_camera camera;
 } t3r_capture_frame;

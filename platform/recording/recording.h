@@ -14,6 +14,7 @@
 #include "messages/fixed_camera.h"
 
 struct t3r_ros_image; /* messages/ros_messages.h */
+struct t3r_ros_camera_info;
 
 typedef struct t3r_triplet {
     uint32_t context[2];
@@ -49,8 +50,9 @@ typedef struct t3r_triplet {
 
 typedef struct t3r_recording t3r_recording;
 
-/* Reads and indexes a whole recording. Returns NULL with "what, where" in error[] on failure. A file that was cut off
- * is read up to its last complete message; t3r_recording_note() then says so. */
+/* Reads and indexes a whole recording: an MCAP file, or one packed with zstd; or a folder of rosbag2, whose files are
+ * read in the order of metadata.yaml as one. Returns NULL with "what, where" in error[] on failure. A file that was cut
+ * off is read up to its last complete message; t3r_recording_note() then says so. */
 t3r_recording *t3r_recording_open(const char *path, char *error, size_t error_bytes);
 /* Reads a recording in memory, which must outlive it (the fuzzers use this). */
 t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *error, size_t error_bytes);
@@ -82,6 +84,10 @@ typedef struct t3r_image_decoder {
     /* Converts an image of an encoding for which t3r_pixel_is_converted() holds. */
     int (*convert)(void *user, const struct t3r_ros_image *image, t3r_decoded_image *out, char *error,
                    size_t error_bytes);
+    /* Redraws a frame's colour, and its depth if that is of the same view, for a camera without the lens's distortion,
+     * which no t3r_camera holds. */
+    int (*straighten)(void *user, const struct t3r_ros_camera_info *info, t3r_frame *frame, bool depth, char *error,
+                      size_t error_bytes);
     void *user;
 } t3r_image_decoder;
 void t3r_recording_set_decoder(t3r_recording *recording, t3r_image_decoder decoder);
@@ -112,6 +118,7 @@ t3r_triplet t3r_recording_triplet(const t3r_recording *recording, uint32_t index
 /* The place where a truncated file stops, and the messages before it. */
 typedef struct t3r_recording_cut {
     bool cut;
+    const char *file;            /* the name of the first such file of several, else "" */
     uint64_t offset, file_bytes; /* offset: everything after it is lost */
     uint64_t messages;
 } t3r_recording_cut;

@@ -20,9 +20,9 @@ typedef struct reading {
 
 static int fail(const reading *r, const t3r_stream *stream, const t3r_indexed_message *message, const char *what)
 {
-    char place[T3R_MCAP_PLACE_BYTES];
+    char place[T3R_RECORDING_PLACE_BYTES];
     return t3r_reason(r->error, r->error_bytes, "frame %" PRIu32 ", %.64s at %s: %s", r->index, stream->topic,
-                      t3r_mcap_place_text(message->place, place), what);
+                      t3r_recording_place_text(r->recording, message->file, message->place, place), what);
 }
 
 /* Decodes a compressed image with the recording's decoder and checks its size. */
@@ -90,15 +90,19 @@ static int read_colour(const reading *r, t3r_frame *frame)
     return wrong == NULL ? 0 : fail(r, stream, message, wrong);
 }
 
+/* Whether depth is taken to be of the colour camera's view. */
+static bool is_of_colour(const t3r_recording *recording)
+{
+    const t3r_text depth = recording->streams[recording->depth].frame_id,
+                   colour = recording->streams[recording->colour].frame_id;
+    return recording->depth_camera_info == T3R_NO_STREAM && (depth.count == 0 || t3r_text_same(depth, colour));
+}
+
 /* Whether depth that is taken to be of colour's lens has another aspect, by more than a pixel. trim3r's own recordings
  * hold what was captured. */
 static bool is_stretched(const reading *r, const t3r_frame *frame)
 {
-    const t3r_recording *recording = r->recording;
-    const t3r_text depth = recording->streams[recording->depth].frame_id,
-                   colour = recording->streams[recording->colour].frame_id;
-    if (recording->bits_epoch != 0 || recording->depth_camera_info != T3R_NO_STREAM ||
-        (depth.count > 0 && !t3r_text_same(depth, colour))) {
+    if (r->recording->bits_epoch != 0 || !is_of_colour(r->recording)) {
         return false;
     }
     const int64_t difference =
@@ -158,23 +162,42 @@ static int read_depth(const reading *r, size_t link, t3r_frame *frame)
     return 0;
 }
 
-static int read_intrinsics(const reading *r, size_t link, const t3r_frame *frame, t3r_camera *camera)
+/* Reads a lens that no camera holds, and has the frame redrawn without it. Returns NULL, or what is wrong. */
+static const char *straighten(const reading *r, t3r_ros_camera_info *info, t3r_capture_frame *frame, char *what,
+                              size_t bytes)
+{
+    const t3r_image_decoder *decoder = &r->recording->decoder;
+    const bool depth = frame->frame.depth != NULL && is_of_colour(r->recording);
+    if (decoder->straighten(decoder->user, info, &frame->frame, depth, what, bytes) != 0) {
+        return what;
+    }
+    frame->straightened = true;
+    info->d_count = 0;
+    return t3r_message_intrinsics(info, &frame->camera);
+}
+
+static int read_intrinsics(const reading *r, size_t link, t3r_capture_frame *frame)
 {
     const t3r_stream *stream = &r->recording->streams[r->recording->camera_info];
     const t3r_indexed_message *message = &stream->messages[link];
     t3r_ros_camera_info info;
+    char what[192];
     const char *wrong = t3r_ros_read_camera_info(message->data, message->bytes, &info);
     if (wrong == NULL && r->recording->streams[r->recording->colour].rectified) {
         wrong = t3r_message_rectify(&info);
     }
-    if (wrong == NULL && (info.width != frame->width || info.height != frame->height)) {
-        char what[96];
+    if (wrong == NULL && (info.width != frame->frame.width || info.height != frame->frame.height)) {
         t3r_reason(what, sizeof what,
                    "width x height is %" PRIu32 "x%" PRIu32 ", that of the image %" PRIu32 "x%" PRIu32, info.width,
-                   info.height, frame->width, frame->height);
-        return fail(r, stream, message, what);
+                   info.height, frame->frame.width, frame->frame.height);
+        wrong = what;
     }
-    wrong = wrong != NULL ? wrong : t3r_message_intrinsics(&info, camera);
+    if (wrong == NULL) {
+        wrong = t3r_message_intrinsics(&info, &frame->camera);
+        if (wrong != NULL && r->recording->decoder.straighten != NULL && t3r_message_is_bent(&info)) {
+            wrong = straighten(r, &info, frame, what, sizeof what);
+        }
+    }
     return wrong == NULL ? 0 : fail(r, stream, message, wrong);
 }
 
@@ -233,8 +256,7 @@ static int read_frame(const reading *r, t3r_capture_frame *frame, char *lost, si
             result.frame.depth_width = result.frame.depth_height = 0;
         }
     }
-    if (links->camera_info != T3R_NO_MESSAGE &&
-        read_intrinsics(r, links->camera_info, &result.frame, &result.camera) != 0) {
+    if (links->camera_info != T3R_NO_MESSAGE && read_intrinsics(r, links->camera_info, &result) != 0) {
         return T3R_CAPTURE_FAILED;
     }
     if (set != NULL) {

@@ -9,6 +9,8 @@
 #include "mcap/mcap_reader.h"
 #include "messages/ros_messages.h"
 #include "recording.h"
+#include "recording_bytes.h"
+#include "recording_folder.h"
 
 #define T3R_NO_MESSAGE SIZE_MAX
 #define T3R_NOTE_BYTES 512
@@ -20,7 +22,8 @@ typedef struct t3r_indexed_message {
     size_t bytes;
     int64_t stamp_ns; /* header.stamp, or the log time if that is 0 ("unset"); |stamp_ns| <= 2^62 */
     int64_t log_ns;
-    size_t order; /* in its stream */
+    uint32_t order; /* in its stream */
+    uint32_t file;  /* of the recording's files */
     t3r_mcap_place place;
 } t3r_indexed_message;
 
@@ -69,11 +72,11 @@ typedef struct t3r_set_pose {
 } t3r_set_pose;
 
 struct t3r_recording {
-    uint8_t *file;   /* owned, or NULL */
-    t3r_spill spill; /* holds a large file, and chunks that do not fit in memory */
+    t3r_recording_files files; /* none: it was parsed from memory */
+    t3r_recording_bytes bytes;
+    t3r_spill spill; /* holds large files, and chunks that do not fit in memory */
     t3r_mcap_chunks chunks;
-    uint64_t file_bytes;
-    t3r_mcap_end cut;
+    t3r_recording_cut cut; /* of the first file that is cut */
 
     t3r_stream *streams;
     size_t stream_count, stream_capacity;
@@ -103,6 +106,13 @@ struct t3r_recording {
 };
 
 void t3r_recording_remark(t3r_recording *recording, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Writes where a record is: "byte 12", in a recording of several files "byte 12 of bag_1.mcap". */
+#define T3R_RECORDING_PLACE_BYTES 160
+const char *t3r_recording_place_text(const t3r_recording *recording, uint32_t file, t3r_mcap_place place,
+                                     char text[T3R_RECORDING_PLACE_BYTES]);
+/* Returns the name of one of several files, else "". */
+const char *t3r_recording_file_name(const t3r_recording *recording, uint32_t file);
 
 /* recording_inspect.c: reads a message of a known type: its stamp, and from the first messages the role and frames of
  * their stream. Returns NULL, or what is wrong with the message. *usable: it may belong to a frame. *bad_transforms:

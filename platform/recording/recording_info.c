@@ -121,11 +121,7 @@ t3r_recorded_pose t3r_recording_pose(const t3r_recording *recording, uint32_t st
 
 t3r_recording_cut t3r_recording_cut_of(const t3r_recording *recording)
 {
-    t3r_recording_cut out = {recording->cut.cut, recording->cut.cut_offset, recording->file_bytes, 0};
-    for (size_t i = 0; i < recording->stream_count; i++) {
-        out.messages += recording->streams[i].count;
-    }
-    return out;
+    return recording->cut;
 }
 
 size_t t3r_recording_stream_for(const t3r_recording *recording, t3r_stream_use use)

@@ -6,15 +6,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
-#include "host/file_bytes.h"
 #include "host/fixed_text.h"
 #include "host/grow.h"
 #include "host/reason.h"
 #include "mcap/reader_limits.h"
 #include "messages/pixel_layout.h"
-#include "recording_folder.h"
 #include "recording_index.h"
 
 #define IDS 65536u                                  /* schema and channel ids have 16 bits */
@@ -22,26 +19,24 @@
 #define DEFAULT_DEPTH_UNIT_Q40 UINT64_C(1099511628) /* a millimetre in metres (REP 118) */
 #define MAX_DEPTH_UNIT_Q40 ((uint64_t)T3R_LIMIT_DEPTH_UNIT << 40)
 #define MAX_LOG_NS ((uint64_t)1 << 62)
-#define FIRST_BYTES 8                  /* bytes that identify a recording */
-#define PIECE_BYTES ((size_t)16 << 20) /* bytes of a large file read at once */
-#define DEFAULT_PAIR_NS 20000000       /* largest distance between messages of one instant with different stamps */
+#define DEFAULT_PAIR_NS 20000000 /* largest distance between messages of one instant with different stamps */
 
-/* State of one pass over the records. */
+/* State of one pass over the records of all files. */
 typedef struct indexing {
     t3r_recording *recording;
-    t3r_mcap_schema_record *schemas;
+    uint32_t file;
+    t3r_mcap_schema_record *schemas; /* of this file */
     size_t schema_count, schema_capacity;
-    uint32_t *schema_of, *stream_of; /* by id: index + 1, 0 = none */
+    uint32_t *schema_of, *stream_of; /* of this file, by id: index + 1, 0 = none */
     uint32_t *slots;                 /* hash table of the streams by topic: index + 1, 0 = free */
     bool strict;
-    char *error;
-    size_t error_bytes;
+    char error[256];
 } indexing;
 
 static int fail(indexing *x, const char *record, t3r_mcap_place place, const char *what)
 {
     char text[T3R_MCAP_PLACE_BYTES];
-    return t3r_reason(x->error, x->error_bytes, "%s at %s: %s", record, t3r_mcap_place_text(place, text), what);
+    return t3r_reason(x->error, sizeof x->error, "%s at %s: %s", record, t3r_mcap_place_text(place, text), what);
 }
 
 static char *printable(t3r_text text)
@@ -159,11 +154,12 @@ static int on_channel(void *user, const t3r_mcap_channel_record *channel, t3r_mc
 /* ---- messages ---- */
 
 /* Counts messages, or transforms, that are left out; the first is named. */
-static void leave_out(t3r_stream *stream, uint32_t count, t3r_mcap_place place, const char *wrong)
+static void leave_out(const indexing *x, t3r_stream *stream, uint32_t count, t3r_mcap_place place, const char *wrong)
 {
-    char text[T3R_MCAP_PLACE_BYTES];
+    char text[T3R_RECORDING_PLACE_BYTES];
     if (stream->left_out == 0) {
-        t3r_reason(stream->fault, sizeof stream->fault, "at %s: %s", t3r_mcap_place_text(place, text), wrong);
+        t3r_reason(stream->fault, sizeof stream->fault, "at %s: %s",
+                   t3r_recording_place_text(x->recording, x->file, place, text), wrong);
     }
     stream->left_out += count;
 }
@@ -193,7 +189,7 @@ static int inspect(indexing *x, t3r_stream *stream, const t3r_mcap_message_recor
         return fail(x, "message", place, what);
     }
     if (first != NULL) {
-        leave_out(stream, wrong != NULL ? 1 : found.bad_transforms, place, first);
+        leave_out(x, stream, wrong != NULL ? 1 : found.bad_transforms, place, first);
     }
     if (!found.usable) {
         return 0;
@@ -202,7 +198,8 @@ static int inspect(indexing *x, t3r_stream *stream, const t3r_mcap_message_recor
                                       .bytes = message->bytes,
                                       .stamp_ns = found.stamp_ns != 0 ? found.stamp_ns : log_ns,
                                       .log_ns = log_ns,
-                                      .order = stream->kept,
+                                      .order = (uint32_t)stream->kept,
+                                      .file = x->file,
                                       .place = place};
     return keep(stream, &kept) ? T3R_MCAP_KEPT : fail(x, "message", place, "out of memory");
 }
@@ -329,158 +326,148 @@ static void check_triplets(t3r_recording *recording)
 
 /* ---- opening ---- */
 
-static void remark_cut(t3r_recording *recording, const t3r_mcap_end *end)
+static uint64_t messages_of(const t3r_recording *recording)
 {
-    t3r_recording_remark(recording, "cut off at byte %" PRIu64 ", after %" PRIu64 " of its messages", end->cut_offset,
-                         t3r_recording_cut_of(recording).messages);
+    uint64_t messages = 0;
+    for (size_t i = 0; i < recording->stream_count; i++) {
+        messages += recording->streams[i].count;
+    }
+    return messages;
 }
 
-static int index_bytes(t3r_recording *recording, const uint8_t *bytes, size_t count, const t3r_recording_choice *choice,
-                       char *error, size_t error_bytes)
+static void remark_cut(t3r_recording *recording, const t3r_recording_cut *cut)
 {
-    indexing x = {.recording = recording, .error = error, .error_bytes = error_bytes};
-    x.schema_of = calloc(IDS, sizeof *x.schema_of);
-    x.stream_of = calloc(IDS, sizeof *x.stream_of);
-    x.slots = calloc(SLOTS, sizeof *x.slots);
-    x.strict = choice->strict;
-    const t3r_mcap_visitor visitor = {&x, on_schema, on_channel, on_message, on_metadata};
+    recording->cut = recording->cut.cut ? recording->cut : *cut;
+    t3r_recording_remark(recording, "%s%scut off at byte %" PRIu64 ", after %" PRIu64 " of its messages", cut->file,
+                         cut->file[0] != '\0' ? ": " : "", cut->offset, cut->messages);
+}
+
+/* Indexes a file; `stored` bytes on the disk hold its `count` bytes. */
+static int index_file(indexing *x, const uint8_t *bytes, size_t count, size_t stored)
+{
+    t3r_recording *recording = x->recording;
+    const t3r_mcap_visitor visitor = {x, on_schema, on_channel, on_message, on_metadata};
+    const uint64_t before = messages_of(recording);
     t3r_mcap_end end;
-    int status = x.schema_of == NULL || x.stream_of == NULL || x.slots == NULL
-                     ? t3r_reason(error, error_bytes, "out of memory")
-                     : t3r_mcap_read(bytes, count, &visitor, &recording->chunks, &end, error, error_bytes);
+    memset(x->schema_of, 0, IDS * sizeof *x->schema_of);
+    memset(x->stream_of, 0, IDS * sizeof *x->stream_of);
+    x->schema_count = 0;
+    recording->chunks.packed_bytes += stored;
+    if (t3r_mcap_read(bytes, count, &visitor, &recording->chunks, &end, x->error, sizeof x->error) != 0) {
+        return -1;
+    }
+    if (end.cut) {
+        remark_cut(recording, &(t3r_recording_cut){true, t3r_recording_file_name(recording, x->file), end.cut_offset,
+                                                   count, messages_of(recording) - before});
+    }
+    return 0;
+}
+
+/* Reads and indexes the recording's files. */
+static int index_files(indexing *x, char *error, size_t error_bytes)
+{
+    t3r_recording *recording = x->recording;
+    for (; x->file < recording->files.count; x->file++) {
+        const char *path = recording->files.paths[x->file];
+        size_t count, stored;
+        const uint8_t *bytes =
+            t3r_recording_bytes_read(&recording->bytes, &recording->spill, path, &count, &stored, error, error_bytes);
+        if (bytes == NULL) {
+            return -1;
+        }
+        if (index_file(x, bytes, count, stored) != 0) {
+            return t3r_reason(error, error_bytes, "%s: %s", path, x->error);
+        }
+    }
+    return 0;
+}
+
+/* Indexes the recording's files; the bytes, if it has none. */
+static int index_all(t3r_recording *recording, const uint8_t *bytes, size_t count, bool strict, char *error,
+                     size_t error_bytes)
+{
+    indexing x = {.recording = recording, .strict = strict};
+    x.schema_of = malloc(IDS * sizeof *x.schema_of);
+    x.stream_of = malloc(IDS * sizeof *x.stream_of);
+    x.slots = calloc(SLOTS, sizeof *x.slots);
+    int status = 0;
+    if (x.schema_of == NULL || x.stream_of == NULL || x.slots == NULL) {
+        status = t3r_reason(error, error_bytes, "out of memory");
+    } else if (recording->files.count > 0) {
+        recording->chunks.spill = &recording->spill;
+        status = index_files(&x, error, error_bytes);
+    } else if (index_file(&x, bytes, count, count) != 0) {
+        status = t3r_reason(error, error_bytes, "%s", x.error);
+    }
     free(x.schemas);
     free(x.schema_of);
     free(x.stream_of);
     free(x.slots);
-    recording->file_bytes = count;
-    recording->cut = status == 0 ? end : (t3r_mcap_end){0};
-    if (status == 0 && end.cut) {
-        remark_cut(recording, &end);
-    }
-    if (status == 0) {
-        remark_left_out(recording);
-    }
-    if (status == 0 && choice->depth_unit_q40 != 0 && recording->states_unit) {
-        status = t3r_reason(error, error_bytes, "the recording states its own depth unit");
-    }
-    recording->pair_ns = choice->pair_ns > 0 ? choice->pair_ns : DEFAULT_PAIR_NS;
-    if (status == 0) {
-        status = t3r_recording_choose(recording, choice, error, error_bytes);
-    }
-    if (status == 0) {
-        status = t3r_recording_pair(recording, error, error_bytes);
-    }
-    if (status == 0) {
-        check_triplets(recording);
-    }
     return status;
 }
 
-/* Parses a recording. The recording takes over `spill`, which is empty afterwards; NULL: everything stays in memory. */
-static t3r_recording *parse(const uint8_t *bytes, size_t count, t3r_spill *spill, const t3r_recording_choice *choice,
-                            char *error, size_t error_bytes)
+/* Chooses streams and links frames, when all files are indexed. */
+static int join(t3r_recording *recording, const t3r_recording_choice *choice, char *error, size_t error_bytes)
+{
+    remark_left_out(recording);
+    if (choice->depth_unit_q40 != 0 && recording->states_unit) {
+        return t3r_reason(error, error_bytes, "the recording states its own depth unit");
+    }
+    recording->pair_ns = choice->pair_ns > 0 ? choice->pair_ns : DEFAULT_PAIR_NS;
+    if (t3r_recording_choose(recording, choice, error, error_bytes) != 0 ||
+        t3r_recording_pair(recording, error, error_bytes) != 0) {
+        return -1;
+    }
+    check_triplets(recording);
+    return 0;
+}
+
+static t3r_recording *begin(const t3r_recording_choice *choice, char *error, size_t error_bytes)
 {
     t3r_recording *recording = calloc(1, sizeof *recording);
     if (recording == NULL) {
         t3r_reason(error, error_bytes, "out of memory");
         return NULL;
     }
+    recording->cut.file = "";
     recording->colour = recording->depth = recording->pose = T3R_NO_STREAM;
     recording->camera_info = recording->depth_camera_info = recording->transforms = T3R_NO_STREAM;
     recording->depth_unit_q40 = choice->depth_unit_q40 != 0 ? choice->depth_unit_q40 : DEFAULT_DEPTH_UNIT_Q40;
     memcpy(recording->clock, "unknown", sizeof "unknown");
-    if (spill != NULL) {
-        recording->spill = *spill;
-        recording->chunks.spill = &recording->spill;
-        *spill = (t3r_spill){0};
-    }
-    if (index_bytes(recording, bytes, count, choice, error, error_bytes) != 0) {
-        t3r_recording_close(recording);
-        return NULL;
-    }
     return recording;
 }
 
 t3r_recording *t3r_recording_parse(const uint8_t *bytes, size_t count, char *error, size_t error_bytes)
 {
-    return parse(bytes, count, NULL, &(t3r_recording_choice){0}, error, error_bytes);
-}
-
-/* Reads a large file into the spill, if its first bytes are a recording's. Returns NULL with the reason on failure. */
-static uint8_t *spill_file(FILE *file, size_t count, t3r_spill *spill, size_t *got, const char **why)
-{
-    uint8_t first[FIRST_BYTES];
-    *why = t3r_mcap_magic_error(first, fread(first, 1, sizeof first, file));
-    uint8_t *bytes = *why == NULL ? t3r_spill_take(spill, count) : NULL;
-    if (bytes == NULL) {
-        *why = *why != NULL ? *why : "there is no room on the disk for a copy (TMPDIR names another)";
-        return NULL;
+    const t3r_recording_choice choice = {0};
+    t3r_recording *recording = begin(&choice, error, error_bytes);
+    if (recording != NULL && (index_all(recording, bytes, count, false, error, error_bytes) != 0 ||
+                              join(recording, &choice, error, error_bytes) != 0)) {
+        t3r_recording_close(recording);
+        recording = NULL;
     }
-    memcpy(bytes, first, sizeof first); /* the file is larger */
-    *got = sizeof first;
-    for (size_t some = 1; some > 0 && *got < count;) {
-        some = fread(bytes + *got, 1, count - *got < PIECE_BYTES ? count - *got : PIECE_BYTES, file);
-        *got += some;
-        t3r_spill_rest(spill);
-    }
-    *why = ferror(file) ? "it cannot be read to its end" : NULL;
-    return *why == NULL ? bytes : NULL;
-}
-
-/* Reads a file: into the spill if it is too large for memory, else into *heap. Returns NULL with the reason in error[]
- * on failure. */
-static const uint8_t *read_file(const char *path, uint8_t **heap, t3r_spill *spill, size_t *count, char *error,
-                                size_t error_bytes)
-{
-    struct stat about;
-    *heap = NULL;
-    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size < 0 ||
-        (uint64_t)about.st_size <= T3R_LIMIT_UNPACKED_HEAP || (uint64_t)about.st_size > SIZE_MAX / 2) {
-        *heap = t3r_file_bytes_checked(path, SIZE_MAX, t3r_mcap_magic_error, count, error, error_bytes);
-        return *heap;
-    }
-    FILE *file = t3r_file_open(path, error, error_bytes);
-    if (file == NULL) {
-        return NULL;
-    }
-    const char *why;
-    const uint8_t *bytes = spill_file(file, (size_t)about.st_size, spill, count, &why);
-    if (bytes == NULL) {
-        (void)t3r_reason(error, error_bytes, "%s: %s", path, why);
-    }
-    fclose(file);
-    return bytes;
-}
-
-static t3r_recording *open_file(const char *path, const t3r_recording_choice *choice, char *error, size_t error_bytes)
-{
-    size_t count;
-    uint8_t *heap;
-    t3r_spill spill = {0};
-    char what[256];
-    const uint8_t *bytes = read_file(path, &heap, &spill, &count, error, error_bytes);
-    t3r_recording *recording = bytes == NULL ? NULL : parse(bytes, count, &spill, choice, what, sizeof what);
-    if (recording == NULL) {
-        if (bytes != NULL) {
-            t3r_reason(error, error_bytes, "%s: %s", path, what);
-        }
-        free(heap);
-        t3r_spill_free(&spill);
-        return NULL;
-    }
-    recording->file = heap;
     return recording;
 }
 
 t3r_recording *t3r_recording_open_chosen(const char *path, const t3r_recording_choice *choice, char *error,
                                          size_t error_bytes)
 {
-    if (!t3r_recording_is_folder(path)) {
-        return open_file(path, choice, error, error_bytes);
+    char what[256];
+    t3r_recording *recording = begin(choice, error, error_bytes);
+    if (recording == NULL) {
+        return NULL;
     }
-    char *file = t3r_recording_folder_file(path, error, error_bytes);
-    t3r_recording *recording = file == NULL ? NULL : open_file(file, choice, error, error_bytes);
-    free(file);
+    int status = t3r_recording_files_of(path, &recording->files, error, error_bytes);
+    if (status == 0) {
+        status = index_all(recording, NULL, 0, choice->strict, error, error_bytes);
+    }
+    if (status == 0 && join(recording, choice, what, sizeof what) != 0) {
+        status = t3r_reason(error, error_bytes, "%s: %s", path, what);
+    }
+    if (status != 0) {
+        t3r_recording_close(recording);
+        recording = NULL;
+    }
     return recording;
 }
 
@@ -512,6 +499,7 @@ void t3r_recording_close(t3r_recording *recording)
     free(recording->triplets);
     t3r_mcap_chunks_free(&recording->chunks);
     t3r_spill_free(&recording->spill);
-    free(recording->file);
+    t3r_recording_bytes_free(&recording->bytes);
+    t3r_recording_files_free(&recording->files);
     free(recording);
 }

@@ -5,7 +5,10 @@ bags.py TRIM3R
 """
 import json
 import os
+import shutil
 import sqlite3
+import struct
+import subprocess
 import sys
 import tempfile
 
@@ -19,6 +22,7 @@ sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../cap
 from checks import check, done  # noqa: E402
 import flat_jpeg  # noqa: E402
 import frames  # noqa: E402
+from png import png  # noqa: E402
 from program import run  # noqa: E402
 import ros_bag as ros  # noqa: E402
 from ros_bag import Bag, SECOND  # noqa: E402
@@ -336,6 +340,36 @@ def encodings():
         check(encoding == "8UC3" or (code == 1 and "trim3r import" in error), f"{encoding}: {error}")
 
 
+def transparent_pixels_are_none():
+    alpha = np.full((ros.HEIGHT, ros.WIDTH, 1), 255, np.uint8)
+    alpha[:10, :12] = 100
+    rows = np.concatenate([ros.colour(50), alpha], 2)
+    for encoding in ("rgba8", "png"):
+        bag = camera(Bag(), count=0)
+        bag.put("/cam/camera_info", ros.INFO, SECOND, ros.info(SECOND, "cam"))
+        bag.put("/cam/depth", ros.IMAGE, SECOND, ros.image(SECOND, "cam", "16UC1", ros.steps(1000, (12, 16))))
+        if encoding == "png":
+            bag.put("/cam/image/compressed", ros.COMPRESSED, SECOND, ros.compressed(SECOND, "cam", "png", png([row.tobytes() for row in rows], channels=4)))
+        else:
+            bag.put("/cam/image", ros.IMAGE, SECOND, ros.image(SECOND, "cam", encoding, rows))
+        read = imported(bag)["read"]
+        colour, z = read["image"][0], read["depth"][0]
+        check(not colour[:10, :12].any() and (colour[10:] == 50).all() and (colour[:, 12:] == 50).all(), f"{encoding}: colour")
+        check(not z[:5, :6].any() and (z[5:] == 1000).all() and (z[:, 6:] == 1000).all(), f"{encoding}: depth")
+
+
+def images_that_exif_turns():
+    whole = flat_jpeg.jpeg(ros.WIDTH, ros.HEIGHT, [[(120, 120, 100, 160)] * (ros.WIDTH // 16)] * (ros.HEIGHT // 8))
+    for orientation, good in ((1, True), (3, False), (4, False)):
+        tiff = b"II*\0" + struct.pack("<IHHHIHHI", 8, 1, 0x112, 3, 1, orientation, 0, 0)
+        exif = b"\xff\xe1" + struct.pack(">H", 8 + len(tiff)) + b"Exif\0\0" + tiff
+        bag = Bag()
+        for i, data in enumerate((whole, whole[:2] + exif + whole[2:])):
+            bag.put("/cam/image/compressed", ros.COMPRESSED, (i + 1) * SECOND, ros.compressed((i + 1) * SECOND, "cam", "jpeg", data))
+        report = imported(bag)
+        check(report["frames"] == 1 + good and (good or "EXIF turns" in report["left_out"][0]), f"{orientation}: {report['left_out']}")
+
+
 def depth_units():
     bag = camera(depth(Bag(), "/cam/depth", "32FC1", 80.0))
     report = imported(bag)
@@ -353,7 +387,7 @@ def other_files():
     connection.execute("create table topics(id integer)")
     connection.commit()
     connection.close()
-    contents = {"old.bag": b"#ROSBAG V2.0\n" + bytes(99), "packed.mcap": b"\x28\xb5\x2f\xfd" + bytes(99), "film.mp4": b"\0\0\0\x18ftypisom" + bytes(64),
+    contents = {"old.bag": b"#ROSBAG V2.0\n" + bytes(99), "packed.mcap": b"\x28\xb5\x2f\xfd\0" + bytes(98), "film.mp4": b"\0\0\0\x18ftypisom" + bytes(64),
                 "scan.r3d": b"PK\3\4" + bytes(99)}
     for name, content in contents.items():
         with open(name, "wb") as file:
@@ -371,26 +405,126 @@ def other_files():
     check("packed with zstd" in imported(bag, status=1), "messages packed one by one")
 
 
-def folders_of_rosbag2():
-    def folder(name, *files):
-        os.makedirs(name)
-        for i, file in enumerate(files):
+def folder_of(name, *files, listed=None):
+    """Writes a folder of rosbag2, with two frames a file. Files of another suffix than .mcap are only listed."""
+    os.makedirs(name)
+    for i, file in enumerate(files):
+        if file.endswith(".mcap"):
             camera(Bag(), first=2 * i).write(f"{name}/{file}")
-        with open(f"{name}/metadata.yaml", "w", encoding="utf-8") as text:
-            text.write("rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: mcap\n  relative_file_paths:\n"
-                       + "".join(f"    - {file}\n" for file in files) + "  duration:\n    nanoseconds: 1\n")
-        return name
-    check(imported(folder("one", "one_0.mcap"))["frames"] == 2, "a folder of one file")
-    check("mcap merge" in imported(folder("two", "two_0.mcap", "two_1.mcap"), status=1), "of two")
-    check("mcap convert" in imported(folder("lite", "lite_0.db3"), status=1), "of SQLite")
-    check("zstd -d" in imported(folder("packed", "packed_0.mcap.zstd"), status=1), "of packed files")
+    with open(f"{name}/metadata.yaml", "w", encoding="utf-8") as text:
+        text.write("rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: mcap\n  relative_file_paths:\n"
+                   + "".join(f"    - {file}\n" for file in listed or files) + "  duration:\n    nanoseconds: 1\n")
+    return name
+
+
+def folders_of_rosbag2():
+    check(imported(folder_of("one", "one_0.mcap"))["frames"] == 2, "a folder of one file")
+    parts = [f"many_{i}.mcap" for i in (0, 1, 10, 2)]
+    report = imported(folder_of("many", *parts))
+    check(report["frames"] == report["posed_frames"] == 8, f"a folder of four: {report['frames']}")
+    check([p[0, 0, 0] for p in report["read"]["image"]] == [10 * i for i in range(8)], "in the order of metadata.yaml")
+    check(positions(report) == [(i, 0, 0) for i in range(8)], f"{positions(report)}")
+    check(info("many")["frames"] == 8 and len(info("many")["streams"]) == 3, "info: topics of all files are one")
+    quoted = folder_of("quoted", "a b_0.mcap", "a b_1.mcap", listed=("'a b_0.mcap'", '"a b_1.mcap"'))
+    check(imported(quoted)["frames"] == 4, "quoted names")
+    error = imported(folder_of("gone", "gone_0.mcap", listed=("gone_0.mcap", "gone_1.mcap")), status=1)
+    check("gone/gone_1.mcap: file 2 of the 2 that metadata.yaml names is not there" in error, error)
+    check("mcap convert lite/lite_0.db3 lite/lite_0.mcap" in imported(folder_of("lite", "lite_0.db3"), status=1), "of SQLite")
+    check("mcap convert mix/m_1.db3" in imported(folder_of("mix", "m_0.mcap", "m_1.db3"), status=1), "one file of SQLite")
+    check("names no file" in imported(folder_of("none", listed=("",)), status=1), "no file")
+    before = open("many/many_1.mcap", "rb").read()
+    code, _, error = run("import", "many", "-o", "many/many_1.mcap")
+    check(code == 2 and "is read" in error and open("many/many_1.mcap", "rb").read() == before, f"its own file: {error}")
+
+
+def bad_files_of_a_folder():
+    folder = folder_of("cut", "cut_0.mcap", "cut_1.mcap")
+    data = open(f"{folder}/cut_0.mcap", "rb").read()
+    with open(f"{folder}/cut_0.mcap", "wb") as file:
+        file.write(data[:-120])
+    report = imported(folder)
+    check(report["frames"] == 3 and "cut_0.mcap is cut" in report["lost"], f"a cut file: {report['frames']}, {report['lost']}")
+    check("cut_0.mcap: cut off at byte" in info(folder)["note"], f"info: {info(folder)['note']}")
+    with open(f"{folder}/cut_1.mcap", "wb") as file:
+        file.write(b"no bag")
+    check(f"{folder}/cut_1.mcap: " in imported(folder, status=1), "a file that is none")
+    folder = folder_of("bad", "bad_0.mcap", "bad_1.mcap")
+    bag = camera(Bag(), first=2)
+    bag.put("/pose", ros.POSE, 9 * SECOND, ros.pose(9 * SECOND, "map", (NAN, 0, 0)))
+    bag.write(f"{folder}/bad_1.mcap")
+    report = imported(folder)
+    check(report["frames"] == 4 and "of bad_1.mcap: " in report["unreadable"][0]["first"], f"{report['unreadable']}")
+    check(f"{folder}/bad_1.mcap: " in imported(folder, "--strict", status=1), "--strict names the file")
+
+
+def packed_files():
+    if shutil.which("zstd") is None:
+        print("zstd is not there: no packed files")
+        return
+    folder = folder_of("packed", "p_0.mcap", "p_1.mcap", listed=("p_0.mcap.zstd", "p_1.mcap.zstd"))
+    for i in range(2):
+        subprocess.run(["zstd", "-q", "--rm", f"{folder}/p_{i}.mcap", "-o", f"{folder}/p_{i}.mcap.zstd"], check=True)
+    report = imported(folder)
+    check([p[0, 0, 0] for p in report["read"]["image"]] == [0, 10, 20, 30], f"packed files: {report['frames']}")
+    check(imported(f"{folder}/p_1.mcap.zstd")["frames"] == 2 and info(f"{folder}/p_1.mcap.zstd")["frames"] == 2, "one alone")
+    whole = open(f"{folder}/p_1.mcap.zstd", "rb").read()
+    with open("text.txt", "w", encoding="ascii") as file:
+        file.write("no bag")
+    text = subprocess.run(["zstd", "-q", "-c", "text.txt"], stdout=subprocess.PIPE, check=True).stdout
+    stream = subprocess.run(["zstd", "-q", "-c"], input=b"x" * 99, stdout=subprocess.PIPE, check=True).stdout
+    for name, data, why in (("cut", whole[:-40], ""), ("flipped", whole[:90] + bytes([whole[90] ^ 1]) + whole[91:], ""),
+                            ("unsized", stream, "zstd -d"), ("other", text, "not an MCAP file")):
+        with open(f"{folder}/p_1.mcap.zstd", "wb") as file:
+            file.write(data)
+        error = imported(folder, status=1)
+        check(f"{folder}/p_1.mcap.zstd: " in error and why in error, f"{name}: {error}")
+
+
+def lenses_that_no_recording_holds():
+    """k4 to k6, and coefficients beyond 128: import redraws colour, and depth of its view, as a pinhole's."""
+    rows, columns = np.mgrid[:ros.HEIGHT, :ros.WIDTH]
+    picture = np.stack([columns * 8, rows * 10, np.full_like(rows, 90)], 2).astype(np.uint8)
+    steps = (1000 + 10 * columns).astype("<u2")
+    rational = (0.6, -0.2, 0.001, -0.002, 0.05, 0.5, -0.15, 0.02)
+
+    def seen(k, x, y):
+        """Returns where the lens draws what a pinhole draws at (x, y)."""
+        u, v = (x - 15.5) / 30, (y - 11.5) / 30
+        r2 = u * u + v * v
+        k = (*k, *[0] * (8 - len(k)))
+        scale = (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) / (1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])))
+        return (30 * (u * scale + 2 * k[2] * u * v + k[3] * (r2 + 2 * u * u)) + 15.5,
+                30 * (v * scale + k[2] * (r2 + 2 * v * v) + 2 * k[3] * u * v) + 11.5)
+
+    for name, k, model, lens in (("k4 to k6", rational, "rational_polynomial", ros.LENS),
+                                 ("k1 of 200", (200.0, 0, 0, 0, 0), "plumb_bob", (900.0, 900.0, 15.5, 11.5))):
+        for own in (False, True):
+            bag = Bag()
+            message = ros.info(SECOND, "cam", lens=lens, d=k, model=model)
+            bag.put("/cam/camera_info", ros.INFO, SECOND, message)
+            if own:
+                bag.put("/cam/depth/camera_info", ros.INFO, SECOND, message)
+            bag.put("/cam/depth/image", ros.IMAGE, SECOND, ros.image(SECOND, "cam", "16UC1", steps))
+            bag.put("/pose", ros.POSE, SECOND, ros.pose(SECOND, "map", (0, 0, 0)))
+            bag.put("/cam/image", ros.IMAGE, SECOND, ros.image(SECOND, "cam", "bgr8", picture[..., ::-1].copy()))
+            report = imported(bag)
+            check(report["straightened"] == report["depth_frames"] == 1, f"{name}: {report['straightened']}")
+            check(info("out.mcap")["distortion"] == "none" and info()["distortion"] == "rational", f"{name}: lens")
+            got, z = report["read"]["image"][0], report["read"]["depth"][0]
+            for y, x in ((3, 4), (12, 16), (20, 25)):
+                due = seen(k, x, y) if name[1] == "4" else (x, y)
+                off = np.abs(got[y, x, :2] - np.array([due[0] * 8, due[1] * 10])).max()
+                check(off < 9 if name[1] == "4" else off < 20, f"{name}: ({x}, {y}) shows {got[y, x]}, due {due}")
+                check(abs(int(z[y, x]) - (1000 + 10 * due[0])) <= (6 if name[1] == "4" else 25), f"{name}, {own}: depth at {x}, {y}")
+    code, _, error = run("build", "bag.mcap", "--context", "0,0", "--gaussians", "9", "-o", "s.ply")
+    check(code == 1 and "128" in error, f"build: {error}")
 
 
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)
     for case in (depth_is_chosen_by_name_and_type, poses_are_not_goals, colour_is_chosen_by_votes, intrinsics_are_of_the_same_frame,
                  channels_of_a_topic_are_one_stream, clocks_that_begin_again, bad_poses_are_left_out, bad_images_are_left_out,
-                 jpegs_without_their_end, triplets_follow_the_frames, rectified_images_have_the_lens_of_p, depth_of_another_aspect_needs_its_own_lens, encodings, depth_units, other_files,
-                 folders_of_rosbag2):
+                 jpegs_without_their_end, triplets_follow_the_frames, rectified_images_have_the_lens_of_p, depth_of_another_aspect_needs_its_own_lens, encodings, transparent_pixels_are_none, images_that_exif_turns, depth_units, other_files,
+                 folders_of_rosbag2, bad_files_of_a_folder, packed_files, lenses_that_no_recording_holds):
         case()
     done()

@@ -103,14 +103,17 @@ int picture_keep_bright(picture *p)
     return 0;
 }
 
-void picture_blacken(picture *p)
+bool picture_blacken(picture *p)
 {
     uint8_t *samples = p->samples;
+    bool any = p->valid == NULL;
     for (size_t i = 0; i < (size_t)p->width * p->height && p->valid != NULL; i++) {
+        any = any || p->valid[i] != 0;
         if (p->valid[i] == 0) {
             memset(samples + i * p->channels, 0, p->channels);
         }
     }
+    return any;
 }
 
 bool picture_valid_at(const picture *p, uint32_t x, uint32_t y, const picture *of)

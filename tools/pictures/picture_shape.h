@@ -15,8 +15,8 @@ void picture_reduce(picture *p, uint32_t n);
 /* Marks the black pixels of an 8-bit picture invalid, and all others valid. Returns 0, or -1 when out of memory. */
 int picture_keep_bright(picture *p);
 
-/* Sets invalid pixels of an 8-bit picture to 0. */
-void picture_blacken(picture *p);
+/* Sets invalid pixels of an 8-bit picture to 0. Returns whether any is valid. */
+bool picture_blacken(picture *p);
 
 /* Whether the pixel under the point (x, y) of `of`, a picture of the same view, is valid in p. */
 bool picture_valid_at(const picture *p, uint32_t x, uint32_t y, const picture *of);

@@ -12,10 +12,11 @@
 #include "cli/cli.h"
 #include "cli/options/file_place.h"
 #include "host/reason.h"
+#include "recording/recording_folder.h"
 
 #define STANDARD_OUTPUT "standard output"
 /* The kinds that commands read in a folder: pictures, and files without a kind of their own (JSON, lists, pointmaps).
- * No command reads recordings, scenes, pages or tables there. */
+ * Recordings are read in folders of rosbag2 alone. No command reads scenes, pages or tables in a folder. */
 #define READ_IN_FOLDERS (FILE_PICTURE | FILE_OTHER)
 
 static struct {
@@ -79,9 +80,11 @@ static int check_output(const named_file *file, const file_place *place)
 /* Returns the input folder that holds the file, if files of that kind may be read there; NULL = none. */
 static const named_file *folder_of(const char *path, file_kind found)
 {
-    for (uint32_t i = 0; i < guard.count && (found & READ_IN_FOLDERS) != 0; i++) {
-        if (!writes(&guard.files[i]) && file_place_beneath(path, &guard.places[i])) {
-            return &guard.files[i];
+    for (uint32_t i = 0; i < guard.count; i++) {
+        const named_file *file = &guard.files[i];
+        if (!writes(file) && file_place_beneath(path, &guard.places[i]) &&
+            ((found & READ_IN_FOLDERS) != 0 || (found == FILE_RECORDING && t3r_recording_is_folder(file->path)))) {
+            return file;
         }
     }
     return NULL;

@@ -8,7 +8,9 @@
 
 #include "geometry/quaternion.h"
 #include "host/reason.h"
+#include "import/bags/bag_straight.h"
 #include "import/depth/register_depth.h"
+#include "import/frames/straighten.h"
 #include "messages/fixed_camera.h"
 #include "messages/fixed_double.h"
 #include "messages/message_frame.h"
@@ -269,6 +271,16 @@ static void drop_depth(bag_frames *b, t3r_frame *frame)
     b->unregistered++;
 }
 
+/* Reads the lens without which the colour images were redrawn. */
+static int bent_lens(const bag_frames *b, uint32_t index, lens *out, char *error, size_t error_bytes)
+{
+    const t3r_recorded_message message = t3r_recording_frame_message(b->recording, index, T3R_USE_CAMERA_INFO);
+    t3r_ros_camera_info info;
+    const char *wrong = t3r_ros_read_camera_info(message.data, message.bytes, &info);
+    wrong = wrong != NULL ? wrong : lens_of_info(&info, out);
+    return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "camera_info: %s", wrong);
+}
+
 /* Reads the depth camera's intrinsics; *there is false if it has none of its own. */
 static int depth_lens(const bag_frames *b, uint32_t index, const t3r_frame *frame, lens *out, bool *there, char *error,
                       size_t error_bytes)
@@ -293,7 +305,7 @@ static int depth_lens(const bag_frames *b, uint32_t index, const t3r_frame *fram
 
 /* Replaces the frame's depth by registered depth. False: out of memory. */
 static bool put_registered(bag_frames *b, uint32_t index, t3r_frame *f, const lens *depth, const lens *colour,
-                           const rigid *from_depth)
+                           const rigid *from_depth, const lens *bent)
 {
     const uint8_t *const of[3] = {t3r_recording_frame_message(b->recording, index, T3R_USE_DEPTH).data,
                                   t3r_recording_frame_message(b->recording, index, T3R_USE_CAMERA_INFO).data,
@@ -309,6 +321,9 @@ static bool put_registered(bag_frames *b, uint32_t index, t3r_frame *f, const le
             return false;
         }
         register_depth(f, &b->rays, colour, from_depth, b->depth);
+        if (bent != NULL) {
+            straighten_hide(bent, width, height, b->depth);
+        }
         memcpy(b->depth_of, of, sizeof of);
         b->depth_place = *from_depth;
     }
@@ -320,7 +335,9 @@ static bool put_registered(bag_frames *b, uint32_t index, t3r_frame *f, const le
     return true;
 }
 
-static int make_depth(bag_frames *b, uint32_t index, t3r_capture_frame *frame, char *error, size_t error_bytes)
+/* Makes depth of the colour camera's view; bent: the lens without which the colour was redrawn, or NULL. */
+static int make_depth(bag_frames *b, uint32_t index, t3r_capture_frame *frame, const lens *bent, char *error,
+                      size_t error_bytes)
 {
     t3r_frame *f = &frame->frame;
     t3r_text from = frame_of(b->recording, T3R_USE_DEPTH);
@@ -339,29 +356,35 @@ static int make_depth(bag_frames *b, uint32_t index, t3r_capture_frame *frame, c
     }
     lens_of_camera(&frame->camera, f->width, f->height, &colour);
     rigid from_depth = rigid_identity;
-    if (same_frame && is_aligned(&depth, &colour)) {
-        return 0;
+    if (same_frame && is_aligned(&depth, bent != NULL ? bent : &colour)) {
+        return bent == NULL ? 0 : bag_straighten_depth(bent, f, &b->straight, error, error_bytes);
     }
     if (!same_frame && !lookup(b, b->camera, from, frame->depth_stamp_ns, &from_depth)) {
         remark(b, "depth is left out: there is no transform", from, b->camera);
         drop_depth(b, f);
         return 0;
     }
-    return put_registered(b, index, f, &depth, &colour, &from_depth) ? 0
-                                                                     : t3r_reason(error, error_bytes, "out of memory");
+    return put_registered(b, index, f, &depth, &colour, &from_depth, bent)
+               ? 0
+               : t3r_reason(error, error_bytes, "out of memory");
 }
 
 int bag_frames_make(bag_frames *b, uint32_t index, t3r_capture_frame *frame, char *error, size_t error_bytes)
 {
-    if (make_pose(b, index, frame, error, error_bytes) != 0) {
+    lens bent;
+    if (make_pose(b, index, frame, error, error_bytes) != 0 ||
+        (frame->straightened && bent_lens(b, index, &bent, error, error_bytes) != 0)) {
         return -1;
     }
-    return frame->frame.depth == NULL ? 0 : make_depth(b, index, frame, error, error_bytes);
+    b->straightened += frame->straightened;
+    return frame->frame.depth == NULL
+               ? 0
+               : make_depth(b, index, frame, frame->straightened ? &bent : NULL, error, error_bytes);
 }
 
 void bag_frames_count_anew(bag_frames *b)
 {
-    b->interpolated = b->composed = b->unposed = b->registered = b->unregistered = 0;
+    b->interpolated = b->composed = b->unposed = b->registered = b->unregistered = b->straightened = 0;
     b->remark[0] = '\0';
 }
 
@@ -372,4 +395,5 @@ void bag_frames_close(bag_frames *b)
     free(b->depth);
     b->depth = NULL;
     ray_grid_free(&b->rays);
+    picture_free(&b->straight);
 }

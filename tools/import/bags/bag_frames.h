@@ -9,6 +9,7 @@
 
 #include "import/bags/transform_tree.h"
 #include "import/depth/register_depth.h"
+#include "pictures/picture.h"
 #include "recording/recording.h"
 
 typedef struct bag_frames_options {
@@ -28,8 +29,9 @@ typedef struct bag_frames {
     ray_grid rays;
     const uint8_t *depth_of[3]; /* its source messages: depth and the two camera_info */
     rigid depth_place;
+    picture straight; /* depth with its own lens, redrawn like colour */
     /* counts over the frames made so far */
-    uint32_t interpolated, composed, unposed, registered, unregistered;
+    uint32_t interpolated, composed, unposed, registered, unregistered, straightened;
     char remark[256]; /* the first reason why a frame has no pose or no depth; "" */
 } bag_frames;
 

@@ -6,10 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/little_endian.h"
 #include "host/little_floats.h"
 #include "host/reason.h"
+#include "import/bags/bag_straight.h"
+#include "import/poses/lens.h"
 #include "messages/pixel_layout.h"
 #include "messages/ros_messages.h"
+#include "pictures/exif.h"
+#include "pictures/picture_shape.h"
 
 /* Precedes the picture of compressedDepth: how it was made, and two floats a and b. */
 #define DEPTH_HEADER_BYTES 12u
@@ -77,23 +82,37 @@ static int decode(void *user, t3r_text format, const uint8_t *bytes, size_t coun
     if (p->bits != 8) {
         return t3r_reason(error, error_bytes, "the colour image has 16 bits a sample");
     }
+    if (p->orientation > EXIF_UPRIGHT && p->orientation < EXIF_SWAPS_FROM) {
+        return t3r_reason(error, error_bytes,
+                          "EXIF turns the image (orientation %u), and nothing says whether its camera_info is of the "
+                          "turned one",
+                          p->orientation);
+    }
+    if (!picture_blacken(p)) {
+        return t3r_reason(error, error_bytes, "all pixels are transparent");
+    }
     *out = (t3r_decoded_image){p->width, p->height, p->channels == 3 ? T3R_PIXEL_RGB24 : T3R_PIXEL_GREY, p->samples};
     return 0;
 }
 
 /* ---- encodings that are no pixel formats ---- */
 
-/* Copies the first three of four channels, in the order red, green, blue. */
-static void take_colours(const t3r_ros_image *image, bool blue_first, uint8_t *out)
+/* Copies the first three of four channels, in the order red, green, blue. Returns whether any pixel is opaque by half
+ * or more; these are marked as valid. */
+static bool take_colours(const t3r_ros_image *image, bool blue_first, uint8_t *out, uint8_t *valid)
 {
+    bool opaque = false;
     for (uint32_t y = 0; y < image->height; y++) {
         const uint8_t *in = image->data + (size_t)y * image->step;
-        for (uint32_t x = 0; x < image->width; x++, in += 4, out += 3) {
+        for (uint32_t x = 0; x < image->width; x++, in += 4, out += 3, valid++) {
             out[0] = in[blue_first ? 2 : 0];
             out[1] = in[1];
             out[2] = in[blue_first ? 0 : 2];
+            *valid = in[3] >= 128;
+            opaque = opaque || *valid != 0;
         }
     }
+    return opaque;
 }
 
 /* Fills in each colour of a pixel with the mean of the samples of that colour in the 3x3 pixels around it. `pattern`
@@ -136,25 +155,67 @@ static int convert(void *user, const t3r_ros_image *image, t3r_decoded_image *ou
     picture_free(p);
     *p = (picture){.width = image->width, .height = image->height, .channels = 3, .bits = 8};
     p->samples = malloc((size_t)image->width * image->height * 3);
-    if (p->samples == NULL) {
+    p->valid = bayer ? NULL : malloc((size_t)image->width * image->height);
+    if (p->samples == NULL || (!bayer && p->valid == NULL)) {
         return t3r_reason(error, error_bytes, "out of memory");
     }
     if (bayer) {
         demosaic(image, image->encoding.chars + strlen("bayer_"), p->samples);
-    } else {
-        take_colours(image, !t3r_text_is(image->encoding, "rgba8"), p->samples);
+    } else if (!take_colours(image, !t3r_text_is(image->encoding, "rgba8"), p->samples, p->valid)) {
+        free(p->valid); /* drivers leave the fourth channel at 0 */
+        p->valid = NULL;
     }
+    (void)picture_blacken(p);
     *out = (t3r_decoded_image){p->width, p->height, T3R_PIXEL_RGB24, p->samples};
     return 0;
 }
 
+static int redraw(void *user, const t3r_ros_camera_info *info, t3r_frame *frame, bool depth, char *error,
+                  size_t error_bytes)
+{
+    bag_pictures *pictures = user;
+    lens bent;
+    const char *wrong = lens_of_info(info, &bent);
+    if (wrong != NULL) {
+        return t3r_reason(error, error_bytes, "%s", wrong);
+    }
+    if (bag_straighten_colour(&bent, frame, &pictures->straight_colour, error, error_bytes) != 0) {
+        return -1;
+    }
+    return depth ? bag_straighten_depth(&bent, frame, &pictures->straight_depth, error, error_bytes) : 0;
+}
+
+int bag_pictures_hide(bag_pictures *pictures, t3r_frame *frame)
+{
+    const picture *colour = &pictures->colour;
+    picture *p = &pictures->hidden;
+    if (colour->valid == NULL || frame->depth == NULL) {
+        return 0;
+    }
+    picture_free(p);
+    *p = (picture){.width = frame->depth_width, .height = frame->depth_height, .channels = 1, .bits = 16};
+    p->samples = malloc((size_t)p->width * p->height * 2);
+    uint8_t *out = p->samples;
+    for (uint32_t i = 0; out != NULL && i < p->width * p->height; i++, out += 2) {
+        const uint32_t x = i % p->width, y = i / p->width;
+        const uint8_t *sample = frame->depth + (size_t)y * frame->depth_stride_bytes + (size_t)x * 2;
+        t3r_store_le16(out, picture_valid_at(colour, x, y, p) ? t3r_load_le16(sample) : 0);
+    }
+    frame->depth = p->samples;
+    frame->depth_stride_bytes = p->width * 2;
+    return frame->depth != NULL ? 0 : -1;
+}
+
 t3r_image_decoder bag_pictures_decoder(bag_pictures *pictures)
 {
-    return (t3r_image_decoder){decode, convert, pictures};
+    return (t3r_image_decoder){decode, convert, redraw, pictures};
 }
 
 void bag_pictures_free(bag_pictures *pictures)
 {
     picture_free(&pictures->colour);
     picture_free(&pictures->depth);
+    picture_free(&pictures->straight_colour);
+    picture_free(&pictures->straight_depth);
+    picture_free(&pictures->hidden);
 }

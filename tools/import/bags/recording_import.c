@@ -26,6 +26,7 @@ typedef struct estimation {
 } estimation;
 
 typedef struct made_frames {
+    bag_pictures *pictures;
     bag_frames *frames;
     const estimation *estimated;
 } made_frames;
@@ -36,6 +37,9 @@ static int make(void *user, uint32_t index, t3r_capture_frame *frame, char *erro
     const made_frames *made = user;
     const estimation *e = made->estimated;
     int status = bag_frames_make(made->frames, index, frame, error, error_bytes);
+    if (status == 0 && bag_pictures_hide(made->pictures, &frame->frame) != 0) {
+        status = t3r_reason(error, error_bytes, "out of memory");
+    }
     if (e->accounts != NULL && e->accounts[e->place[index]].why[0] != '\0') {
         frame->has_pose = false; /* a recorded pose would be in another world than the estimated ones */
     }
@@ -105,18 +109,19 @@ static int estimate_all(t3r_recording *recording, const recording_import_request
 /* Describes what was lost by a cut; "" without one. */
 static void say_lost(const t3r_recording *recording, char *text, size_t bytes)
 {
-    t3r_recording_cut cut = t3r_recording_cut_of(recording);
+    const t3r_recording_cut cut = t3r_recording_cut_of(recording);
+    const char *file = cut.file[0] != '\0' ? cut.file : "the file";
     if (!cut.cut) {
         text[0] = '\0';
     } else if (cut.offset == cut.file_bytes) {
         snprintf(text, bytes,
-                 "only the end and its index: the file stops at byte %" PRIu64 ", after %" PRIu64 " complete messages",
+                 "only the end and its index: %s stops at byte %" PRIu64 ", after %" PRIu64 " complete messages", file,
                  cut.offset, cut.messages);
     } else {
         snprintf(text, bytes,
-                 "everything after %" PRIu64 " complete messages: the file is cut or damaged from byte %" PRIu64
-                 " of %" PRIu64 " on",
-                 cut.messages, cut.offset, cut.file_bytes);
+                 "everything after %" PRIu64 " complete messages: %s is cut or damaged from byte %" PRIu64 " of %" PRIu64
+                 " on",
+                 cut.messages, file, cut.offset, cut.file_bytes);
     }
 }
 
@@ -176,7 +181,7 @@ static void print_json(const report *r)
     const t3r_recording *recording = r->recording;
     const bag_frames *frames = r->frames;
     const posed_recording_totals *totals = r->totals;
-    char lost[200];
+    char lost[300];
     say_lost(recording, lost, sizeof lost);
     cJSON *json = cJSON_CreateObject();
     cJSON_AddNumberToObject(json, "frames", totals->frames);
@@ -188,6 +193,7 @@ static void print_json(const report *r)
     cJSON_AddNumberToObject(json, "composed", frames->composed);
     cJSON_AddNumberToObject(json, "registered", frames->registered);
     cJSON_AddNumberToObject(json, "unregistered", frames->unregistered);
+    cJSON_AddNumberToObject(json, "straightened", frames->straightened);
     json_add_integer(json, "depth_beyond", (int64_t)t3r_recording_depth_beyond(recording));
     cJSON_AddStringToObject(json, "remark", frames->remark);
     cJSON_AddStringToObject(json, "lost", lost);
@@ -248,7 +254,7 @@ static void print_losses(const report *r)
 
 static void print_text(const char *output, const report *r)
 {
-    char lost[200];
+    char lost[300];
     const bag_frames *frames = r->frames;
     const posed_recording_totals *totals = r->totals;
     say_lost(r->recording, lost, sizeof lost);
@@ -268,6 +274,10 @@ static void print_text(const char *output, const report *r)
     }
     if (frames->registered > 0 || frames->unregistered > 0) {
         printf("depth: %u registered to colour, %u left out\n", frames->registered, frames->unregistered);
+    }
+    if (frames->straightened > 0) {
+        printf("lens: colour of %u frames redrawn as a pinhole's: no recording holds its coefficients\n",
+               frames->straightened);
     }
     const uint64_t beyond = t3r_recording_depth_beyond(r->recording);
     if (beyond > 0) {
@@ -297,7 +307,7 @@ static int no_frames(const recording_import_request *r, const t3r_recording *rec
     return cli_error(CLI_BAD_INPUT, "%s: no frames: %s", r->input, t3r_recording_note(recording));
 }
 
-static int import_opened(const recording_import_request *r, t3r_recording *recording)
+static int import_opened(const recording_import_request *r, t3r_recording *recording, bag_pictures *pictures)
 {
     uint32_t count = t3r_recording_frame_count(recording);
     if (t3r_recording_asks(recording)[0] != '\0') {
@@ -322,7 +332,8 @@ static int import_opened(const recording_import_request *r, t3r_recording *recor
     if (code == CLI_OK && r->poses != POSES_GIVEN) {
         code = estimate_all(recording, r, &losses, &estimated);
     }
-    code = code == CLI_OK ? write_new(r, recording, &(made_frames){&frames, &estimated}, &losses, &totals) : code;
+    code = code == CLI_OK ? write_new(r, recording, &(made_frames){pictures, &frames, &estimated}, &losses, &totals)
+                          : code;
     const report made = {recording, &frames, &totals, &losses, &estimated};
     if (code == CLI_OK && r->json) {
         print_json(&made);
@@ -349,7 +360,7 @@ int recording_import(const recording_import_request *request)
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     t3r_recording_set_decoder(recording, bag_pictures_decoder(&pictures));
-    int code = import_opened(request, recording);
+    int code = import_opened(request, recording, &pictures);
     t3r_recording_close(recording);
     bag_pictures_free(&pictures);
     return code;

@@ -135,9 +135,17 @@ int import_depth_size(const char *directory, const posed_frame *frame, uint32_t 
                       size_t error_bytes)
 {
     char *path = find_picture(directory, frame->depth);
+    const bool raw = frame->depth_raw.kind == RAW_DEPTH_PLAIN || frame->depth_raw.kind == RAW_DEPTH_COLMAP;
+    picture numbers = {0};
     const int status = path == NULL         ? t3r_reason(error, error_bytes, "out of memory")
+                       : raw                ? raw_depth_read(path, &frame->depth_raw, &numbers, error, error_bytes)
                        : exr_depth_is(path) ? exr_depth_size(path, width, height, error, error_bytes)
                                             : picture_size(path, width, height, error, error_bytes);
+    if (raw) { /* their sides are no header, or one that only the whole file confirms */
+        *width = numbers.width;
+        *height = numbers.height;
+    }
+    picture_free(&numbers);
     free(path);
     return status;
 }
@@ -354,8 +362,9 @@ static int read_view(const char *directory, const posed_frame *frame, bool large
         camera->distortion = T3R_DISTORTION_NONE;
         memset(camera->coefficients, 0, sizeof camera->coefficients);
     }
-    picture_blacken(colour);
-    return 0;
+    return picture_blacken(colour)
+               ? 0
+               : t3r_reason(error, error_bytes, "%s: alpha or the mask leaves no pixel of it", frame->image);
 }
 
 /* Returns 0, or -1 with a reason. */

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/little_endian.h"
 #include "host/reason.h"
 #include "messages/fixed_camera.h"
 #include "messages/fixed_double.h"
@@ -76,10 +77,10 @@ static void interpolate(const picture *p, double x, double y, uint8_t *out)
     }
 }
 
-/* Finds the place in the picture that the pinhole's pixel (x, y) sees; false: none. */
-static bool source_of(const lens *l, const picture *p, uint32_t x, uint32_t y, double at[2])
+/* Finds the place in a picture of width x height that the pinhole's pixel (x, y) sees; false: none. */
+static bool source_of(const lens *l, uint32_t width, uint32_t height, uint32_t x, uint32_t y, double at[2])
 {
-    const double scale[2] = {p->width / l->width, p->height / l->height};
+    const double scale[2] = {width / l->width, height / l->height};
     const double ray[3] = {((x + 0.5) / scale[0] - 0.5 - l->cx) / l->fx, ((y + 0.5) / scale[1] - 0.5 - l->cy) / l->fy,
                            1};
     if (!lens_project(l, ray, at)) {
@@ -87,7 +88,7 @@ static bool source_of(const lens *l, const picture *p, uint32_t x, uint32_t y, d
     }
     at[0] = (at[0] + 0.5) * scale[0] - 0.5;
     at[1] = (at[1] + 0.5) * scale[1] - 0.5;
-    return at[0] >= -0.5 && at[1] >= -0.5 && at[0] < p->width - 0.5 && at[1] < p->height - 0.5;
+    return at[0] >= -0.5 && at[1] >= -0.5 && at[0] < width - 0.5 && at[1] < height - 0.5;
 }
 
 int straighten(const lens *l, picture *p, char *error, size_t error_bytes)
@@ -105,7 +106,7 @@ int straighten(const lens *l, picture *p, char *error, size_t error_bytes)
     }
     for (size_t i = 0; i < pixels; i++) {
         double at[2];
-        if (!source_of(&bounded, p, (uint32_t)(i % p->width), (uint32_t)(i / p->width), at)) {
+        if (!source_of(&bounded, p->width, p->height, (uint32_t)(i % p->width), (uint32_t)(i / p->width), at)) {
             continue;
         }
         const size_t nearest = (size_t)floor(at[1] + 0.5) * p->width + (size_t)floor(at[0] + 0.5);
@@ -123,4 +124,15 @@ int straighten(const lens *l, picture *p, char *error, size_t error_bytes)
                ? 0
                : t3r_reason(error, error_bytes,
                             "distortion: the coefficients fold, or push out of view, more than half of the picture");
+}
+
+void straighten_hide(const lens *l, uint32_t width, uint32_t height, uint8_t *depth_z16)
+{
+    const lens bounded = within_fold(l);
+    for (size_t i = 0; i < (size_t)width * height; i++) {
+        double at[2];
+        if (!source_of(&bounded, width, height, (uint32_t)(i % width), (uint32_t)(i / width), at)) {
+            t3r_store_le16(depth_z16 + 2 * i, 0);
+        }
+    }
 }

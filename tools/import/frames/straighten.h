@@ -17,5 +17,7 @@ lens posed_lens(const posed_intrinsics *in, const t3r_recorded_camera *camera);
  * not see become 0, in colour also invalid. Returns 0, or -1 with a reason in error[]: also if that is more than half
  * of the picture. */
 int straighten(const lens *l, picture *p, char *error, size_t error_bytes);
+/* Sets little-endian depth of the pinhole's view to 0, none, where the lens sees nothing. */
+void straighten_hide(const lens *l, uint32_t width, uint32_t height, uint8_t *depth_z16);
 
 #endif
