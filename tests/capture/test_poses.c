@@ -51,11 +51,16 @@ TEST(lines_are_read_to_the_nanosecond)
 
     refused("", "holds no pose");
     refused("x 1 2 3 0 0 0 1\n", "line 1: no time in seconds");
-    refused("1 1 2 3 0 0 0 1\n2 1 2 3 0 0 0\n", "line 2: not 'seconds tx");
-    refused("1 1 2 3 0 0 0 2\n", "norm is not 1");
+    refused("1 1 2 3 0 0 0\n", "line 1: not 'seconds tx");
+    refused("1 1 2 3 0 0 0 1 9\n", "more than eight");
+    refused("1 1 2 3 0 0 0 0\n", "without direction");
     refused("1 1 2 nan 0 0 0 1\n", "not finite");
     refused("1 1 2 4e9 0 0 0 1\n", "2^30");
-    refused("1.5,1,2,3,1,0,0,0\n", "nanoseconds");
+    parsed("1 1 2 3 0 0 0 1\n2 1 2 3 0 0 0\n3 1 2 3 0 2 0 0\n", &t);
+    assert_int_equal(t.count, 2);
+    assert_int_equal(t.losses.count, 1);
+    assert_true(t.poses[1].pose.rotation[2] >= 1 && t.poses[1].pose.rotation[2] <= 1); /* normalised */
+    trajectory_free(&t);
     refused("99999999999 1 2 3 0 0 0 1\n", "no time");
     parsed("4000000000000000000,1,2,3,1,0,0,0\n", &t);
     assert_int_equal(t.poses[0].stamp_ns, INT64_C(4000000000000000000));

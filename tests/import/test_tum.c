@@ -167,9 +167,9 @@ TEST_WITH(test_bad_lists_are_named, scratch_setup, scratch_teardown)
     refuse(s, &with_lens, "depth.txt: line 1");
     good_lists(s);
     put(s, "groundtruth.txt", "10.0 0 0 0 0 0 1\n");
-    refuse(s, &with_lens, "groundtruth.txt: line 1: not 'time tx ty tz qx qy qz qw'");
-    put(s, "groundtruth.txt", "10.0 0 0 0 0 0 0 0.5\n");
-    refuse(s, &with_lens, "groundtruth.txt: line 1: the quaternion's norm");
+    refuse(s, &with_lens, "groundtruth.txt: line 1: not 'seconds tx ty tz qx qy qz qw'");
+    put(s, "groundtruth.txt", "10.0 0 0 0 0 0 0 0\n");
+    refuse(s, &with_lens, "groundtruth.txt: line 1: a quaternion without direction");
     put(s, "groundtruth.txt", "10.0 inf 0 0 0 0 0 1\n");
     refuse(s, &with_lens, "groundtruth.txt: line 1");
     put(s, "groundtruth.txt", "10.0 3e9 0 0 0 0 0 1\n");

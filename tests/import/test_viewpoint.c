@@ -59,6 +59,15 @@ TEST(reads_all_frames_of_a_list)
     assert_int_equal(viewpoint_read_pose(path, &list, error, sizeof error), 0);
     assert_int_equal(list.count, 2);
     viewpoint_list_free(&list);
+    write_text(
+        "{\"fl_x\": 200, \"w\": 64, \"h\": 64, \"frames\": [{\"file_path\": \"a.png\"}, {\"file_path\": \"b.png\", "
+        "\"transform_matrix\": " IDENTITY "}, {\"file_path\": \"c.png\", \"k1\": 0.1, \"transform_matrix\": " IDENTITY
+        "}]}");
+    assert_int_equal(viewpoint_read_pose(path, &list, error, sizeof error), 0);
+    assert_int_equal(list.count, 1);
+    assert_int_equal(list.losses.count, 2);
+    assert_ptr_equal(strstr(list.losses.first, "frames[0]: "), list.losses.first);
+    viewpoint_list_free(&list);
 }
 
 TEST(refuses_bad_poses)
@@ -109,6 +118,12 @@ TEST(reads_a_trajectory)
     assert_true(list.items[1].camera.position_q32[0] == -(INT64_C(1) << 32));
     assert_int_equal(list.items[1].camera.rotation_q30[2], ONE_Q30); /* normalised */
     viewpoint_list_free(&list);
+    write_text("nan 0 0 0 0 0 0 1\n0 1 2 3 0 0 0 1\n1 0 0 0 0 0 0 0\n2 0 0 inf 0 0 0 1\n");
+    assert_int_equal(viewpoint_read_trajectory(path, &lens, &list, error, sizeof error), 0);
+    assert_int_equal(list.count, 1);
+    assert_int_equal(list.losses.count, 3);
+    assert_string_equal(list.losses.first, "line 1: no time in seconds");
+    viewpoint_list_free(&list);
 }
 
 TEST(refuses_bad_trajectories)
@@ -118,12 +133,12 @@ TEST(refuses_bad_trajectories)
     } bad[] = {
         {"", "no pose"},
         {"# nothing\n", "no pose"},
-        {"0 1 2 3 0 0 0 1\n0 1 2 3 0 0 0\n", "line 2"},
+        {"0 1 2 3 0 0 0\n", "line 1: not 'seconds"},
         {"0 1 2 3 0 0 0 1 9\n", "more than eight"},
-        {"0 1 2 nan 0 0 0 1\n", "position"},
+        {"0 1 2 nan 0 0 0 1\n", "not finite"},
         {"0 1 2 3 0 0 0 0\n", "quaternion"},
         {"0 1 2 2e9 0 0 0 1\n", "position"},
-        {"a b c d e f g h\n", "not 'stamp"},
+        {"a b c d e f g h\n", "no time"},
     };
     viewpoint lens;
     assert_int_equal(viewpoint_from_angle(60, 64, 64, &lens), 0);

@@ -6,6 +6,7 @@
 
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
+#include "import/poses/pose_losses.h"
 #include "scene/scene_options.h"
 
 enum {
@@ -55,11 +56,12 @@ static const struct argp_option options[] = {
      "fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels of the captured size, (0, 0) being the centre of the top-left pixel", 0},
     {"fisheye", OPTION_TO(capture_options, fisheye), NULL, 0,
      "read the intrinsics as those of a fisheye lens, with k1,k2,k3,k4 at the end", 0},
-    {"poses", OPTION_TO(capture_options, poses), "FILE", OPTION_READS,
+    {"poses", OPTION_TO(capture_options, poses), "FILE", OPTION_READS | OPTION_FOLDER,
      "poses over time, camera to world, to interpolate: lines of TUM, a table of EuRoC, or a ROS 2 bag (MCAP) with "
      "PoseStamped or TransformStamped",
      0},
     {"pose-topic", OPTION_TO(capture_options, pose_topic), "TOPIC", 0, "topic of the bag (the only one with poses)", 0},
+    {"strict", OPTION_TO(capture_options, strict), NULL, 0, POSE_LOSSES_STRICT_HELP, 0},
     {"clock-offset", KEY_OFFSET, "S|estimate[:S]", 0,
      "seconds that the poses' clock is ahead of the camera's (0), or estimate: from the motion of the picture, "
      "within a second of S; S is 0 if the times overlap, else the difference of their starts",
@@ -216,8 +218,8 @@ static void check(struct argp_state *state, capture_options *o)
         argp_error(state, "--depth stereo needs a recording: trim3r build");
     } else if (o->every > 0 && o->build.context_count > 0) {
         argp_error(state, "--every and --context exclude each other");
-    } else if (o->poses == NULL && (o->has_offset || o->pose_topic != NULL)) {
-        argp_error(state, "--clock-offset and --pose-topic belong to --poses");
+    } else if (o->poses == NULL && (o->has_offset || o->pose_topic != NULL || o->strict)) {
+        argp_error(state, "--clock-offset, --pose-topic and --strict belong to --poses");
     } else if ((o->max_bytes > 0 || o->sync || o->stored.unchunked || o->stored.compression != T3R_COMPRESSION_NONE) &&
                o->output == NULL) {
         argp_error(state, "--max-bytes, --sync, --compression and --unchunked belong to -o");

@@ -19,9 +19,10 @@ typedef struct capture_options {
     int64_t offset_ns; /* given, or the centre of an estimate */
     const char *scene;
     recording_options stored; /* how the recording stores messages */
-    bool list, json, sync, hash, local, quiet;
+    bool list, json, sync, hash, local, quiet, strict;
     uint32_t every, frames;
     uint64_t max_bytes;
+    uint64_t poses_left_out; /* filled in when the poses are read */
     double seconds, reconnect_seconds;
     reconstruction_options build;
     uint64_t given; /* a bit for each KEY_* on the command line */

@@ -66,6 +66,7 @@ static void print_json(const capture_options *o, const char *name, const t3r_cap
     }
     if (o->poses != NULL) {
         cJSON_AddNumberToObject(root, "clock_offset_s", (double)offset->offset_ns * 1e-9);
+        json_add_integer(root, "poses_left_out", (int64_t)o->poses_left_out);
     }
     if (o->estimate) {
         cJSON_AddNumberToObject(root, "clock_offset_explained", offset->explained);

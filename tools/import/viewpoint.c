@@ -13,7 +13,7 @@
 #include "host/grow.h"
 #include "host/reason.h"
 #include "import/folders/transforms_json.h"
-#include "import/poses/pose_lines.h"
+#include "import/poses/pose_list.h"
 #include "mcap/reader_limits.h"
 
 #define MAX_POSES_BYTES ((size_t)16 << 20) /* a single pose is parsed twice and printed between */
@@ -61,47 +61,56 @@ int viewpoint_from_angle(double degrees, uint32_t width, uint32_t height, viewpo
 
 /* ---- pose files --------------------------------------------------------------------------------------------- */
 
+/* Returns 0, or -1 with a reason why the frame gives no view. */
+static int convert_frame(const posed_frame *frame, viewpoint *view, char *error, size_t error_bytes)
+{
+    const posed_intrinsics *lens = &frame->intrinsics;
+    t3r_recorded_camera camera;
+    if (frame->rejected) {
+        return t3r_reason(error, error_bytes, "%s", frame->wrong != NULL ? frame->wrong : "out of memory");
+    }
+    if (isnan(lens->width) || isnan(lens->height)) {
+        return t3r_reason(error, error_bytes, "w or h: missing");
+    }
+    if (lens->width > T3R_MAX_SIDE || lens->height > T3R_MAX_SIDE) {
+        return t3r_reason(error, error_bytes, "w, h: more than %u pixels", T3R_MAX_SIDE);
+    }
+    if (posed_frame_camera(frame, (uint32_t)lens->width, (uint32_t)lens->height, &camera, error, error_bytes) != 0) {
+        return -1;
+    }
+    if (camera.distortion != T3R_DISTORTION_NONE) {
+        return t3r_reason(error, error_bytes,
+                          "k1 ..: pictures are drawn by pinhole cameras; without distortion coefficients and a "
+                          "fisheye's camera_model this pose is one");
+    }
+    *view = (viewpoint){.width = camera.width, .height = camera.height};
+    view->camera.fx_q16 = to_q(camera.fx, 16);
+    view->camera.fy_q16 = to_q(camera.fy, 16);
+    view->camera.cx_q16 = to_q(camera.cx, 16);
+    view->camera.cy_q16 = to_q(camera.cy, 16);
+    return set_pose(&view->camera, camera.position, camera.rotation) == 0
+               ? 0
+               : t3r_reason(error, error_bytes,
+                            "the camera is out of range (focal length 8..16384 pixels, position below 2^30)");
+}
+
 static int convert_frames(const posed_folder *folder, viewpoint_list *out, char *error, size_t error_bytes)
 {
-    out->items = calloc(folder->frame_count, sizeof *out->items);
+    out->items = calloc((size_t)folder->frame_count + 1, sizeof *out->items);
     if (out->items == NULL) {
         return t3r_reason(error, error_bytes, "out of memory");
     }
     for (uint32_t i = 0; i < folder->frame_count; i++) {
-        const posed_frame *frame = &folder->frames[i];
-        const posed_intrinsics *lens = &frame->intrinsics;
-        viewpoint *view = &out->items[i];
-        t3r_recorded_camera camera;
-        if (frame->rejected) {
-            return t3r_reason(error, error_bytes, "%s", frame->wrong != NULL ? frame->wrong : "out of memory");
+        char wrong[192] = "";
+        if (convert_frame(&folder->frames[i], &out->items[out->count], wrong, sizeof wrong) == 0) {
+            out->count++;
+        } else if (folder->frame_count == 1) {
+            return t3r_reason(error, error_bytes, "%s", wrong);
+        } else {
+            pose_losses_add(&out->losses, 1, "frames[%u]: %s", i, wrong);
         }
-        if (isnan(lens->width) || isnan(lens->height)) {
-            return t3r_reason(error, error_bytes, "w or h: missing");
-        }
-        if (lens->width > T3R_MAX_SIDE || lens->height > T3R_MAX_SIDE) {
-            return t3r_reason(error, error_bytes, "w, h: more than %u pixels", T3R_MAX_SIDE);
-        }
-        if (posed_frame_camera(frame, (uint32_t)lens->width, (uint32_t)lens->height, &camera, error, error_bytes) !=
-            0) {
-            return -1;
-        }
-        if (camera.distortion != T3R_DISTORTION_NONE) {
-            return t3r_reason(error, error_bytes,
-                              "k1 ..: pictures are drawn by pinhole cameras; without distortion coefficients and a "
-                              "fisheye's camera_model this pose is one");
-        }
-        *view = (viewpoint){.width = camera.width, .height = camera.height};
-        view->camera.fx_q16 = to_q(camera.fx, 16);
-        view->camera.fy_q16 = to_q(camera.fy, 16);
-        view->camera.cx_q16 = to_q(camera.cx, 16);
-        view->camera.cy_q16 = to_q(camera.cy, 16);
-        if (set_pose(&view->camera, camera.position, camera.rotation) != 0) {
-            return t3r_reason(error, error_bytes,
-                              "the camera is out of range (focal length 8..16384 pixels, position below 2^30)");
-        }
-        out->count++;
     }
-    return 0;
+    return out->count > 0 ? 0 : t3r_reason(error, error_bytes, "%s", out->losses.first);
 }
 
 /* Returns the text of a transforms.json around a single pose, so that one reader checks both; NULL when that is not
@@ -109,7 +118,7 @@ static int convert_frames(const posed_folder *folder, viewpoint_list *out, char 
 static char *wrap_pose(const char *text, size_t bytes)
 {
     char *wrapped = NULL;
-    cJSON *pose = json_parse(text, bytes, NULL, 0);
+    cJSON *pose = json_parse_python(text, bytes, NULL, 0);
     if (cJSON_IsObject(pose) && cJSON_GetObjectItemCaseSensitive(pose, "frames") == NULL) {
         cJSON *root = cJSON_CreateObject();
         cJSON *frames = cJSON_AddArrayToObject(root, "frames");
@@ -154,41 +163,23 @@ int viewpoint_read_pose(const char *path, viewpoint_list *out, char *error, size
 
 /* ---- trajectories --------------------------------------------------------------------------------------------- */
 
-/* Returns NULL, or what is wrong with the line. */
-static const char *read_line(char *line, const viewpoint *lens, viewpoint *view)
-{
-    double stamp;
-    rigid pose;
-    *view = *lens;
-    if (!pose_lines_number(&line, &stamp) || !isfinite(stamp) || !pose_lines_pose(&line, false, &pose)) {
-        return "not 'stamp tx ty tz qx qy qz qw'";
-    }
-    if (line[strspn(line, " \t\r")] != '\0') {
-        return "more than eight numbers";
-    }
-    return set_pose(&view->camera, pose.position, pose.rotation) == 0
-               ? NULL
-               : "a quaternion without length or a position of 2^30 or more";
-}
-
-/* Returns NULL, or what is wrong with line lines->number. */
-static const char *read_lines(pose_lines *lines, const viewpoint *lens, viewpoint_list *out)
+/* Returns NULL, or what is wrong. */
+static const char *read_list(pose_list *list, const viewpoint *lens, viewpoint_list *out)
 {
     size_t room = 0;
-    const char *wrong = NULL;
-    for (char *line; wrong == NULL && (line = pose_lines_next(lines)) != NULL;) {
-        if (out->count == T3R_LIMIT_POSES) {
-            return T3R_LIMIT_TEXT("more than ", T3R_LIMIT_POSES, " poses");
-        }
+    for (pose_list_item item; pose_list_next(list, &item);) {
         viewpoint *grown = t3r_grow(out->items, out->count, &room, sizeof *grown);
         if (grown == NULL) {
             return "out of memory";
         }
         out->items = grown;
-        wrong = read_line(line, lens, &out->items[out->count]);
-        out->count += wrong == NULL;
+        out->items[out->count] = *lens;
+        if (set_pose(&out->items[out->count].camera, item.pose.position, item.pose.rotation) != 0) {
+            return "the camera is out of range";
+        }
+        out->count++;
     }
-    return wrong == NULL && out->count == 0 ? "no pose in the file" : wrong;
+    return NULL;
 }
 
 int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint_list *out, char *error,
@@ -200,12 +191,14 @@ int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint
     if (text == NULL) {
         return -1;
     }
-    pose_lines lines = {.rest = text};
-    const char *wrong = read_lines(&lines, lens, out);
+    pose_list list = {.rest = text};
+    const char *wrong = read_list(&list, lens, out);
+    const int status = wrong == NULL ? pose_list_end(&list, path, error, error_bytes)
+                                     : t3r_reason(error, error_bytes, "%s: line %zu: %s", path, list.line, wrong);
     free(text);
-    if (wrong == NULL) {
-        return 0;
+    if (status != 0) {
+        viewpoint_list_free(out);
     }
-    viewpoint_list_free(out);
-    return t3r_reason(error, error_bytes, "%s: line %zu: %s", path, lines.number, wrong);
+    out->losses = list.losses;
+    return status;
 }

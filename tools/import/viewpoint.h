@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "import/poses/pose_losses.h"
 #include "trim3r.h"
 
 typedef struct viewpoint {
@@ -16,14 +17,16 @@ typedef struct viewpoint {
 typedef struct viewpoint_list {
     viewpoint *items; /* heap; viewpoint_list_free() */
     uint32_t count;
+    pose_losses losses; /* poses that are left out */
 } viewpoint_list;
 
 /* Reads a JSON object with the fields of one frame of transforms.json (fl_x [fl_y cx cy] w h transform_matrix), or a
- * whole transforms.json; pictures are not opened. Returns 0, or -1 with "path: field: what" in error[]. */
+ * whole transforms.json; pictures are not opened. Returns 0, or -1 with "path: field: what" in error[] if no frame
+ * gives a view. */
 int viewpoint_read_pose(const char *path, viewpoint_list *out, char *error, size_t error_bytes);
 
-/* Reads TUM lines `stamp tx ty tz qx qy qz qw`, camera to world, x right, y down, z forward; # starts a comment.
- * Intrinsics and size are those of `lens`. Returns 0, or -1 with "path: line: what" in error[]. */
+/* Reads a list of poses (pose_list.h), camera to world, x right, y down, z forward. Intrinsics and size are those of
+ * `lens`. Returns 0, or -1 with "path: line: what" in error[]. */
 int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint_list *out, char *error,
                               size_t error_bytes);
 

@@ -4,8 +4,8 @@
  * within 20 ms is used, else the picture is left out. */
 #include "import/folders/tum_rgbd.h"
 
+#include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,15 +13,14 @@
 #include "host/file_bytes.h"
 #include "host/grow.h"
 #include "host/reason.h"
-#include "import/poses/pose_check.h"
 #include "import/poses/pose_lines.h"
+#include "import/poses/pose_list.h"
 #include "mcap/reader_limits.h"
 #include "trim3r.h"
 
 #define NEAR_SECONDS 0.020
 #define BRACKET_SECONDS 0.100
 #define DEPTH_STEPS_PER_METRE 5000.0
-#define REASON_BYTES 256
 
 typedef struct stamped {
     double stamp;
@@ -31,9 +30,8 @@ typedef struct stamped {
 
 typedef struct stamped_list {
     stamped *items;
-    size_t count;
-    uint32_t bad_lines; /* left out */
-    char first_bad[REASON_BYTES];
+    size_t count, room;
+    pose_losses bad; /* lines that are left out */
 } stamped_list;
 
 typedef struct intrinsics_row {
@@ -59,71 +57,69 @@ static void list_free(stamped_list *list)
     *list = (stamped_list){0};
 }
 
-/* Counts a line that is left out. */
-static void note_bad_line(stamped_list *list, size_t line_number, const char *wrong)
-{
-    if (list->bad_lines++ == 0) {
-        snprintf(list->first_bad, sizeof list->first_bad, "line %zu: %s", line_number, wrong);
-    }
-}
-
 static int by_stamp(const void *a, const void *b)
 {
     double x = ((const stamped *)a)->stamp, y = ((const stamped *)b)->stamp;
     return (x > y) - (x < y);
 }
 
-/* Parses one line into an item. Returns NULL, or what is wrong with it. */
-static const char *parse_line(char *line, bool poses, stamped *item)
+static bool append(stamped_list *list, const stamped *item)
+{
+    stamped *grown = t3r_grow(list->items, list->count, &list->room, sizeof *grown);
+    if (grown != NULL) {
+        list->items = grown;
+        list->items[list->count++] = *item;
+    }
+    return grown != NULL;
+}
+
+/* Parses a line of a list of pictures. Returns NULL, or what is wrong with it. */
+static const char *parse_picture(char *line, stamped *item)
 {
     char *at = line;
+    *item = (stamped){0};
     if (!pose_lines_number(&at, &item->stamp) || !isfinite(item->stamp)) {
         return "no time stamp";
     }
-    if (!poses) {
-        char *name = strtok_r(at, " \t\r", &at);
-        if (name == NULL) {
-            return "no file name";
-        }
-        item->name = strdup(name);
-        return item->name != NULL ? NULL : "out of memory";
-    }
-    if (!pose_lines_pose(&at, false, &item->pose)) {
-        return "not 'time tx ty tz qx qy qz qw'";
-    }
-    const char *wrong = pose_check(&item->pose);
-    quaternion_normalise(item->pose.rotation);
-    return wrong;
+    const char *name = strtok_r(at, " \t\r", &at);
+    item->name = name != NULL ? strdup(name) : NULL;
+    return name == NULL ? "no file name" : NULL;
 }
 
-static int parse_list(const char *path, char *text, bool poses, stamped_list *list, char *error, size_t error_bytes)
+static int parse_pictures(const char *path, char *text, stamped_list *list, char *error, size_t error_bytes)
 {
-    size_t room = 0;
     pose_lines lines = {.rest = text};
     for (char *line; (line = pose_lines_next(&lines)) != NULL;) {
-        if (list->count == (poses ? T3R_LIMIT_POSES : T3R_LIMIT_PICTURES)) {
+        if (list->count == T3R_LIMIT_PICTURES) {
             return t3r_reason(error, error_bytes, "%s: line %zu: more than %d entries", path, lines.number,
-                              poses ? T3R_LIMIT_POSES : T3R_LIMIT_PICTURES);
+                              T3R_LIMIT_PICTURES);
         }
-        stamped *grown = t3r_grow(list->items, list->count, &room, sizeof *grown);
-        if (grown == NULL) {
+        stamped item;
+        const char *wrong = parse_picture(line, &item);
+        if (wrong != NULL) {
+            pose_losses_add(&list->bad, 1, "line %zu: %s", lines.number, wrong);
+        } else if (item.name == NULL || !append(list, &item)) {
+            free(item.name);
             return t3r_reason(error, error_bytes, "%s: out of memory", path);
         }
-        list->items = grown;
-        stamped *item = &list->items[list->count];
-        *item = (stamped){0};
-        const char *wrong = parse_line(line, poses, item);
-        if (wrong != NULL) {
-            note_bad_line(list, lines.number, wrong);
-        } else {
-            list->count++;
+    }
+    return list->count > 0
+               ? 0
+               : t3r_reason(error, error_bytes, "%s: %s", path, list->bad.count > 0 ? list->bad.first : "no entry");
+}
+
+static int parse_poses(const char *path, char *text, stamped_list *list, char *error, size_t error_bytes)
+{
+    pose_list poses = {.rest = text};
+    for (pose_list_item item; pose_list_next(&poses, &item);) {
+        stamped pose = {.stamp = item.seconds, .pose = item.pose};
+        quaternion_normalise(pose.pose.rotation);
+        if (!append(list, &pose)) {
+            return t3r_reason(error, error_bytes, "%s: out of memory", path);
         }
     }
-    if (list->count == 0) {
-        return t3r_reason(error, error_bytes, "%s: %s", path, list->bad_lines > 0 ? list->first_bad : "no entry");
-    }
-    qsort(list->items, list->count, sizeof *list->items, by_stamp);
-    return 0;
+    list->bad = poses.losses;
+    return pose_list_end(&poses, path, error, error_bytes);
 }
 
 static int read_list(const char *directory, const char *name, bool poses, stamped_list *list, char *error,
@@ -135,7 +131,12 @@ static int read_list(const char *directory, const char *name, bool poses, stampe
     }
     size_t bytes = 0;
     char *text = (char *)t3r_file_bytes(path, T3R_LIMIT_TEXT_BYTES, &bytes, error, error_bytes);
-    int status = text == NULL ? -1 : parse_list(path, text, poses, list, error, error_bytes);
+    int status = text == NULL ? -1
+                 : poses      ? parse_poses(path, text, list, error, error_bytes)
+                              : parse_pictures(path, text, list, error, error_bytes);
+    if (status == 0) {
+        qsort(list->items, list->count, sizeof *list->items, by_stamp);
+    }
     free(text);
     free(path);
     return status;
@@ -206,6 +207,10 @@ static int find_intrinsics(const char *directory, const posed_folder_options *op
             }
         }
         free(full);
+        if (row == NULL && options != NULL && options->without_intrinsics) {
+            *out = posed_intrinsics_of((const double[9]){NAN, NAN, NAN, NAN});
+            return 0;
+        }
         if (row == NULL) {
             return t3r_reason(error, error_bytes,
                               "%s: intrinsics unknown: a TUM RGB-D folder does not hold them, and its name has none of "
@@ -222,9 +227,9 @@ static int find_intrinsics(const char *directory, const posed_folder_options *op
 /* Notes the lines of a list that are left out. */
 static int note_list(const char *name, const stamped_list *list, posed_folder *out)
 {
-    return list->bad_lines == 0 ? 0
-                                : text_list_add(&out->left_out.frames, "%s: lines left out: %u; the first: %s", name,
-                                                list->bad_lines, list->first_bad);
+    return list->bad.count == 0 ? 0
+                                : text_list_add(&out->left_out.frames, "%s: lines left out: %" PRIu64 "; the first: %s",
+                                                name, list->bad.count, list->bad.first);
 }
 
 static int join(const stamped_list *colour, const stamped_list *depth, const stamped_list *trajectory,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Texts with an entry a line, as TUM and EuRoC write them. Empty lines and those that begin with # hold none. */
+/* Texts with an entry a line. Empty lines and those that begin with # hold none. */
 #ifndef TRIM3R_TOOLS_POSE_LINES_H
 #define TRIM3R_TOOLS_POSE_LINES_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "import/poses/trajectory.h"
 
-#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,14 +10,11 @@
 #include "host/grow.h"
 #include "host/reason.h"
 #include "import/poses/pose_check.h"
-#include "import/poses/pose_lines.h"
-#include "mcap/mcap.h"
+#include "import/poses/pose_list.h"
+#include "mcap/mcap_records.h"
 #include "mcap/reader_limits.h"
 #include "recording/recording.h"
-
-#define MAX_BYTES ((size_t)1 << 30) /* largest bag */
-#define MAX_STAMP_S INT64_C(4000000000)
-#define MAX_STAMP_NS (MAX_STAMP_S * 1000000000)
+#include "recording/recording_folder.h"
 
 void trajectory_free(trajectory *t)
 {
@@ -59,83 +56,23 @@ static void order(trajectory *t)
     t->count = kept;
 }
 
-/* Takes seconds with up to nine decimal places as whole nanoseconds, without binary fractions in between; *text moves
- * past them. */
-static bool take_seconds(char **text, int64_t *stamp_ns)
-{
-    char *p = *text;
-    int64_t seconds = 0, fraction = 0, unit = 100000000;
-    size_t digits = 0;
-    for (; *p >= '0' && *p <= '9'; p++, digits++) {
-        seconds = seconds * 10 + (*p - '0');
-        if (seconds > MAX_STAMP_S) {
-            return false;
-        }
-    }
-    if (*p == '.') {
-        for (p++; *p >= '0' && *p <= '9'; p++, digits++) {
-            fraction += (*p - '0') * unit;
-            unit /= 10;
-        }
-    }
-    *stamp_ns = seconds * 1000000000 + fraction;
-    *text = p;
-    return digits > 0;
-}
-
-static bool take_nanoseconds(char **text, int64_t *stamp_ns)
-{
-    char *p = *text;
-    int64_t value = 0;
-    for (; *p >= '0' && *p <= '9'; p++) {
-        int64_t digit = *p - '0';
-        if (value > (MAX_STAMP_NS - digit) / 10) {
-            return false;
-        }
-        value = value * 10 + digit;
-    }
-    bool any = p > *text;
-    *stamp_ns = value;
-    *text = p;
-    return any;
-}
-
-/* Returns NULL, or what is wrong with the line. */
-static const char *parse_line(char *line, bool commas, trajectory_pose *out)
-{
-    if (commas ? !take_nanoseconds(&line, &out->stamp_ns) : !take_seconds(&line, &out->stamp_ns)) {
-        return commas ? "no time in nanoseconds" : "no time in seconds";
-    }
-    if (*line != ' ' && *line != '\t' && *line != ',') {
-        return commas ? "no whole number of nanoseconds" : "no time in seconds";
-    }
-    if (!pose_lines_pose(&line, commas, &out->pose)) {
-        return commas ? "not 'nanoseconds,px,py,pz,qw,qx,qy,qz'" : "not 'seconds tx ty tz qx qy qz qw'";
-    }
-    return pose_check(&out->pose);
-}
-
 int trajectory_parse(char *text, const char *path, trajectory *out, char *error, size_t error_bytes)
 {
     size_t room = 0;
-    pose_lines lines = {.rest = text};
-    *out = (trajectory){.kind = "TUM"};
-    for (char *line; (line = pose_lines_next(&lines)) != NULL;) {
-        bool commas = strchr(line, ',') != NULL;
-        out->kind = commas ? "EuRoC" : out->kind;
-        trajectory_pose pose;
-        const char *wrong = parse_line(line, commas, &pose);
-        if (wrong == NULL) {
-            wrong = append(out, &room, &pose);
-        }
-        if (wrong != NULL) {
-            trajectory_free(out);
-            return t3r_reason(error, error_bytes, "%s: line %zu: %s", path, lines.number, wrong);
-        }
+    pose_list list = {.rest = text, .exact = true};
+    const char *wrong = NULL;
+    *out = (trajectory){0};
+    for (pose_list_item item; wrong == NULL && pose_list_next(&list, &item);) {
+        wrong = append(out, &room, &(trajectory_pose){item.stamp_ns, item.pose});
     }
-    if (out->count == 0) {
-        return t3r_reason(error, error_bytes, "%s: holds no pose", path);
+    int status = wrong == NULL ? pose_list_end(&list, path, error, error_bytes)
+                               : t3r_reason(error, error_bytes, "%s: %s", path, wrong);
+    if (status != 0) {
+        trajectory_free(out);
+        return -1;
     }
+    out->kind = list.euroc ? "EuRoC" : "TUM";
+    out->losses = list.losses;
     order(out);
     return 0;
 }
@@ -168,30 +105,36 @@ static int take_poses(const t3r_recording *bag, const char *path, uint32_t strea
                       size_t error_bytes)
 {
     size_t room = 0;
-    for (uint32_t i = 0; i < t3r_recording_pose_count(bag, stream); i++) {
+    const t3r_stream_info info = t3r_recording_stream(bag, stream);
+    const char *wrong = NULL;
+    pose_losses_add(&out->losses, info.left_out, "a message %s", info.fault);
+    for (uint32_t i = 0; i < t3r_recording_pose_count(bag, stream) && wrong == NULL; i++) {
         t3r_recorded_pose p = t3r_recording_pose(bag, stream, i);
         trajectory_pose pose = {.stamp_ns = p.stamp_ns};
         memcpy(pose.pose.position, p.position, sizeof p.position);
         memcpy(pose.pose.rotation, p.rotation, sizeof p.rotation);
-        const char *wrong = pose_check(&pose.pose);
-        if (wrong == NULL) {
-            wrong = append(out, &room, &pose);
+        const char *unusable = pose_check_position(p.position);
+        if (unusable != NULL) {
+            pose_losses_add(&out->losses, 1, "pose %u: %s", i, unusable);
+            continue;
         }
-        if (wrong != NULL) {
-            return t3r_reason(error, error_bytes, "%s: pose %u: %s", path, i, wrong);
+        if (pose_check(&pose.pose) != NULL) {
+            quaternion_normalise(pose.pose.rotation); /* it has a direction: checked when it was indexed */
         }
+        wrong = append(out, &room, &pose);
+    }
+    if (wrong == NULL && out->count == 0) {
+        wrong = out->losses.first;
     }
     order(out);
-    return 0;
+    return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "%s: %s", path, wrong);
 }
 
-static int read_bag(const uint8_t *bytes, size_t count, const char *path, const char *topic, trajectory *out,
-                    char *error, size_t error_bytes)
+static int read_bag(const char *path, const char *topic, trajectory *out, char *error, size_t error_bytes)
 {
-    char what[256];
-    t3r_recording *bag = t3r_recording_parse(bytes, count, what, sizeof what);
+    t3r_recording *bag = t3r_recording_open(path, error, error_bytes);
     if (bag == NULL) {
-        return t3r_reason(error, error_bytes, "%s: %s", path, what);
+        return -1;
     }
     uint32_t stream = 0;
     *out = (trajectory){.kind = "bag"};
@@ -206,26 +149,29 @@ static int read_bag(const uint8_t *bytes, size_t count, const char *path, const 
     return status;
 }
 
+/* Whether a path is a bag, also one that must be converted before it is read. */
+static bool is_bag(const char *path)
+{
+    uint8_t first[16];
+    FILE *file = t3r_file_open(path, NULL, 0);
+    const size_t count = file != NULL ? fread(first, 1, sizeof first, file) : 0;
+    if (file != NULL) {
+        fclose(file);
+    }
+    return t3r_recording_is_folder(path) ||
+           (count > 0 && (t3r_mcap_magic_error(first, count) == NULL || t3r_mcap_other_file(first, count) != NULL));
+}
+
 int trajectory_read(const char *path, const char *topic, trajectory *out, char *error, size_t error_bytes)
 {
-    size_t count = 0;
     *out = (trajectory){0};
-    uint8_t *bytes = t3r_file_bytes(path, MAX_BYTES, &count, error, error_bytes);
-    if (bytes == NULL) {
-        return -1;
+    if (is_bag(path)) {
+        return read_bag(path, topic, out, error, error_bytes);
     }
-    bool is_bag = count >= T3R_MCAP_MAGIC_BYTES && memcmp(bytes, T3R_MCAP_MAGIC, T3R_MCAP_MAGIC_BYTES) == 0;
-    int status;
-    if (is_bag) {
-        status = read_bag(bytes, count, path, topic, out, error, error_bytes);
-    } else if (count >= 15 && memcmp(bytes, "SQLite format 3", 15) == 0) {
-        status = t3r_reason(error, error_bytes, "%s: is a bag in SQLite: ros2 bag convert makes MCAP of it", path);
-    } else if (count > T3R_LIMIT_TEXT_BYTES) {
-        status = t3r_reason(error, error_bytes, "%s: a text of more than %u bytes", path, T3R_LIMIT_TEXT_BYTES);
-    } else {
-        status = trajectory_parse((char *)bytes, path, out, error, error_bytes);
-    }
-    free(bytes);
+    size_t count;
+    char *text = (char *)t3r_file_bytes(path, T3R_LIMIT_TEXT_BYTES, &count, error, error_bytes);
+    const int status = text == NULL ? -1 : trajectory_parse(text, path, out, error, error_bytes);
+    free(text);
     return status;
 }
 

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "geometry/rigid.h"
+#include "import/poses/pose_losses.h"
 
 typedef struct trajectory_pose {
     int64_t stamp_ns;
@@ -17,16 +18,16 @@ typedef struct trajectory_pose {
 typedef struct trajectory {
     trajectory_pose *poses; /* sorted by stamp, without duplicates; heap: trajectory_free() */
     size_t count;
-    const char *kind; /* "TUM", "EuRoC", "bag" */
+    const char *kind;   /* "TUM", "EuRoC", "bag" */
+    pose_losses losses; /* poses that are left out */
 } trajectory;
 
 #define TRAJECTORY_BRACKET_NS INT64_C(200000000) /* neighbours farther apart are not interpolated */
 
-/* Reads PATH: an MCAP bag (geometry_msgs PoseStamped or TransformStamped on `topic`, NULL: the only such topic), lines
- * `seconds tx ty tz qx qy qz qw` (TUM), or `nanoseconds,px,py,pz,qw,qx,qy,qz,...` (EuRoC). Stamps keep their
- * nanoseconds. Returns 0, or -1 with "path: line: what" in error[]. */
+/* Reads PATH: an MCAP bag (geometry_msgs PoseStamped or TransformStamped on `topic`, NULL: the only such topic), or a
+ * list (pose_list.h). Stamps keep their nanoseconds. Returns 0, or -1 with "path: line: what" in error[]. */
 int trajectory_read(const char *path, const char *topic, trajectory *out, char *error, size_t error_bytes);
-/* Parses the text of the two line formats; commas distinguish them. */
+/* Parses the text of a list. */
 int trajectory_parse(char *text, const char *path, trajectory *out, char *error, size_t error_bytes);
 void trajectory_free(trajectory *t);
 

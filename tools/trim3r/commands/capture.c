@@ -194,7 +194,9 @@ int command_capture(int argc, char **argv)
         if (trajectory_read(o.poses, o.pose_topic, &poses, error, sizeof error) != 0) {
             return cli_error(CLI_BAD_INPUT, "%s", error);
         }
-        code = o.estimate ? estimate_offset(&o, &poses, &offset) : CLI_OK;
+        o.poses_left_out = poses.losses.count;
+        code = pose_losses_print(&poses.losses, o.poses, o.strict);
+        code = code == CLI_OK && o.estimate ? estimate_offset(&o, &poses, &offset) : code;
     }
     if (code == CLI_OK && stop != 0) {
         code = cli_error(CLI_BAD_INPUT, "stopped before the capture began: nothing was written");

@@ -29,7 +29,7 @@ typedef struct render_options {
     const char *scene, *recording;
     const char *pose, *trajectory;
     const char *output, *depth, *alpha;
-    bool has_view, has_size, has_fov, json;
+    bool has_view, has_size, has_fov, strict, json;
     uint32_t view;
     uint32_t width, height;
     double fov_degrees;
@@ -46,7 +46,8 @@ static const struct argp_option options[] = {
     {"view", KEY_VIEW, "N", 0, "frame of REC.mcap whose camera draws", 0},
     {"pose", OPTION_TO(render_options, pose), "FILE", OPTION_READS, "camera as JSON (below)", 0},
     {"trajectory", OPTION_TO(render_options, trajectory), "FILE", OPTION_READS,
-     "TUM poses, one numbered picture each; the lens is that of --view, --pose or --fov", 0},
+     "list of poses, one numbered picture each; the lens is that of --view, --pose or --fov", 0},
+    {"strict", OPTION_TO(render_options, strict), NULL, 0, POSE_LOSSES_STRICT_HELP, 0},
     {"fov", KEY_FOV, "DEGREES", 0, "horizontal angle of view of a trajectory, with --size", 0},
     {"size", KEY_SIZE, "WxH", 0, "size of the picture; the lens is scaled along (the camera's)", 0},
     {NULL, 0, NULL, 0, "Pictures:", 2},
@@ -157,17 +158,19 @@ static const struct argp argp = {
     .options = options,
     .parser = parse,
     .args_doc = "SCENE.ply [REC.mcap]",
-    .doc = "Draw a scene."
-           "\vExamples:\n"
-           "  trim3r render scene.ply room.mcap --view 1 -o view.png\n"
-           "  trim3r render scene.ply --pose pose.json --depth depth.png -o view.png\n"
-           "  trim3r render scene.ply --trajectory t.txt --fov 60 --size 640x480 -o v.png\n\n"
-           "A pose file holds the fields of one frame of transforms.json, or is a transforms.json:\n"
-           "  {\"fl_x\": 220, \"fl_y\": 220, \"cx\": 128, \"cy\": 128, \"w\": 256, \"h\": 256,\n"
-           "   \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}\n"
-           "transform_matrix: camera to world, x right, y up, z backward; cx, cy from the picture's corner; "
-           "fl_y, cx and cy may be left out. Several poses give view_0000.png, view_0001.png ...\n"
-           "A trajectory has lines `stamp tx ty tz qx qy qz qw`: camera to world, x right, y down, z forward.",
+    .doc =
+        "Draw a scene."
+        "\vExamples:\n"
+        "  trim3r render scene.ply room.mcap --view 1 -o view.png\n"
+        "  trim3r render scene.ply --pose pose.json --depth depth.png -o view.png\n"
+        "  trim3r render scene.ply --trajectory t.txt --fov 60 --size 640x480 -o v.png\n\n"
+        "A pose file holds the fields of one frame of transforms.json, or is a transforms.json:\n"
+        "  {\"fl_x\": 220, \"fl_y\": 220, \"cx\": 128, \"cy\": 128, \"w\": 256, \"h\": 256,\n"
+        "   \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}\n"
+        "transform_matrix: camera to world, x right, y up, z backward; cx, cy from the picture's corner; "
+        "fl_y, cx and cy may be left out. Several poses give view_0000.png, view_0001.png ...\n"
+        "A trajectory has lines of TUM, `stamp tx ty tz qx qy qz qw`, or of EuRoC: camera to world, x right, y down, "
+        "z forward. Poses that cannot be used are left out, counted and named.",
     .children = children,
 };
 
@@ -197,44 +200,40 @@ static int view_of_recording(const render_options *o, viewpoint_list *views)
     return code;
 }
 
-static int choose_viewpoints(const render_options *o, viewpoint_list *views)
+/* Reads the poses of --pose or --trajectory, and reports what is left out of them. */
+static int read_poses(const render_options *o, const viewpoint *lens, viewpoint_list *views)
 {
     char error[ERROR_BYTES] = "";
-    int code = CLI_OK;
+    const char *path = lens != NULL ? o->trajectory : o->pose;
+    const int status = lens != NULL ? viewpoint_read_trajectory(path, lens, views, error, sizeof error)
+                                    : viewpoint_read_pose(path, views, error, sizeof error);
+    return status == 0 ? pose_losses_print(&views->losses, path, o->strict) : cli_error(CLI_BAD_INPUT, "%s", error);
+}
+
+static int choose_viewpoints(const render_options *o, viewpoint_list *views)
+{
     *views = (viewpoint_list){0};
-    if (o->recording != NULL) {
-        code = view_of_recording(o, views);
-    } else if (o->pose != NULL) {
-        code = viewpoint_read_pose(o->pose, views, error, sizeof error) == 0 ? CLI_OK
-                                                                             : cli_error(CLI_BAD_INPUT, "%s", error);
-    }
-    if (code != CLI_OK) {
-        return code;
-    }
-    if (o->trajectory != NULL) {
+    int code = o->recording != NULL ? view_of_recording(o, views)
+               : o->pose != NULL    ? read_poses(o, NULL, views)
+                                    : CLI_OK;
+    if (code == CLI_OK && o->trajectory != NULL) {
         viewpoint lens;
-        viewpoint_list path;
-        if (o->has_fov) {
-            if (viewpoint_from_angle(o->fov_degrees, o->width, o->height, &lens) != 0) {
-                return cli_error(CLI_BAD_USAGE, "--fov %g at this --size: the focal length must be 8..16384 pixels",
-                                 o->fov_degrees);
-            }
-        } else {
+        if (!o->has_fov) {
             lens = views->items[0];
+        } else if (viewpoint_from_angle(o->fov_degrees, o->width, o->height, &lens) != 0) {
+            return cli_error(CLI_BAD_USAGE, "--fov %g at this --size: the focal length must be 8..16384 pixels",
+                             o->fov_degrees);
         }
         viewpoint_list_free(views);
-        if (viewpoint_read_trajectory(o->trajectory, &lens, &path, error, sizeof error) != 0) {
-            return cli_error(CLI_BAD_INPUT, "%s", error);
-        }
-        *views = path;
+        code = read_poses(o, &lens, views);
     }
-    for (uint32_t i = 0; o->has_size && i < views->count; i++) {
+    for (uint32_t i = 0; code == CLI_OK && o->has_size && i < views->count; i++) {
         viewpoint *v = &views->items[i];
         v->camera = reconstruction_camera(&v->camera, v->width, v->height, o->width, o->height);
         v->width = o->width;
         v->height = o->height;
     }
-    return CLI_OK;
+    return code;
 }
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
@@ -379,6 +378,7 @@ static int render_all(const render_options *o, scene_file *scene, const viewpoin
         cJSON *root = cJSON_CreateObject();
         cJSON_AddStringToObject(root, "view", o->output);
         json_add_integer(root, "views", views->count);
+        json_add_integer(root, "poses_left_out", (int64_t)views->losses.count);
         json_add_integer(root, "width", views->items[0].width);
         json_add_integer(root, "height", views->items[0].height);
         json_add_integer(root, "gaussians", r.scene.count);
