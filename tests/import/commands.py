@@ -117,7 +117,8 @@ def test_bad_folders():
     refused("no_focal", scene(f"{work}/b1", change=lambda top: (top.pop("fl_x"), top.pop("fl_y"))),
             where + ["frames[0]: fl_x"])
     refused("no_unit", scene(f"{work}/b2", change=without("integer_depth_scale")), where + ["integer_depth_scale"])
-    refused("nan", scene(f"{work}/b3", change=frame(fl_x=float("nan"))), where + ["byte", "not JSON"])
+    refused("nan", scene(f"{work}/b3", change=frame(fl_x=float("nan"))),
+            ["--strict refuses what would be left out (frames: 1, depth: 0)", "frames[1]: fl_x: not a number"], "--strict")
     refused("skewed", scene(f"{work}/b4", change=frame(transform_matrix=[[1, 0.1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0],
                                                                           [0, 0, 0, 1]])),
             ["--strict refuses what would be left out (frames: 1, depth: 0)", "frames[1]: transform_matrix", "orthonormal"], "--strict")

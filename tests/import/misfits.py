@@ -23,6 +23,7 @@ from folder_makers import (FRAMES, HEIGHT, ROOM, UNIT, WIDTH, colmap, imported, 
                            matrix_text, pictures, pose_files, record3d, refused, same, seven_scenes, transforms, tum,
                            write)
 from frames import picture as png  # noqa: E402
+from png import png as rgba  # noqa: E402
 from program import run  # noqa: E402
 
 
@@ -97,6 +98,8 @@ def test_bad_poses():
     one_is_left_out("a matrix", path, "frame_00001.png", "orthonormal")
     path = transforms("none_nerfstudio", change=lambda c: c["frames"][1].pop("transform_matrix"))
     one_is_left_out("no matrix", path, "frame_00001.png", "transform_matrix: missing")
+    path = transforms("nan_nerfstudio", change=lambda c: c["frames"][1]["transform_matrix"].__setitem__(0, [float("nan"), 0, 0, float("inf")]))
+    one_is_left_out("NaN", path, "frame_00001.png", "transform_matrix: ")
     for name, file in (("scannet", "pose/1.txt"), ("seven", "frame-000001.pose.txt")):
         path = kinds[name].make(f"skew_{name}")
         write(f"{path}/{file}", matrix_text(np.diag([1, 1, 1.3, 1])))
@@ -254,13 +257,7 @@ def test_orientation():
 
 
 def with_alpha(pixels, alpha):
-    """Returns a PNG of 8-bit RGBA."""
-    rows = np.concatenate([pixels, alpha[:, :, None]], 2)
-    body = b"".join(b"\0" + row.tobytes() for row in rows)
-    out = b"\x89PNG\r\n\x1a\n"
-    for name, data in ((b"IHDR", struct.pack(">IIBBBBB", WIDTH, HEIGHT, 8, 6, 0, 0, 0)), (b"IDAT", zlib.compress(body)), (b"IEND", b"")):
-        out += struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-    return out
+    return rgba([row.tobytes() for row in np.concatenate([pixels, alpha[:, :, None]], 2)], channels=4)
 
 
 def hidden(what):
@@ -269,6 +266,11 @@ def hidden(what):
     for each in out:
         each[:20, :30] = 0
     return out
+
+
+def one_is_left_out_again(name, path, reader, why):
+    report, _ = imported(path, *reader.options)
+    check(report.get("frames") == FRAMES - 1 and any(why in line for line in report["left_out"]), f"{name}: {report}")
 
 
 def test_alpha():
@@ -283,6 +285,8 @@ def test_alpha():
         for what, factor in (("image", 1), ("depth", 5 if name == "tum" else 1)):
             due = np.array(hidden(what)) * factor
             check(np.array_equal(got.get(what, []), due), f"{name}: {what} of transparent pixels")
+        write(f"{path}/{reader.picture.format(1)}", with_alpha(ROOM["image"][1], np.zeros_like(alpha)))
+        one_is_left_out_again(name, path, reader, "alpha or the mask leaves no pixel of it")
         write(f"{path}/{reader.picture.format(0)}", with_alpha(ROOM["image"][0], np.full_like(alpha, 255)))
         _, got = imported(path, *reader.options)
         check(np.array_equal(got["image"][0], ROOM["image"][0]) and got["depth"][0].any(), f"{name}: an opaque picture")

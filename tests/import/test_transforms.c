@@ -168,7 +168,9 @@ TEST(test_bad_texts_are_named)
     refuse("", "byte 0: not JSON");
     refuse("[]", "byte 0: not a JSON object");
     refuse("{\"frames\": nope}", "byte 11: not JSON");
-    refuse("{\"frames\":[" FRAME(",\"fl_x\":NaN") "]}", "not JSON (NaN");
+    refuse("{\"frames\":[" FRAME(",\"fl_x\":NaN") "]}", "fl_x: not a number");
+    refuse("{\"frames\":[" FRAME(",\"fl_x\":-Infinity") "]}", "fl_x: not a number");
+    refuse("{\"frames\":[" FRAME(",\"fl_x\":nan") "]}", "not JSON");
     refuse("{}", "frames: missing");
     refuse("{\"frames\":{}}", "frames: not an array");
     refuse("{\"frames\":[]}", "frames: empty");

@@ -104,6 +104,45 @@ cJSON *json_parse(const char *text, size_t bytes, char *error, size_t error_byte
     return root;
 }
 
+/* Returns the length of a number of Python's json at the front that JSON has not; 0: there is none. */
+static size_t number_of_python(const char *text, size_t bytes)
+{
+    static const char *const names[] = {"NaN", "Infinity", "-Infinity"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const size_t length = strlen(names[i]);
+        if (length <= bytes && memcmp(text, names[i], length) == 0) {
+            return length;
+        }
+    }
+    return 0;
+}
+
+cJSON *json_parse_python(const char *text, size_t bytes, char *error, size_t error_bytes)
+{
+    char *copy = malloc(bytes + 1);
+    bool quoted = false;
+    if (copy == NULL) {
+        t3r_reason(error, error_bytes, "out of memory");
+        return NULL;
+    }
+    memcpy(copy, text, bytes);
+    for (size_t i = 0; i < bytes; i++) {
+        const size_t number = quoted ? 0 : number_of_python(text + i, bytes - i);
+        if (number > 0) {
+            memset(copy + i, ' ', number);
+            memset(copy + i, '"', 2);
+            i += number - 1;
+        } else if (text[i] == '"') {
+            quoted = !quoted;
+        } else if (quoted && text[i] == '\\') {
+            i++;
+        }
+    }
+    cJSON *root = json_parse(copy, bytes, error, error_bytes);
+    free(copy);
+    return root;
+}
+
 int json_array(const cJSON *object, const char *name, const cJSON **array, char *error, size_t error_bytes)
 {
     const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);

@@ -12,6 +12,10 @@
  * twice in one object, and \u0000 in a string are refused: programs read them differently. */
 cJSON *json_parse(const char *text, size_t bytes, char *error, size_t error_bytes);
 
+/* Does the same, but takes NaN, Infinity and -Infinity, which Python writes, as empty texts: what needs a number there
+ * can be left out. */
+cJSON *json_parse_python(const char *text, size_t bytes, char *error, size_t error_bytes);
+
 /* Finds the array of that name in an object; NULL if there is no such name. Returns 0, or -1 with a reason in error[].
  * An object instead of an array is refused, since cJSON would iterate over its members. */
 int json_array(const cJSON *object, const char *name, const cJSON **array, char *error, size_t error_bytes);

@@ -574,7 +574,7 @@ int transforms_json_parse(const char *text, size_t bytes, const posed_folder_opt
 {
     static const posed_folder_options strict = {0};
     memset(out, 0, sizeof *out);
-    cJSON *root = json_parse(text, bytes, error, error_bytes);
+    cJSON *root = json_parse_python(text, bytes, error, error_bytes);
     if (root == NULL) {
         return -1;
     }
