@@ -95,6 +95,8 @@ static int read_lenses(const char *directory, const pose_layout *layout, const p
         double numbers[9] = {0};
         memcpy(numbers, options->intrinsics, options->intrinsics_count * sizeof *numbers);
         out->colour = posed_intrinsics_of(numbers);
+    } else if (colour == NULL && options != NULL && options->without_intrinsics) {
+        out->colour = posed_intrinsics_of((const double[9]){NAN, NAN, NAN, NAN});
     } else if (colour == NULL) {
         return t3r_reason(error, error_bytes, "%s: %s", directory, layout->lens_hint);
     } else if (read_lens(directory, colour, &out->colour, error, error_bytes) != 0) {

@@ -62,13 +62,14 @@ static int read_transforms(const char *directory, const posed_folder_options *op
 /* All kinds of folder, in the order in which they are tried. */
 static const struct folder_kind {
     const char *name;
+    bool lens_given; /* its lens may come from the command line */
     bool (*is)(const char *directory);
     int (*read)(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                 size_t error_bytes);
 } kinds[] = {
-    {"transforms.json", has_transforms, read_transforms},  {"TUM RGB-D", has_tum_lists, tum_rgbd_read},
-    {"COLMAP", colmap_folder_is, colmap_folder_read},      {"Record3D", record3d_is, record3d_read},
-    {"pose files", pose_files_are_there, pose_files_read},
+    {"transforms.json", false, has_transforms, read_transforms}, {"TUM RGB-D", true, has_tum_lists, tum_rgbd_read},
+    {"COLMAP", false, colmap_folder_is, colmap_folder_read},     {"Record3D", false, record3d_is, record3d_read},
+    {"pose files", true, pose_files_are_there, pose_files_read},
 };
 
 /* Marks depth that is OpenEXR, which folders of any kind may name. */
@@ -108,6 +109,22 @@ static int drop_rejected(const char *directory, posed_folder *folder, char *erro
                : t3r_reason(error, error_bytes, "%s: %s: %s", directory, folder->kind, reason);
 }
 
+static const struct folder_kind *kind_of(const char *directory)
+{
+    const struct folder_kind *kind = NULL;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds && kind == NULL; i++) {
+        kind = kinds[i].is(directory) ? &kinds[i] : NULL;
+    }
+    return kind;
+}
+
+posed_folder_options posed_folder_look(const char *directory)
+{
+    const struct folder_kind *kind = kind_of(directory);
+    return (posed_folder_options){.without_poses = kind == NULL,
+                                  .without_intrinsics = kind == NULL || kind->lens_given};
+}
+
 int posed_folder_open(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                       size_t error_bytes)
 {
@@ -115,15 +132,24 @@ int posed_folder_open(const char *directory, const posed_folder_options *options
     if (!posed_exists(directory, ".")) {
         return t3r_reason(error, error_bytes, "%s: %s", directory, errno == ENOTDIR ? "not a folder" : strerror(errno));
     }
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-        if (kinds[i].is(directory)) {
-            int status = kinds[i].read(directory, options, out, error, error_bytes);
-            out->kind = kinds[i].name;
-            mark_exr(out);
-            tell_unread(directory, out);
-            reduced_pictures_take(directory, out);
-            return status == 0 ? drop_rejected(directory, out, error, error_bytes) : status;
-        }
+    const struct folder_kind *kind = kind_of(directory);
+    if (kind != NULL) {
+        const int status = kind->read(directory, options, out, error, error_bytes);
+        out->kind = kind->name;
+        mark_exr(out);
+        tell_unread(directory, out);
+        reduced_pictures_take(directory, out);
+        return status == 0 ? drop_rejected(directory, out, error, error_bytes) : status;
+    }
+    char *bag = picture_folder_bag(directory);
+    if (bag != NULL) {
+        (void)t3r_reason(
+            error, error_bytes,
+            "%s: holds bags, such as %s, but no metadata.yaml: name one of them; ros2 bag reindex %s writes "
+            "that list",
+            directory, bag, directory);
+        free(bag);
+        return -1;
     }
     if (options != NULL && options->without_poses) {
         return picture_folder_read(directory, options, out, error, error_bytes);

@@ -8,6 +8,9 @@
 
 #include "import/frames/posed_frame.h"
 
+/* Returns the options to look at a folder, whose poses or lens import may get from its command line. */
+posed_folder_options posed_folder_look(const char *directory);
+
 /* Reads DIR's lists. Returns 0, or -1 with "file: frame: field: what" in error[]. Call posed_folder_close() in either
  * case. */
 int posed_folder_open(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,

@@ -6,6 +6,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,6 +42,41 @@ int picture_folder_foreign(const char *directory, left_out *out)
         free(entries);
     }
     return status;
+}
+
+static int is_bag(const struct dirent *entry)
+{
+    static const char *const endings[] = {".mcap", ".zstd", ".db3", ".bag"};
+    const char *dot = strrchr(entry->d_name, '.');
+    bool is = false;
+    for (size_t i = 0; i < sizeof endings / sizeof *endings && dot != NULL; i++) {
+        is = is || strcasecmp(dot, endings[i]) == 0;
+    }
+    return is;
+}
+
+/* Returns the first of such entries, on the heap; NULL: there is none. */
+static char *first_of(const char *directory, int (*is)(const struct dirent *))
+{
+    struct dirent **entries;
+    char *name = NULL;
+    const int count = scandir(directory, &entries, is, versionsort);
+    for (int i = 0; i < count; i++) {
+        name = i == 0 ? strdup(entries[i]->d_name) : name;
+        free(entries[i]);
+    }
+    if (count >= 0) {
+        free(entries);
+    }
+    return name;
+}
+
+char *picture_folder_bag(const char *directory)
+{
+    char *shown = first_of(directory, is_picture);
+    char *bag = shown == NULL ? first_of(directory, is_bag) : NULL;
+    free(shown);
+    return bag;
 }
 
 int picture_folder_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,

@@ -15,6 +15,9 @@ int picture_folder_read(const char *directory, const posed_folder_options *optio
  * Returns 0, or -1 when out of memory. */
 int picture_folder_foreign(const char *directory, left_out *out);
 
+/* Returns the name of a bag in a folder without pictures, on the heap; NULL: there is none. */
+char *picture_folder_bag(const char *directory);
+
 /* Adds to out->left_out.frames, with the reason, every picture in DIR/PLACE that is no frame's image: pictures that the
  * folder's lists omit. Returns 0, or -1 with a reason in error[]. */
 int picture_folder_rest(const char *directory, const char *place, const char *why, posed_folder *out, char *error,

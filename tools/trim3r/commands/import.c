@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "cli/cli.h"
 #include "cli/files/whole_file.h"
@@ -15,7 +14,6 @@
 #include "cli/options/option_values.h"
 #include "cli/options/recording_options.h"
 #include "cli/tables/json_output.h"
-#include "host/file_bytes.h"
 #include "host/reason.h"
 #include "import/bags/recording_import.h"
 #include "import/estimation/poses.h"
@@ -24,10 +22,9 @@
 #include "import/frames/frame.h"
 #include "import/frames/left_out.h"
 #include "import/frames/rejected.h"
+#include "import/import_source.h"
 #include "import/pointmaps/import_pointmaps.h"
-#include "pictures/foreign_file.h"
 #include "recording/recording.h"
-#include "recording/recording_folder.h"
 #include "trim3r.h"
 
 #define ERROR_BYTES 1024
@@ -190,8 +187,10 @@ static const struct argp parser = {
         "\n"
         "Of a bag (MCAP) the frames are written anew: compressed images (JPEG, PNG, compressedDepth) decoded, poses "
         "interpolated between two of their topic or composed of /tf and /tf_static, depth of another camera "
-        "registered to colour. DIR may be a folder of rosbag2: metadata.yaml with one MCAP file. A recording that lost "
-        "its end is read as far as it goes. Messages and frames that cannot be read are left out, counted and named. "
+        "registered to colour. DIR may be a folder of rosbag2: the MCAP files that its metadata.yaml names, packed "
+        "with "
+        "zstd or not, are one recording. A recording that lost its end is read as far as it goes. Messages and frames "
+        "that cannot be read are left out, counted and named. "
         "Topics that were not used are named with the reason.\n\n"
         "Examples:\n"
         "  trim3r import scene --size 256x256 -o scene.mcap\n"
@@ -478,42 +477,17 @@ static int import_recording(const options *o)
     return code;
 }
 
-static bool is_file(const char *path)
+static int import_folder(const options *o)
 {
-    struct stat about;
-    return stat(path, &about) == 0 && S_ISREG(about.st_mode);
-}
-
-/* Returns how to convert a picture or video that is given as a recording; NULL for all other files. */
-static const char *foreign_file(const char *path)
-{
-    uint8_t bytes[FOREIGN_FILE_BYTES];
-    FILE *file = t3r_file_open(path, NULL, 0);
-    const size_t count = file != NULL ? fread(bytes, 1, sizeof bytes, file) : 0;
-    if (file != NULL) {
-        fclose(file);
-    }
-    return foreign_file_of_bytes(bytes, count);
-}
-
-int command_import(int argc, char **argv)
-{
-    options o = {0};
-    o.pointmaps.confidence_least = -HUGE_VAL;
-    file_options_parse(&parser, argc, argv, &o);
-    if (is_file(o.directory) || t3r_recording_is_folder(o.directory)) {
-        const char *foreign = is_file(o.directory) ? foreign_file(o.directory) : NULL;
-        return foreign == NULL ? import_recording(&o) : cli_error(CLI_BAD_INPUT, "%s: %s", o.directory, foreign);
-    }
-    if (o.bag.given != NULL) {
-        return cli_error(CLI_BAD_USAGE, "%s is for bags and recordings, and %s is none", o.bag.given, o.directory);
+    if (o->bag.given != NULL) {
+        return cli_error(CLI_BAD_USAGE, "%s is for bags and recordings, and %s is none", o->bag.given, o->directory);
     }
     material m = {0};
     totals t = {0};
     char error[ERROR_BYTES] = "";
-    int status = prepare(&o, &m, error);
+    int status = prepare(o, &m, error);
     if (status == 0) {
-        status = make_of_what_can_be_used(&o, &m, &t, error);
+        status = make_of_what_can_be_used(o, &m, &t, error);
     }
     cli_progress_end();
     if (status == 0 && t.depth_frames == 0) {
@@ -524,13 +498,30 @@ int command_import(int argc, char **argv)
     }
     if (status != 0) {
         status = cli_error(CLI_BAD_INPUT, "%s", error);
-    } else if (o.json) {
+    } else if (o->json) {
         print_json(&m, &t);
     } else {
-        print_text(&o, &m, &t);
+        print_text(o, &m, &t);
     }
     free(m.accounts);
     pointmap_source_close(&m.pointmaps);
     posed_folder_close(&m.folder);
     return status;
+}
+
+int command_import(int argc, char **argv)
+{
+    options o = {0};
+    o.pointmaps.confidence_least = -HUGE_VAL;
+    file_options_parse(&parser, argc, argv, &o);
+    const char *advice;
+    switch (import_source_of(o.directory, &advice)) {
+    case IMPORT_RECORDING:
+        return import_recording(&o);
+    case IMPORT_FOREIGN:
+        return cli_error(CLI_BAD_INPUT, "%s: %s", o.directory, advice);
+    case IMPORT_FOLDER:
+    default:
+        return import_folder(&o);
+    }
 }

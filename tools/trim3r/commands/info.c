@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* trim3r info: describes a recording or scenes. */
+/* trim3r info: describes a recording, a folder or scenes. */
 #include "trim3r/commands/commands.h"
 
 #include <argp.h>
@@ -13,6 +13,8 @@
 #include "cli/tables/json_output.h"
 #include "host/reason.h"
 #include "import/bags/bag_pictures.h"
+#include "import/folders/folder_info.h"
+#include "import/import_source.h"
 #include "recording/recording.h"
 #include "scene/scene_file.h"
 #include "scene/scene_options.h"
@@ -36,6 +38,7 @@ typedef struct frame_summary {
     t3r_pixel_format format;
     double depth_unit; /* world units a step; 0 = no depth */
     t3r_distortion distortion;
+    bool straightened; /* of a lens that only import reads */
     bool mixed;
     uint32_t unreadable;      /* frames */
     char reason[ERROR_BYTES]; /* of the first of them */
@@ -57,7 +60,7 @@ static void take_argument(struct argp_state *state, options *o, const char *argu
 static void check_options(struct argp_state *state, const options *o)
 {
     if (o->scene_count == 0 && o->recording == NULL) {
-        argp_error(state, "REC.mcap or SCENE.ply is missing");
+        argp_error(state, "REC.mcap, DIR or SCENE.ply is missing");
     }
     if (o->scene_count == 0 && (o->svg != NULL || o->has_view)) {
         argp_error(state, "--svg and --view belong to scenes");
@@ -90,7 +93,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
-    OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
+    OPTION_ARGUMENTS("REC.mcap", OPTION_READS | OPTION_FOLDER),
     {"view", KEY_VIEW, "N", 0, "frame of REC.mcap whose pixels are a second unit of the scales", 0},
     {"svg", OPTION_TO(options, svg), "FILE", OPTION_WRITES(FILE_SVG),
      "picture to write: histograms of the scenes' scales", 0},
@@ -102,9 +105,10 @@ static const struct argp_child children[] = {{.argp = &scene_input_argp}, {0}};
 static const struct argp parser = {
     .options = argp_options,
     .parser = parse_option,
-    .args_doc = "REC.mcap\nSCENE.ply... [REC.mcap --view N]",
-    .doc = "Show the contents of a recording: frames, streams, clock, pairing, triplets. Or of scenes: Gaussians, "
-           "bounds, and the widths of the Gaussians.\v"
+    .args_doc = "REC.mcap\nDIR\nSCENE.ply... [REC.mcap --view N]",
+    .doc = "Show the contents of a recording or a bag: frames, streams, clock, pairing, triplets. Or of a folder, as "
+           "import would read it: its kind, frames, camera, poses, depth. Or of scenes: Gaussians, bounds, and the "
+           "widths of the Gaussians.\v"
            "The scale of a Gaussian is the root of the product of its two "
            "largest standard deviations, in world units. With --view also in pixels of that frame, at the median "
            "depth of the first scene's Gaussians within its picture. JSON: scale_edges are a quarter of an octave "
@@ -113,13 +117,17 @@ static const struct argp parser = {
            "Examples:\n"
            "  trim3r info room.mcap\n"
            "  trim3r info --json room.mcap\n"
+           "  trim3r info rgbd_dataset_freiburg1_desk\n"
            "  trim3r info all.ply pruned.ply room.mcap --view 1 --svg scales.svg",
     .children = children,
 };
 
-static const char *distortion_name(t3r_distortion distortion)
+static const char *distortion_name(const frame_summary *s)
 {
-    return distortion == T3R_DISTORTION_NONE ? "none" : distortion == T3R_DISTORTION_RADTAN ? "radtan" : "fisheye";
+    return s->straightened                          ? "rational"
+           : s->distortion == T3R_DISTORTION_NONE   ? "none"
+           : s->distortion == T3R_DISTORTION_RADTAN ? "radtan"
+                                                    : "fisheye";
 }
 
 /* Returns the number of frames to read: of images to decode only the first that can be read, as a sample. */
@@ -150,6 +158,7 @@ static int summarise(const t3r_recording *recording, frame_summary *out, char *e
             out->width = f.frame.width;
             out->height = f.frame.height;
             out->format = f.frame.format;
+            out->straightened = f.straightened;
             out->distortion = f.has_intrinsics ? f.camera.distortion : T3R_DISTORTION_NONE;
         }
         out->mixed =
@@ -219,7 +228,7 @@ static void print_json(const t3r_recording *recording, const frame_summary *s)
     cJSON_AddNumberToObject(json, "depth_width", s->depth_width);
     cJSON_AddNumberToObject(json, "depth_height", s->depth_height);
     cJSON_AddNumberToObject(json, "depth_unit", s->depth_unit);
-    cJSON_AddStringToObject(json, "distortion", distortion_name(s->distortion));
+    cJSON_AddStringToObject(json, "distortion", distortion_name(s));
     cJSON_AddBoolToObject(json, "mixed_sizes", s->mixed);
     cJSON_AddNumberToObject(json, "unreadable_frames", s->unreadable);
     cJSON_AddStringToObject(json, "clock", t3r_recording_clock(recording));
@@ -255,7 +264,7 @@ static void print_text(const t3r_recording *recording, const frame_summary *s, c
     printf("%s: %u frames", path, frames);
     if (frames > 0) {
         printf(", %ux%u %s%s, lens distortion %s", s->width, s->height, t3r_pixel_format_name(s->format),
-               s->mixed ? " (sizes differ between frames)" : "", distortion_name(s->distortion));
+               s->mixed ? " (sizes differ between frames)" : "", distortion_name(s));
     }
     putchar('\n');
     if (s->depth_width != 0) {
@@ -285,6 +294,29 @@ static void print_text(const t3r_recording *recording, const frame_summary *s, c
     }
 }
 
+static int recording_info(const options *o)
+{
+    char error[ERROR_BYTES];
+    t3r_recording *recording = t3r_recording_open(o->recording, error, sizeof error);
+    if (recording == NULL) {
+        return cli_error(CLI_BAD_INPUT, "%s", error);
+    }
+    bag_pictures pictures = {0};
+    t3r_recording_set_decoder(recording, bag_pictures_decoder(&pictures));
+    frame_summary summary;
+    int status = CLI_OK;
+    if (summarise(recording, &summary, error) != 0) {
+        status = cli_error(CLI_BAD_INPUT, "%s: %s", o->recording, error);
+    } else if (o->json) {
+        print_json(recording, &summary);
+    } else {
+        print_text(recording, &summary, o->recording);
+    }
+    t3r_recording_close(recording);
+    bag_pictures_free(&pictures);
+    return status;
+}
+
 int command_info(int argc, char **argv)
 {
     options o = {0};
@@ -298,23 +330,14 @@ int command_info(int argc, char **argv)
                                                 .flags = o.flags,
                                                 .json = o.json});
     }
-    char error[ERROR_BYTES];
-    t3r_recording *recording = t3r_recording_open(o.recording, error, sizeof error);
-    if (recording == NULL) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
+    const char *advice;
+    switch (import_source_of(o.recording, &advice)) {
+    case IMPORT_FOLDER:
+        return folder_info(o.recording, o.json);
+    case IMPORT_FOREIGN:
+        return cli_error(CLI_BAD_INPUT, "%s: %s", o.recording, advice);
+    case IMPORT_RECORDING:
+    default:
+        return recording_info(&o);
     }
-    bag_pictures pictures = {0};
-    t3r_recording_set_decoder(recording, bag_pictures_decoder(&pictures));
-    frame_summary summary;
-    int status = CLI_OK;
-    if (summarise(recording, &summary, error) != 0) {
-        status = cli_error(CLI_BAD_INPUT, "%s: %s", o.recording, error);
-    } else if (o.json) {
-        print_json(recording, &summary);
-    } else {
-        print_text(recording, &summary, o.recording);
-    }
-    t3r_recording_close(recording);
-    bag_pictures_free(&pictures);
-    return status;
 }
