@@ -5,6 +5,7 @@
 // `faults`, where some messages are wrong.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "play.hpp"
 #include "ros/ros2_node.hpp"
@@ -52,7 +53,8 @@ class player
     }
 
   private:
-    template <class Change> void send(uint32_t frame, Change change)
+    // images: whether the pose comes with images and camera_info.
+    template <class Change> void send(uint32_t frame, Change change, bool images = true)
     {
         auto image = play::image_of<Image>(recording_.message(frame, T3R_USE_COLOUR), set_stamp);
         auto depth = play::image_of<Image>(recording_.message(frame, T3R_USE_DEPTH), set_stamp);
@@ -61,9 +63,11 @@ class player
         auto pose = play::recorded_pose(recording_.message(frame, T3R_USE_POSE));
         change(image, depth, info, pose);
         send_pose(pose, image.header.frame_id);
-        info_->publish(info);
-        depth_->publish(depth);
-        image_->publish(image);
+        if (images) {
+            info_->publish(info);
+            depth_->publish(depth);
+            image_->publish(image);
+        }
     }
 
     void send_pose(const t3r_ros_pose &pose, const std::string &camera)
@@ -83,6 +87,8 @@ class player
         } else if (kind_ == "tf") {
             tf2_msgs::msg::TFMessage message;
             message.transforms.push_back(transform);
+            transform.transform.rotation.w = std::numeric_limits<double>::quiet_NaN(); // is left out
+            message.transforms.push_back(transform);
             tf_->publish(message);
         } else {
             geometry_msgs::msg::PoseStamped message;
@@ -96,43 +102,46 @@ class player
     void send_wrong(uint32_t frame)
     {
         constexpr int64_t earlier_ns = 1000000;
-        send(frame, [frame](Image &image, Image &depth, CameraInfo &info, t3r_ros_pose &pose) {
-            pose.header.stamp_ns -= earlier_ns;
-            set_stamp(image.header.stamp, pose.header.stamp_ns);
-            set_stamp(depth.header.stamp, pose.header.stamp_ns);
-            switch (frame) {
-            case 1:
-                image.encoding = "mono\033[2J";
-                break;
-            case 2:
-                image.step = image.width;
-                break;
-            case 3:
-                image.data.resize(image.data.size() / 2);
-                break;
-            case 4:
-                depth.header.frame_id = "elsewhere";
-                break;
-            case 5:
-                depth.encoding = "32SC1";
-                break;
-            case 6:
-                info.k[0] = std::nan("");
-                break;
-            case 7:
-                pose.position_f64[1] = trim3r_ros::bits_of(std::nan(""));
-                break;
-            case 8:
-                info.d.assign(40, 0.25);
-                info.distortion_model = "plumb_bob";
-                break;
-            case 9:
-                image.width = 1u << 31;
-                break;
-            default:
-                break;
-            }
-        });
+        send(
+            frame,
+            [frame](Image &image, Image &depth, CameraInfo &info, t3r_ros_pose &pose) {
+                pose.header.stamp_ns -= earlier_ns;
+                set_stamp(image.header.stamp, pose.header.stamp_ns);
+                set_stamp(depth.header.stamp, pose.header.stamp_ns);
+                switch (frame) {
+                case 1:
+                    image.encoding = "mono\033[2J";
+                    break;
+                case 2:
+                    image.step = image.width;
+                    break;
+                case 3:
+                    image.data.resize(image.data.size() / 2);
+                    break;
+                case 4:
+                    depth.header.frame_id = "elsewhere";
+                    break;
+                case 5:
+                    depth.encoding = "32SC1";
+                    break;
+                case 6:
+                    info.k[0] = std::nan("");
+                    break;
+                case 7:
+                    pose.position_f64[1] = trim3r_ros::bits_of(std::nan(""));
+                    break;
+                case 8:
+                    info.d.assign(40, 0.25);
+                    info.distortion_model = "plumb_bob";
+                    break;
+                case 9:
+                    image.width = 1u << 31;
+                    break;
+                default:
+                    break;
+                }
+            },
+            frame != 7); // a pose that is left out costs no image
     }
 
     rclcpp::Node node_;

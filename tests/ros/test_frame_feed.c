@@ -228,6 +228,72 @@ TEST(the_nearest_pose_counts)
     finish(&h);
 }
 
+/* Encodings that are no pixel formats become colours, as in an import, and the message is released at once. */
+TEST(other_encodings_are_converted)
+{
+    static uint8_t bgra[SIDE * SIDE * 4];
+    heard h;
+    begin(&h, false, 8);
+    send_info(&h);
+    memset(bgra, 255, sizeof bgra);
+    t3r_ros_image image = image_of(FRAME_FEED_COLOUR, 100);
+    image.encoding = t3r_text_of("bgra8");
+    image.step = SIDE * 4;
+    image.data = bgra;
+    image.data_bytes = sizeof bgra;
+    h.held++;
+    frame_feed_image(h.feed, FRAME_FEED_COLOUR, &image, &h, 0);
+    assert_int_equal(h.held, 0);
+    send(&h, FRAME_FEED_DEPTH, 100, 1);
+    send_pose(&h, 100, 2, "", 2);
+    assert_int_equal(h.frames, 1);
+    image.header.stamp_ns = 200 * MS;
+    image.data_bytes--;
+    h.held++;
+    frame_feed_image(h.feed, FRAME_FEED_COLOUR, &image, &h, 3 * MS);
+    assert_int_equal(h.held, 0);
+    assert_int_equal(frame_feed_counts_of(h.feed).refused, 1);
+    assert_int_equal(h.topic, FRAME_FEED_COLOUR);
+    finish(&h);
+}
+
+TEST(poses_that_are_none_are_left_out)
+{
+    static const double bad[][2] = {{NAN, 1}, {INFINITY, 1}, {0, 0}, {0, NAN}}; /* position x, rotation w */
+    heard h;
+    begin(&h, false, 8);
+    send_info(&h);
+    for (uint32_t i = 0; i < 40; i++) {
+        const double *values = bad[i / 10];
+        t3r_ros_pose pose = {.header = {(100 + i) * MS, {"map", 3}}};
+        memcpy(&pose.position_f64[0], &values[0], sizeof values[0]);
+        memcpy(&pose.rotation_f64[3], &values[1], sizeof values[1]);
+        frame_feed_pose(h.feed, &pose, i * MS);
+    }
+    assert_int_equal(frame_feed_counts_of(h.feed).poses_left_out, 40);
+    assert_int_equal(h.warnings, 2); /* one for each reason */
+    assert_int_equal(h.topic, FRAME_FEED_POSE);
+    send(&h, FRAME_FEED_DEPTH, 100, 50);
+    send(&h, FRAME_FEED_COLOUR, 100, 51);
+    send_pose(&h, 101, 2, "", 52); /* stamps of poses that are left out do not count */
+    assert_int_equal(h.frames, 1);
+    assert_int_equal(h.camera.position_q32[0], INT64_C(2) << 32);
+    t3r_ros_pose longer = {.header = {200 * MS, {"map", 3}}};
+    const double two = 2;
+    memcpy(&longer.rotation_f64[3], &two, sizeof two);
+    send(&h, FRAME_FEED_DEPTH, 200, 60);
+    send(&h, FRAME_FEED_COLOUR, 200, 61);
+    frame_feed_pose(h.feed, &longer, 62 * MS);
+    assert_int_equal(h.frames, 2);
+    assert_int_equal(h.camera.rotation_q30[0], 1 << 30);
+    longer.child_frame_id = (t3r_text){"lens", 4};
+    assert_true(frame_feed_transform(h.feed, &longer, 63 * MS));
+    longer.child_frame_id = longer.header.frame_id;
+    assert_false(frame_feed_transform(h.feed, &longer, 64 * MS)); /* above itself */
+    assert_int_equal(frame_feed_counts_of(h.feed).poses_left_out, 41);
+    finish(&h);
+}
+
 TEST(patience_ends)
 {
     heard h;

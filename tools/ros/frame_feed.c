@@ -415,17 +415,6 @@ static bool begin_image(frame_feed *feed, frame_feed_topic topic, int64_t stamp_
     return fits;
 }
 
-void frame_feed_image(frame_feed *feed, frame_feed_topic topic, const t3r_ros_image *image, void *owner, int64_t now_ns)
-{
-    if (!begin_image(feed, topic, image->header.stamp_ns, now_ns)) {
-        feed->settings.release(feed->settings.user, owner);
-        return;
-    }
-    image_slot slot = {.used = true, .image = *image, .owner = owner};
-    t3r_text_copy(slot.frame, sizeof slot.frame, image->header.frame_id);
-    add_image(feed, topic, &slot, now_ns);
-}
-
 /* Stores decoded rows as the image that a driver would have sent. */
 static int copy_decoded(const t3r_decoded_image *decoded, bool depth, image_slot *slot)
 {
@@ -445,6 +434,46 @@ static int copy_decoded(const t3r_decoded_image *decoded, bool depth, image_slot
     return 0;
 }
 
+/* Takes what the decoder made of an image, unless something is wrong with it. */
+static void take_decoded(frame_feed *feed, frame_feed_topic topic, const char *wrong, const t3r_decoded_image *decoded,
+                         image_slot *slot, int64_t now_ns)
+{
+    const bool depth = topic == FRAME_FEED_DEPTH;
+    if (wrong == NULL) {
+        wrong = t3r_pixel_size_error(depth ? T3R_PIXEL_GREY : decoded->format, decoded->width, decoded->height);
+    }
+    if (wrong == NULL && copy_decoded(decoded, depth, slot) != 0) {
+        wrong = "out of memory";
+    }
+    if (wrong != NULL) {
+        feed->counts.refused += !depth;
+        frame_feed_warn(feed, topic, wrong, now_ns);
+    }
+}
+
+void frame_feed_image(frame_feed *feed, frame_feed_topic topic, const t3r_ros_image *image, void *owner, int64_t now_ns)
+{
+    if (!begin_image(feed, topic, image->header.stamp_ns, now_ns)) {
+        feed->settings.release(feed->settings.user, owner);
+        return;
+    }
+    image_slot slot = {.used = true, .image = *image, .owner = owner};
+    t3r_text_copy(slot.frame, sizeof slot.frame, image->header.frame_id);
+    const bool converted = topic == FRAME_FEED_COLOUR && t3r_pixel_is_converted(image->encoding);
+    if (converted) {
+        char reason[WHAT_BYTES] = "";
+        const t3r_image_decoder decoder = bag_pictures_decoder(&feed->pictures);
+        t3r_decoded_image decoded;
+        const int code = decoder.convert(decoder.user, image, &decoded, reason, sizeof reason);
+        take_decoded(feed, topic, code == 0 ? NULL : reason, &decoded, &slot, now_ns);
+        feed->settings.release(feed->settings.user, owner);
+        slot.owner = NULL;
+    }
+    if (!converted || slot.copy != NULL) {
+        add_image(feed, topic, &slot, now_ns);
+    }
+}
+
 void frame_feed_compressed(frame_feed *feed, frame_feed_topic topic, const t3r_ros_compressed *image, void *owner,
                            int64_t now_ns)
 {
@@ -452,21 +481,12 @@ void frame_feed_compressed(frame_feed *feed, frame_feed_topic topic, const t3r_r
     image_slot slot = {.used = true, .image.header = image->header};
     t3r_text_copy(slot.frame, sizeof slot.frame, image->header.frame_id);
     if (begin_image(feed, topic, image->header.stamp_ns, now_ns)) {
-        const bool depth = topic == FRAME_FEED_DEPTH;
         const t3r_image_decoder decoder = bag_pictures_decoder(&feed->pictures);
         t3r_decoded_image decoded;
-        int code = decoder.decode(decoder.user, image->format, image->data, image->data_bytes, depth,
-                                  feed->settings.depth_unit_q40, &decoded, reason, sizeof reason);
-        const char *wrong =
-            code != 0 ? reason
-                      : t3r_pixel_size_error(depth ? T3R_PIXEL_GREY : decoded.format, decoded.width, decoded.height);
-        if (wrong == NULL && copy_decoded(&decoded, depth, &slot) != 0) {
-            wrong = "out of memory";
-        }
-        if (wrong != NULL) {
-            feed->counts.refused += !depth;
-            frame_feed_warn(feed, topic, wrong, now_ns);
-        }
+        const int code =
+            decoder.decode(decoder.user, image->format, image->data, image->data_bytes, topic == FRAME_FEED_DEPTH,
+                           feed->settings.depth_unit_q40, &decoded, reason, sizeof reason);
+        take_decoded(feed, topic, code == 0 ? NULL : reason, &decoded, &slot, now_ns);
     }
     feed->settings.release(feed->settings.user, owner);
     if (slot.copy != NULL) {
@@ -484,11 +504,26 @@ void frame_feed_camera_info(frame_feed *feed, const t3r_ros_camera_info *info, i
     frame_feed_tick(feed, now_ns);
 }
 
+/* Counts a pose that is none; wrong NULL: it is one. */
+static bool is_pose(frame_feed *feed, const char *wrong, int64_t now_ns)
+{
+    if (wrong != NULL) {
+        feed->counts.poses_left_out++;
+        frame_feed_warn(feed, FRAME_FEED_POSE, wrong, now_ns);
+    }
+    return wrong == NULL;
+}
+
 void frame_feed_pose(frame_feed *feed, const t3r_ros_pose *pose, int64_t now_ns)
 {
-    if (is_of_world(feed, pose->header.frame_id, now_ns) &&
+    if (is_pose(feed, t3r_message_pose_error(pose), now_ns) && is_of_world(feed, pose->header.frame_id, now_ns) &&
         is_in_order(feed, FRAME_FEED_POSE, pose->header.stamp_ns, now_ns)) {
         keep_pose(feed, pose);
         frame_feed_tick(feed, now_ns);
     }
+}
+
+bool frame_feed_transform(frame_feed *feed, const t3r_ros_pose *transform, int64_t now_ns)
+{
+    return is_pose(feed, t3r_message_transform_error(transform), now_ns);
 }

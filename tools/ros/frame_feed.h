@@ -67,16 +67,19 @@ void frame_feed_image(frame_feed *feed, frame_feed_topic topic, const t3r_ros_im
 void frame_feed_compressed(frame_feed *feed, frame_feed_topic topic, const t3r_ros_compressed *image, void *owner,
                            int64_t now_ns);
 void frame_feed_camera_info(frame_feed *feed, const t3r_ros_camera_info *info, int64_t now_ns);
-/* Adds the pose of the camera's optical frame in header.frame_id, which is the world. */
+/* Adds the pose of the camera's optical frame in header.frame_id, which is the world. One that is none
+ * (t3r_message_pose_error()) is left out with a warning. */
 void frame_feed_pose(frame_feed *feed, const t3r_ros_pose *pose, int64_t now_ns);
+/* Whether a transform is one (t3r_message_transform_error()); if not, it is left out like such a pose. */
+bool frame_feed_transform(frame_feed *feed, const t3r_ros_pose *transform, int64_t now_ns);
 /* Issues a warning of the caller's, throttled like the feed's own. */
 void frame_feed_warn(frame_feed *feed, frame_feed_topic topic, const char *reason, int64_t now_ns);
 /* Notes that time has passed, or that `locate` may find more. To be called regularly. */
 void frame_feed_tick(frame_feed *feed, int64_t now_ns);
 
-/* Counts of the colour images. */
 typedef struct frame_feed_counts {
-    uint64_t images, frames, refused; /* refused: without depth, intrinsics or pose, or malformed */
+    uint64_t images, frames, refused; /* colour images; refused: without depth, intrinsics or pose, or malformed */
+    uint64_t poses_left_out;          /* also transforms: not numbers, or rotations without direction */
 } frame_feed_counts;
 frame_feed_counts frame_feed_counts_of(const frame_feed *feed);
 

@@ -6,6 +6,7 @@
 #define TRIM3R_TOOLS_ROS_MAPPING_HPP
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -145,6 +146,18 @@ t3r_ros_pose pose_from(const Header &header, const Position &position, const Rot
         pose.rotation_f64[i] = bits_of(turn[i]);
     }
     return pose;
+}
+
+// Normalises a rotation whose length tf2 would not take as 1.
+template <class Rotation> void normalise(Rotation &r)
+{
+    const double length = std::sqrt(r.x * r.x + r.y * r.y + r.z * r.z + r.w * r.w);
+    if (std::abs(length - 1) > 0.004) {
+        r.x /= length;
+        r.y /= length;
+        r.z /= length;
+        r.w /= length;
+    }
 }
 
 template <class PoseStamped> t3r_ros_pose pose_of(const PoseStamped &message)

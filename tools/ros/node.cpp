@@ -162,7 +162,7 @@ std::string node::summary() const
 {
     const frame_feed_counts counts = frame_feed_counts_of(feed_);
     return std::to_string(counts.images) + " colour images, " + std::to_string(counts.frames) + " frames, " +
-           std::to_string(counts.refused) + " refused";
+           std::to_string(counts.refused) + " refused; " + std::to_string(counts.poses_left_out) + " poses left out";
 }
 
 } // namespace trim3r_ros

@@ -98,6 +98,19 @@ class node
     {
         frame_feed_pose(feed_, &pose, now_ns);
     }
+    // Adds the transforms of a TFMessage to a buffer of tf2, which refuses rotations that are not normalised.
+    template <class Message, class Buffer>
+    void transforms(const Message &message, Buffer &frames, bool is_static, int64_t now_ns)
+    {
+        for (auto transform : message.transforms) {
+            const t3r_ros_pose pose = transform_pose_of(transform);
+            if (frame_feed_transform(feed_, &pose, now_ns)) {
+                normalise(transform.transform.rotation);
+                frames.setTransform(transform, "tf", is_static);
+            }
+        }
+        tick(now_ns);
+    }
     void tick(int64_t now_ns)
     {
         frame_feed_tick(feed_, now_ns);

@@ -109,10 +109,7 @@ class shell : public trim3r_ros::outlet
     }
     void add(const tf2_msgs::TFMessage &message, bool is_static)
     {
-        for (const auto &transform : message.transforms) {
-            frames_.setTransform(transform, "tf", is_static);
-        }
-        node_->tick(now_ns());
+        node_->transforms(message, frames_, is_static, now_ns());
     }
 
     bool save(std_srvs::Trigger::Request &, std_srvs::Trigger::Response &response)

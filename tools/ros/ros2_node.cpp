@@ -76,10 +76,7 @@ void ros2_node::subscribe_poses(const std::string &kind)
 
 void ros2_node::add(const tf2_msgs::msg::TFMessage &message, bool is_static)
 {
-    for (const auto &transform : message.transforms) {
-        frames_.setTransform(transform, "tf", is_static);
-    }
-    node_->tick(now_ns());
+    node_->transforms(message, frames_, is_static, now_ns());
 }
 
 void ros2_node::save(std_srvs::srv::Trigger::Response &response) const
