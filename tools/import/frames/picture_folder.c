@@ -91,7 +91,9 @@ int picture_folder_read(const char *directory, const posed_folder_options *optio
         return t3r_reason(error, error_bytes, "%s: pictures without intrinsics; give --intrinsics fx,fy,cx,cy",
                           directory);
     }
-    memcpy(numbers, options->intrinsics, options->intrinsics_count * sizeof *numbers);
+    if (options->intrinsics_count > 0) {
+        memcpy(numbers, options->intrinsics, options->intrinsics_count * sizeof *numbers);
+    }
     if (picture_folder_foreign(directory, &out->left_out) != 0) {
         return t3r_reason(error, error_bytes, "out of memory");
     }
