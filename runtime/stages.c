@@ -14,42 +14,25 @@
 #include "stereo/stereo_views.h"
 #include "wavelet/wavelet.h"
 
-typedef struct views_job {
-    const t3r_runtime *rt;
-    t3r_view *views;
-    uint32_t first; /* view of the task of index 0 */
-} views_job;
-
-/* Runs a task for each view, one view per worker at a time. Reports steps from `done` on. */
-static t3r_status each_view(const t3r_runtime *rt, t3r_view *views, t3r_view_span span, t3r_task *task, t3r_stage stage,
-                            uint32_t done, uint32_t total)
+static t3r_status fill_views(const t3r_runtime *rt, const t3r_view *views, t3r_view_span span)
 {
     const t3r_workers workers = t3r_workers_of(rt);
-    const uint32_t round = t3r_is_parallel(&workers) ? workers.count : 1;
-    for (uint32_t v = span.first; v < span.end; v += round) {
-        if (!t3r_progress(rt, stage, done + v - span.first, total)) {
+    for (uint32_t v = span.first; v < span.end; v++) {
+        if (!t3r_progress(rt, T3R_STAGE_DEPTH, v - span.first, span.end - span.first)) {
             return T3R_ERR_CANCELLED;
         }
-        views_job job = {rt, views, v};
-        t3r_run_tasks(&workers, T3R_MIN(round, span.end - v), task, &job);
+        if (!t3r_is_reused(rt, v)) {
+            (void)t3r_depth_fill(&views[v], rt->config.fill_radius, &workers);
+        }
     }
     return T3R_OK;
-}
-
-static void fill_view(void *context, uint32_t index, uint32_t worker)
-{
-    (void)worker;
-    const views_job *job = context;
-    if (!t3r_is_reused(job->rt, job->first + index)) {
-        t3r_depth_fill(&job->views[job->first + index], job->rt->config.fill_radius);
-    }
 }
 
 t3r_status t3r_find_depth(t3r_runtime *rt, t3r_view *views, t3r_view_span span)
 {
     const t3r_status status = t3r_is_by_stereo(&rt->config) /* stereo fills its own holes */
                                   ? t3r_stereo_views(rt, views)
-                                  : each_view(rt, views, span, fill_view, T3R_STAGE_DEPTH, 0, span.end - span.first);
+                                  : fill_views(rt, views, span);
     if (status == T3R_OK) {
         t3r_hash_depth(rt, views, span.first, span.end);
     }
@@ -94,15 +77,6 @@ bool t3r_pointmap_step(const t3r_runtime *rt, t3r_view_span span, t3r_pointmap_p
     return t3r_progress(rt, T3R_STAGE_POINTMAP, step_of(rt, span, part, done), t3r_pointmap_steps(rt, span));
 }
 
-static void bridge_view(void *context, uint32_t index, uint32_t worker)
-{
-    (void)worker;
-    const views_job *job = context;
-    if (!t3r_is_reused(job->rt, job->first + index)) {
-        t3r_bridge_view(&job->views[job->first + index], job->rt->config.bridge_radius);
-    }
-}
-
 /* Bridges a sensor's holes. Stereo has filled its own: pixels that it left without depth show nothing. */
 t3r_status t3r_bridge_holes(t3r_runtime *rt, t3r_view *views, t3r_view_span span)
 {
@@ -118,10 +92,13 @@ t3r_status t3r_bridge_holes(t3r_runtime *rt, t3r_view *views, t3r_view_span span
             t3r_bridge_lend(views, rt->views, v, rt->frame.exponent, &work);
         }
     }
-    const t3r_status status = each_view(rt, views, span, bridge_view, T3R_STAGE_POINTMAP,
-                                        step_of(rt, span, T3R_PART_BRIDGE, 0), t3r_pointmap_steps(rt, span));
-    if (status != T3R_OK) {
-        return status;
+    for (uint32_t v = span.first; v < span.end; v++) {
+        if (!t3r_pointmap_step(rt, span, T3R_PART_BRIDGE, v - span.first)) {
+            return T3R_ERR_CANCELLED;
+        }
+        if (!t3r_is_reused(rt, v)) {
+            t3r_bridge_view(&views[v], rt->config.bridge_radius, &work);
+        }
     }
     for (uint32_t v = span.first; v < span.end; v++) {
         if (!t3r_pointmap_step(rt, span, T3R_PART_SETTLE, v - span.first)) {
@@ -147,6 +124,12 @@ t3r_status t3r_find_flying_pixels(t3r_runtime *rt, t3r_view *views, t3r_view_spa
     }
     return T3R_OK;
 }
+
+typedef struct views_job {
+    const t3r_runtime *rt;
+    t3r_view *views;
+    uint32_t first; /* view of the task of index 0 */
+} views_job;
 
 /* Measures in the worker's own plane and work memory. */
 static void measure_texture(const t3r_runtime *rt, const t3r_view *view, uint32_t worker)
@@ -178,11 +161,17 @@ static void view_texture(void *context, uint32_t index, uint32_t worker)
 
 t3r_status t3r_find_texture(t3r_runtime *rt, t3r_view *views, t3r_view_span span)
 {
-    t3r_status status = each_view(rt, views, span, view_texture, T3R_STAGE_WAVELET, 0, span.end - span.first);
-    if (status == T3R_OK) {
-        t3r_hash_wavelet(rt, views, span.first, span.end);
+    const t3r_workers workers = t3r_workers_of(rt);
+    const uint32_t round = t3r_is_parallel(&workers) ? workers.count : 1; /* one view per worker at a time */
+    for (uint32_t v = span.first; v < span.end; v += round) {
+        if (!t3r_progress(rt, T3R_STAGE_WAVELET, v - span.first, span.end - span.first)) {
+            return T3R_ERR_CANCELLED;
+        }
+        views_job job = {rt, views, v};
+        t3r_run_tasks(&workers, T3R_MIN(round, span.end - v), view_texture, &job);
     }
-    return status;
+    t3r_hash_wavelet(rt, views, span.first, span.end);
+    return T3R_OK;
 }
 
 /* Whether covered points are deferred: in a small budget of a build, and in a stream, whose map already shows them. */

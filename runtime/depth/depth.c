@@ -79,30 +79,57 @@ static uint16_t depth_between(const t3r_view *view, size_t at, const bracket *be
     return (uint16_t)(to_first < to_second ? first : second);
 }
 
-uint32_t t3r_depth_fill(t3r_view *view, uint32_t radius)
-{
-    uint32_t width = view->width, height = view->height;
-    uint32_t filled = 0;
+typedef struct fill_job {
+    const t3r_view *view;
+    uint32_t radius;
+    uint32_t filled[T3R_MAX_WORKERS]; /* one per worker */
+} fill_job;
 
-    if (radius == 0) {
-        return 0;
-    }
-    for (uint32_t y = 0; y < height; y++) {
+/* Gives depths to the pixels of rows that have none, 0 where nothing brackets them. Validity follows later, because
+ * this reads that of other rows. */
+static void fill_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    (void)worker;
+    const fill_job *job = context;
+    const t3r_view *view = job->view;
+    const uint32_t width = view->width, height = view->height;
+    for (uint32_t y = begin; y < end; y++) {
         for (uint32_t x = 0; x < width; x++) {
             size_t at = (size_t)y * width + x;
             if (t3r_has_depth(view->validity[at])) {
                 continue;
             }
-            bracket across = find_bracket(view->validity, at, 1, x, width - 1 - x, radius);
-            bracket along = find_bracket(view->validity, at, width, y, height - 1 - y, radius);
+            bracket across = find_bracket(view->validity, at, 1, x, width - 1 - x, job->radius);
+            bracket along = find_bracket(view->validity, at, width, y, height - 1 - y, job->radius);
             bool vertical = along.gap != 0 && (across.gap == 0 || along.gap < across.gap);
             const bracket *between = vertical ? &along : &across;
-            if (between->gap != 0) {
-                view->depth[at] = depth_between(view, at, between);
-                view->validity[at] = T3R_FILLED;
-                filled++;
-            }
+            view->depth[at] = between->gap != 0 ? depth_between(view, at, between) : 0;
         }
+    }
+}
+
+static void mark_filled(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    fill_job *job = context;
+    const t3r_view *view = job->view;
+    for (size_t i = (size_t)begin * view->width; i < (size_t)end * view->width; i++) {
+        const bool filled = !t3r_has_depth(view->validity[i]) && view->depth[i] != 0;
+        view->validity[i] = filled ? T3R_FILLED : view->validity[i];
+        job->filled[worker] += filled;
+    }
+}
+
+uint32_t t3r_depth_fill(const t3r_view *view, uint32_t radius, const t3r_workers *workers)
+{
+    fill_job job = {.view = view, .radius = radius};
+    if (radius == 0) {
+        return 0;
+    }
+    t3r_run_rows(workers, view->height, fill_rows, &job);
+    t3r_run_rows(workers, view->height, mark_filled, &job);
+    uint32_t filled = 0;
+    for (uint32_t w = 0; w < workers->count; w++) {
+        filled += job.filled[w];
     }
     return filled;
 }

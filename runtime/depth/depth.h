@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "core/workers.h"
 #include "state/views.h"
 
 /* Whether two depths of a view, in its steps, belong to one surface: |a - b| <= 1/16 of the lesser. */
@@ -22,6 +23,6 @@ void t3r_depth_validity(t3r_view *view);
  * row or their column. Filled pixels become T3R_FILLED and are never a source for others. Returns their number.
  * Interpolates if both sides agree; across an edge takes the side of the more similar colour. Reads view->colour,
  * depth and validity. At most 4 x radius steps a pixel. */
-uint32_t t3r_depth_fill(t3r_view *view, uint32_t radius);
+uint32_t t3r_depth_fill(const t3r_view *view, uint32_t radius, const t3r_workers *workers);
 
 #endif

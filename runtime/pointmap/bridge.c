@@ -3,7 +3,31 @@
 
 #include "core/fixed.h"
 
+/* Axes on which a hole is bracketed: its row, and three that lead to the rows above and below. */
 #define AXES 4
+#define SLANTED (AXES - 1)
+
+/* Columns to the right, of the pixel in the row above, on the column and both diagonals; the other way below. */
+static const int32_t upwards[SLANTED] = {0, -1, 1};
+
+/* What a pixel's neighbours need to find the ends of their holes. */
+typedef struct reach {
+    uint8_t ends;           /* 1: holes end here */
+    uint8_t steps[SLANTED]; /* if not: from here to the first end above, 0 = none; on the way back below */
+} reach;
+_Static_assert(sizeof(reach) == sizeof(uint32_t), "the work memory has four bytes a pixel");
+
+typedef struct bridge_job {
+    const t3r_view *view;
+    reach *reaches; /* one per pixel */
+    uint32_t radius;
+} bridge_job;
+
+/* The ends of a hole on one axis, on both sides of a pixel. */
+typedef struct bracket {
+    uint32_t before, after;      /* steps from the pixel; 0: no end */
+    uint16_t depth, other_depth; /* of the ends */
+} bracket;
 
 /* Whether the pixel ends a hole. Planes of a restored arena may hold anything, so known pixels count only with a
  * depth. */
@@ -13,25 +37,59 @@ static bool ends_hole(const t3r_view *view, size_t pixel)
     return view->depth[pixel] != 0 && (t3r_is_known(validity) || t3r_is_lent(validity));
 }
 
-/* Returns the steps from (x, y) to the first known pixel, 1..radius, and stores its depth. Returns 0 if there is
- * none. */
-static uint32_t look(const t3r_view *view, uint32_t x, uint32_t y, int32_t dx, int32_t dy, uint32_t radius,
-                     uint16_t *depth)
+static void find_ends(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
-    int32_t u = (int32_t)x, v = (int32_t)y;
-    for (uint32_t i = 1; i <= radius; i++) {
-        u += dx;
-        v += dy;
-        if (u < 0 || v < 0 || u >= (int32_t)view->width || v >= (int32_t)view->height) {
+    (void)worker;
+    const bridge_job *job = context;
+    const size_t width = job->view->width;
+    for (size_t i = begin * width; i < end * width; i++) {
+        job->reaches[i].ends = ends_hole(job->view, i);
+    }
+}
+
+/* Returns the steps from (x, y) to the first end, 1..radius, or 0 if there is none. */
+static uint8_t walk(const bridge_job *job, uint32_t x, uint32_t y, int32_t dx, int32_t dy)
+{
+    const uint32_t width = job->view->width, height = job->view->height;
+    for (uint32_t i = 1; i <= job->radius; i++) {
+        x += (uint32_t)dx; /* beyond the left or upper border it wraps to a large number */
+        y += (uint32_t)dy;
+        if (x >= width || y >= height) {
             return 0;
         }
-        size_t pixel = (size_t)v * view->width + (size_t)u;
-        if (ends_hole(view, pixel)) {
-            *depth = view->depth[pixel];
-            return i;
+        if (job->reaches[(size_t)y * width + x].ends != 0) {
+            return (uint8_t)i;
         }
     }
     return 0;
+}
+
+/* Returns the same from the reach of the next pixel. */
+static uint8_t step_from(const bridge_job *job, uint32_t axis, uint32_t x, uint32_t y)
+{
+    if (x >= job->view->width || y >= job->view->height) {
+        return 0;
+    }
+    const reach *next = &job->reaches[(size_t)y * job->view->width + x];
+    if (next->ends != 0) {
+        return 1;
+    }
+    return next->steps[axis] == 0 || next->steps[axis] >= job->radius ? 0 : (uint8_t)(next->steps[axis] + 1);
+}
+
+/* Computes the steps to the rows above (dy -1) or below (1). begins: the next row is another task's. */
+static void find_steps(const bridge_job *job, uint32_t x, uint32_t y, int32_t dy, bool begins, uint8_t steps[SLANTED])
+{
+    for (uint32_t k = 0; k < SLANTED; k++) {
+        const int32_t dx = -dy * upwards[k];
+        steps[k] = begins ? walk(job, x, y, dx, dy) : step_from(job, k, x + (uint32_t)dx, y + (uint32_t)dy);
+    }
+}
+
+static uint16_t depth_at(const t3r_view *view, size_t pixel, int32_t dx, int32_t dy, uint32_t steps)
+{
+    const ptrdiff_t step = (ptrdiff_t)dy * (ptrdiff_t)view->width + dx;
+    return view->depth[(ptrdiff_t)pixel + step * (ptrdiff_t)steps];
 }
 
 /* Depth is interpolated as 1 / depth, which is linear on planes. */
@@ -41,25 +99,21 @@ static int64_t inverse_q36(uint16_t depth)
 }
 
 /* Returns the depth of a pixel from its brackets, 0 without any. */
-static uint16_t depth_across(const t3r_view *view, uint32_t x, uint32_t y, uint32_t radius)
+static uint16_t depth_across(const bracket brackets[AXES])
 {
-    static const int32_t axis[AXES][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
     int64_t sum = 0, weights = 0; /* a weight is at most 2^22, an inverse 2^36: together below 2^60 */
     uint32_t narrowest = UINT32_MAX;
     uint16_t farther = 0;
-    for (int k = 0; k < AXES; k++) {
-        uint16_t a = 0, b = 0;
-        uint32_t before = look(view, x, y, -axis[k][0], -axis[k][1], radius, &a);
-        uint32_t after = before == 0 ? 0 : look(view, x, y, axis[k][0], axis[k][1], radius, &b);
-        if (after == 0) {
+    for (uint32_t k = 0; k < AXES; k++) {
+        const bracket *at = &brackets[k];
+        if (at->before == 0 || at->after == 0) {
             continue;
         }
-        uint32_t gap = before + after;
-        uint32_t square = gap * gap * (axis[k][0] * axis[k][1] == 0 ? 1 : 2); /* squared length: 4..2^20 */
-        uint16_t near = T3R_MIN(a, b), deep = T3R_MAX(a, b);
+        const uint32_t gap = at->before + at->after, square = gap * gap * (k < 2 ? 1 : 2); /* squared length: 4..2^20 */
+        const uint16_t a = at->depth, b = at->other_depth, near = T3R_MIN(a, b), deep = T3R_MAX(a, b);
         if (8 * (deep - near) <= near) {
-            int64_t weight = t3r_round_div64((int64_t)1 << 24, square);
-            sum += weight * t3r_round_div64(inverse_q36(a) * after + inverse_q36(b) * before, gap);
+            const int64_t weight = t3r_round_div32(1 << 24, (int32_t)square);
+            sum += weight * t3r_round_div64(inverse_q36(a) * at->after + inverse_q36(b) * at->before, gap);
             weights += weight;
         }
         if (square < narrowest) {
@@ -71,16 +125,78 @@ static uint16_t depth_across(const t3r_view *view, uint32_t x, uint32_t y, uint3
     return weights == 0 ? farther : (uint16_t)t3r_round_div64(weights * ((int64_t)1 << 36), sum);
 }
 
-void t3r_bridge_view(const t3r_view *view, uint32_t radius)
+/* Bridges a pixel between its ends in the row, which are `left` and `right` steps away, and those above and below. */
+static void bridge_pixel(const t3r_view *view, size_t pixel, uint32_t left, uint32_t right,
+                         const uint8_t above[SLANTED], const uint8_t below[SLANTED])
 {
-    for (uint32_t y = 0; y < view->height && radius > 0; y++) {
-        for (uint32_t x = 0; x < view->width; x++) {
-            size_t pixel = (size_t)y * view->width + x;
-            uint16_t depth = t3r_has_depth(view->validity[pixel]) ? 0 : depth_across(view, x, y, radius);
-            if (depth != 0) {
-                view->depth[pixel] = depth;
-                view->validity[pixel] = T3R_BRIDGED;
+    bracket brackets[AXES] = {
+        {left, right, depth_at(view, pixel, -1, 0, left), depth_at(view, pixel, 1, 0, right)},
+    };
+    for (uint32_t k = 0; k < SLANTED; k++) {
+        brackets[k + 1] = (bracket){above[k], below[k], depth_at(view, pixel, upwards[k], -1, above[k]),
+                                    depth_at(view, pixel, -upwards[k], 1, below[k])};
+    }
+    const uint16_t depth = depth_across(brackets);
+    if (depth != 0) {
+        view->depth[pixel] = depth;
+        view->validity[pixel] = T3R_BRIDGED;
+    }
+}
+
+/* Goes along a row whose reaches still lead upwards, and turns them downwards. last: the next row is another task's. */
+static void bridge_row(const bridge_job *job, uint32_t y, bool last)
+{
+    const t3r_view *view = job->view;
+    const size_t row = (size_t)y * view->width;
+    uint32_t left = 0, next = 0; /* steps to the end on the left, 0 = none; column of the one on the right */
+    for (uint32_t x = 0; x < view->width; x++) {
+        reach *here = &job->reaches[row + x];
+        if (here->ends != 0) {
+            left = 1;
+            continue;
+        }
+        while (next < view->width && (next < x || job->reaches[row + next].ends == 0)) {
+            next++;
+        }
+        uint8_t below[SLANTED];
+        find_steps(job, x, y, 1, last, below);
+        if (!t3r_has_depth(view->validity[row + x])) {
+            const uint32_t right = next < view->width ? next - x : 0;
+            bridge_pixel(view, row + x, left <= job->radius ? left : 0, right <= job->radius ? right : 0, here->steps,
+                         below);
+        }
+        for (uint32_t k = 0; k < SLANTED; k++) {
+            here->steps[k] = below[k];
+        }
+        left += left > 0;
+    }
+}
+
+/* Sweeps down the rows, then up: each pixel's reach follows from its neighbours'. Only the first and the last row of a
+ * task look for ends in rows of others. */
+static void sweep_rows(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    (void)worker;
+    const bridge_job *job = context;
+    const uint32_t width = job->view->width;
+    for (uint32_t y = begin; y < end; y++) {
+        for (uint32_t x = 0; x < width; x++) {
+            reach *here = &job->reaches[(size_t)y * width + x];
+            if (here->ends == 0) {
+                find_steps(job, x, y, -1, y == begin, here->steps);
             }
         }
+    }
+    for (uint32_t y = end; y-- > begin;) {
+        bridge_row(job, y, y + 1 == end);
+    }
+}
+
+void t3r_bridge_view(const t3r_view *view, uint32_t radius, const t3r_pointmap_work *work)
+{
+    if (radius > 0) {
+        bridge_job job = {view, (reach *)(void *)work->pixels, radius};
+        t3r_run_rows(&work->workers, view->height, find_ends, &job);
+        t3r_run_rows(&work->workers, view->height, sweep_rows, &job);
     }
 }

@@ -18,10 +18,10 @@
  * Call t3r_bridge_lend() for every view first, then t3r_bridge_view() for every view, then t3r_bridge_settle() for
  * every view. The steps are separate so that a caller may pause between any two views. `settled` has a bit for each
  * view whose bridges are final: this view's bridges must agree with them. A pixel takes at most 22 steps for each other
- * view and 8 x radius. */
+ * view, and as many whatever the radius, but for the first and last rows of a worker's tasks, which take 6 x radius. */
 void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent,
                      const t3r_pointmap_work *work);
-void t3r_bridge_view(const t3r_view *view, uint32_t radius);
+void t3r_bridge_view(const t3r_view *view, uint32_t radius, const t3r_pointmap_work *work);
 uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, uint32_t settled,
                            const t3r_pointmap_work *work);
 

@@ -6,6 +6,8 @@
 
 enum { W = 24, H = 20 };
 
+static const t3r_workers alone = {NULL, 1};
+
 typedef struct canvas {
     uint8_t colour[3][W * H];
     uint16_t depth[W * H];
@@ -58,7 +60,7 @@ TEST(interpolated)
     }
     hole(c, 8, 5, 11, 6);
     t3r_depth_validity(&c->view);
-    assert_int_equal(t3r_depth_fill(&c->view, 3), 3);
+    assert_int_equal(t3r_depth_fill(&c->view, 3, &alone), 3);
     for (int x = 8; x < 11; x++) {
         assert_int_equal(c->depth[5 * W + x], 1000 + 10 * x);
         assert_int_equal(c->validity[5 * W + x], T3R_FILLED);
@@ -83,7 +85,7 @@ TEST(reach)
                     expected += across || along;
                 }
             }
-            assert_int_equal(t3r_depth_fill(&c->view, radius), expected);
+            assert_int_equal(t3r_depth_fill(&c->view, radius, &alone), expected);
             if (size > 2 * (int)radius) {
                 assert_int_equal(expected, 0);
             }
@@ -100,7 +102,7 @@ TEST(border)
     hole(c, W - 1, 0, W, 1);
     hole(c, 0, H - 1, 1, H);
     t3r_depth_validity(&c->view);
-    assert_int_equal(t3r_depth_fill(&c->view, 8), 2);
+    assert_int_equal(t3r_depth_fill(&c->view, 8, &alone), 2);
     assert_int_equal(c->depth[6 * W], 500);
     assert_int_equal(c->depth[W - 1], 0);
     assert_int_equal(c->depth[(H - 1) * W], 0);
@@ -117,7 +119,7 @@ TEST(edge)
     }
     hole(c, 7, 5, 11, 6);
     t3r_depth_validity(&c->view);
-    assert_int_equal(t3r_depth_fill(&c->view, 4), 4);
+    assert_int_equal(t3r_depth_fill(&c->view, 4, &alone), 4);
     for (int x = 7; x < 11; x++) {
         assert_int_equal(c->depth[5 * W + x], x < 9 ? 1000 : 2000);
     }
@@ -130,7 +132,7 @@ TEST(edge)
     }
     hole(c, 7, 5, 12, 6);
     t3r_depth_validity(&c->view);
-    assert_int_equal(t3r_depth_fill(&c->view, 8), 5);
+    assert_int_equal(t3r_depth_fill(&c->view, 8, &alone), 5);
     for (int x = 7; x < 12; x++) {
         assert_int_equal(c->depth[5 * W + x], x <= 9 ? 1000 : 2000);
     }
@@ -147,7 +149,7 @@ TEST(agreement)
         c->depth[5 * W + 5] = 1600;
         c->depth[5 * W + 7] = others[i];
         t3r_depth_validity(&c->view);
-        assert_int_equal(t3r_depth_fill(&c->view, 1), 1);
+        assert_int_equal(t3r_depth_fill(&c->view, 1, &alone), 1);
         assert_int_equal(c->depth[5 * W + 6], between[i]);
         free(c);
     }
@@ -162,7 +164,7 @@ TEST(nearer_pair)
     c->depth[12 * W + 5] = c->depth[12 * W + 7] = 1000;
     c->depth[11 * W + 6] = c->depth[13 * W + 6] = 3000;
     t3r_depth_validity(&c->view);
-    t3r_depth_fill(&c->view, 2);
+    t3r_depth_fill(&c->view, 2, &alone);
     assert_int_equal(c->depth[5 * W + 6], 3000);
     assert_int_equal(c->depth[12 * W + 6], 1000);
     free(c);
@@ -183,7 +185,7 @@ TEST(never_seeds)
         }
         memcpy(before, c->depth, sizeof before);
         t3r_depth_validity(&c->view);
-        uint32_t filled = t3r_depth_fill(&c->view, 3);
+        uint32_t filled = t3r_depth_fill(&c->view, 3, &alone);
         for (int i = 0; i < W * H; i++) {
             if (c->validity[i] == T3R_FILLED) {
                 int low = 65536, high = 0;

@@ -25,20 +25,39 @@ static void disc(rig *s, int v, int x, int y, int radius)
     }
 }
 
-static uint32_t bridge(rig *s, uint32_t views, uint32_t radius)
+static uint32_t bridge_by(const t3r_pointmap_work *work, rig *s, uint32_t views, uint32_t radius)
 {
     uint32_t bridged = 0;
     for (uint32_t v = 0; v < views; v++) {
-        t3r_bridge_lend(s->view, views, v, 0, &alone);
+        t3r_bridge_lend(s->view, views, v, 0, work);
     }
     for (uint32_t v = 0; v < views; v++) {
-        t3r_bridge_view(&s->view[v], radius);
+        t3r_bridge_view(&s->view[v], radius, work);
     }
     for (uint32_t v = 0; v < views; v++) {
-        bridged += t3r_bridge_settle(s->view, views, v, 0, (1u << v) - 1, &alone);
+        bridged += t3r_bridge_settle(s->view, views, v, 0, (1u << v) - 1, work);
     }
     return bridged;
 }
+
+static uint32_t bridge(rig *s, uint32_t views, uint32_t radius)
+{
+    return bridge_by(&alone, s, views, radius);
+}
+
+enum { WORKERS = 7 };
+
+/* Runs the tasks from the last to the first, as different workers. */
+static void reversed(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker), void *context)
+{
+    (void)user;
+    for (uint32_t i = count; i-- > 0;) {
+        task(context, i, i % WORKERS);
+    }
+}
+
+static const t3r_hooks hooks = {.parallel_for = reversed};
+static const t3r_pointmap_work shared = {{&hooks, WORKERS}, compared, ratios, &t3r_kernels_c};
 
 static uint32_t of_kind(const rig *s, int v, uint8_t validity)
 {
@@ -127,7 +146,7 @@ TEST(as_defined)
         }
         *before = *s;
         int radius = (int)unit_between(&seed, 0, 80);
-        uint32_t told = bridge(s, 1, (uint32_t)radius);
+        uint32_t told = bridge_by(turn % 2 == 0 ? &alone : &shared, s, 1, (uint32_t)radius);
         for (int i = 0; i < PIXELS; i++) {
             if (before->validity[0][i] != T3R_NO_DEPTH) {
                 assert_int_equal(s->validity[0][i], before->validity[0][i]);
