@@ -222,6 +222,12 @@ void t3r_image_colour(const t3r_kernels *kernels, const t3r_frame *frame, uint32
  * most W - 1. */
 static void pick_row(const t3r_frame *frame, const uint8_t *row, uint32_t width, uint16_t *out)
 {
+    if (frame->depth_width == width) { /* the usual case needs no divisions */
+        for (uint32_t x = 0; x < width; x++) {
+            out[x] = (uint16_t)(row[2 * x] | row[2 * x + 1] << 8);
+        }
+        return;
+    }
     for (uint32_t x = 0; x < width; x++) {
         const uint8_t *z = row + (size_t)2 * ((2 * x + 1) * frame->depth_width / (2 * width));
         out[x] = (uint16_t)(z[0] | z[1] << 8);

@@ -16,7 +16,8 @@ typedef struct tile_job {
     uint32_t first;      /* tile of task 0 */
 } tile_job;
 
-/* Tiles and blended splats between two calls of the progress hook. DRAW_SPLATS is a multiple of T3R_STOP_INTERVAL. */
+/* Tiles and blended splats of a worker between two calls of the progress hook. DRAW_SPLATS is a multiple of
+ * T3R_STOP_INTERVAL. */
 #define DRAW_CHUNK 64u
 #define DRAW_SPLATS 65536u
 
@@ -39,13 +40,15 @@ static void draw_job(void *context, uint32_t index, uint32_t worker)
 }
 
 /* Returns how many tiles from the first on are drawn at once; 0 when the first tile alone is too long. */
-static uint32_t chunk_of(const tile_job *job, uint32_t end)
+static uint32_t chunk_of(const tile_job *job, uint32_t end, const t3r_workers *workers)
 {
-    const uint32_t most = T3R_MIN(end - job->first, DRAW_CHUNK);
+    const uint32_t busy = t3r_is_parallel(workers) ? workers->count : 1;
+    const uint32_t most = T3R_MIN(end - job->first, busy * DRAW_CHUNK);
     uint32_t tiles = 0;
     for (uint64_t splats = 0; tiles < most; tiles++) {
-        splats += t3r_list_length(job->bin, list_begin(job, job->first + tiles), job->first + tiles);
-        if (splats > DRAW_SPLATS) {
+        const uint32_t tile = job->first + tiles, listed = t3r_list_length(job->bin, list_begin(job, tile), tile);
+        splats += listed;
+        if (listed > DRAW_SPLATS || splats > (uint64_t)busy * DRAW_SPLATS) {
             break;
         }
     }
@@ -81,7 +84,7 @@ t3r_status t3r_raster_tiles(const t3r_runtime *rt, const t3r_binning *bin, const
             if (!t3r_progress(rt, T3R_STAGE_RASTER, job.first, bin->tiles)) {
                 return T3R_ERR_CANCELLED;
             }
-            const uint32_t tiles = chunk_of(&job, end);
+            const uint32_t tiles = chunk_of(&job, end, &workers);
             if (tiles == 0 && !draw_long(rt, &job)) {
                 return T3R_ERR_CANCELLED;
             }

@@ -4,24 +4,30 @@
 #include "core/fixed.h"
 #include "core/memory.h"
 
-/* Stores the splat's depth in each pixel whose transmittance has just fallen below one half. */
-static void note_depth(t3r_drawn_tile *tile, const t3r_tile_splat *splat, int32_t z_q20)
+/* Stores a depth in each of eight pixels whose transmittance has just fallen below one half. Without branches, and not
+ * inlined, so that the compiler vectorizes it. */
+static __attribute__((noinline)) void note_row(const uint16_t *restrict transmittance_q16, uint32_t z_q20,
+                                               uint32_t *restrict depth_q20)
+{
+    _Static_assert(T3R_HALF_Q16 == 1 << 15, "the highest bit is enough");
+    for (uint32_t i = 0; i < T3R_LANES; i++) {
+        const uint32_t is_below = (uint32_t)(transmittance_q16[i] >> 15) - 1u, is_open = (depth_q20[i] != 0) - 1u;
+        depth_q20[i] |= z_q20 & is_below & is_open;
+    }
+}
+
+static void note_depth(t3r_drawn_tile *tile, const t3r_tile_splat *splat, uint32_t z_q20)
 {
     for (uint32_t group = 0; group < splat->groups; group++) {
         const uint32_t column = splat->column + group * T3R_LANES;
         for (uint32_t j = splat->first; j <= splat->last && (splat->drawn >> group & 1) != 0; j++) {
-            for (uint32_t i = column; i < column + T3R_LANES; i++) {
-                uint32_t *depth = &tile->depth_q20[j][i];
-                if (*depth == 0 && tile->pixels.transmittance_q16[j][i] < T3R_HALF_Q16) {
-                    *depth = (uint32_t)z_q20;
-                }
-            }
+            note_row(tile->pixels.transmittance_q16[j] + column, z_q20, tile->depth_q20[j] + column);
         }
     }
 }
 
-/* Whether all pixels are opaque. In most tiles the first row already has a pixel that isn't. */
-bool t3r_tile_stopped(const t3r_tile *tile)
+/* In most tiles the first row already has a pixel that isn't. */
+bool t3r_tile_is_below(const t3r_tile *tile, uint16_t transmittance_q16)
 {
     for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
         uint16_t most = 0;
@@ -29,7 +35,7 @@ bool t3r_tile_stopped(const t3r_tile *tile)
             const uint16_t t = tile->transmittance_q16[j][i];
             most = t > most ? t : most;
         }
-        if (most >= T3R_STOP_Q16) {
+        if (most >= transmittance_q16) {
             return false;
         }
     }
@@ -93,7 +99,7 @@ void t3r_draw_begin(t3r_drawn_tile *tile, uint32_t tile_x, uint32_t tile_y)
 {
     tile->left = tile_x * T3R_TILE_SIDE;
     tile->top = tile_y * T3R_TILE_SIDE;
-    tile->stopped = false;
+    tile->noted = tile->stopped = false;
     memset(tile->depth_q20, 0, sizeof tile->depth_q20);
     t3r_tile_clear(&tile->pixels);
 }
@@ -111,10 +117,17 @@ static void fetch(const t3r_splat *splats, const uint32_t *list, uint32_t count)
     }
 }
 
+/* Finds whether further splats add nothing: to the depth below a half, to colour and alpha where all is opaque. */
+static void look_for_end(t3r_drawn_tile *tile, const t3r_target *target)
+{
+    tile->noted = tile->noted || target->depth_q20 == NULL || t3r_tile_is_below(&tile->pixels, T3R_HALF_Q16);
+    tile->stopped = tile->noted && ((target->rgb == NULL && target->alpha_q15 == NULL) ||
+                                    t3r_tile_is_below(&tile->pixels, T3R_STOP_Q16));
+}
+
 void t3r_draw_list(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_splat *splats, const uint32_t *list,
                    uint32_t count, const t3r_target *target)
 {
-    const bool with_depth = target->depth_q20 != NULL;
     t3r_tile_splat placed[PLACE_SPLATS];
     for (uint32_t i = 0; i < count && !tile->stopped; i++) {
         const uint32_t at = i % PLACE_SPLATS;
@@ -123,13 +136,14 @@ void t3r_draw_list(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_s
             fetch(splats, list + i + PLACE_SPLATS, next > PLACE_SPLATS ? next - PLACE_SPLATS : 0);
             kernels->place(splats, list + i, T3R_MIN(count - i, PLACE_SPLATS), tile->left, tile->top, placed);
         }
-        if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(&tile->pixels)) {
-            tile->stopped = true; /* the remaining splats add nothing to any pixel */
-        } else {
+        if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1) {
+            look_for_end(tile, target);
+        }
+        if (!tile->stopped) {
             kernels->blend(&tile->pixels, &placed[at]);
-            if (with_depth) {
-                note_depth(tile, &placed[at], splats[list[i]].z_q20);
-            }
+        }
+        if (!tile->noted && target->depth_q20 != NULL) {
+            note_depth(tile, &placed[at], (uint32_t)splats[list[i]].z_q20);
         }
     }
 }

@@ -55,7 +55,8 @@ typedef struct t3r_drawn_tile {
     t3r_tile pixels;
     uint32_t depth_q20[T3R_TILE_SIDE][T3R_TILE_SIDE];
     uint32_t left, top; /* its first pixel in the target */
-    bool stopped;       /* all its pixels are opaque, so further splats add nothing */
+    bool noted;         /* all its pixels have a depth, if depth is drawn */
+    bool stopped;       /* further splats add nothing to what is drawn */
 } t3r_drawn_tile;
 
 /* Draw one tile: t3r_draw_begin() clears it, t3r_draw_list() blends its list front to back in any number of parts,
@@ -67,10 +68,11 @@ void t3r_draw_end(const t3r_drawn_tile *tile, const t3r_target *target);
 
 /* Steps of drawing, for callers that do more with a tile than writing it into a target. */
 
-/* Splats between two checks of whether all pixels of a tile are opaque. */
+/* Splats between two checks of whether further ones add nothing. */
 #define T3R_STOP_INTERVAL 16
 
 void t3r_tile_clear(t3r_tile *tile);
-bool t3r_tile_stopped(const t3r_tile *tile);
+/* Whether the transmittance of all pixels is below this one. */
+bool t3r_tile_is_below(const t3r_tile *tile, uint16_t transmittance_q16);
 
 #endif

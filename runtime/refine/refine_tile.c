@@ -75,7 +75,7 @@ static kept_splats draw(const t3r_refine_view *job, const uint32_t *list, uint32
         if (at == 0) {
             job->kernels->place(job->splats, list + i, T3R_MIN(end - i, T3R_STOP_INTERVAL), left, top, placed);
         }
-        if (at == T3R_STOP_INTERVAL - 1 && t3r_tile_stopped(tile)) {
+        if (at == T3R_STOP_INTERVAL - 1 && t3r_tile_is_below(tile, T3R_STOP_Q16)) {
             break;
         }
         const t3r_tile_splat *splat = &placed[at];
