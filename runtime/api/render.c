@@ -75,7 +75,7 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
         .lists = t3r_buffer_at(rt, T3R_BUFFER_LISTS),
         .capacity = rt->list_capacity,
     };
-    t3r_binning bin = t3r_raster_list(rt, &projection, &room);
+    t3r_binning bin = t3r_raster_list(rt, &projection, &t3r_all_pixels, &room);
     uint32_t passes;
     status = t3r_raster_tiles(rt, &bin, target, &passes);
     if (status != T3R_OK) {

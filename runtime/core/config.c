@@ -58,11 +58,24 @@ uint32_t t3r_cluster_batch_count(const t3r_config *c)
     return c->cluster_batches != 0 ? c->cluster_batches : batches == 0 ? 1 : T3R_MIN(batches, MOST_BATCHES);
 }
 
+/* Pixels of a view for each Gaussian from which a pass compares a part of them. */
+#define PIXELS_A_GAUSSIAN 16u
+
+static uint32_t refine_stride(const t3r_config *c)
+{
+    if (!t3r_is_stream(c)) {
+        return 1;
+    }
+    const bool many = c->width * c->height / PIXELS_A_GAUSSIAN >= c->gaussians;
+    return c->refine_stride != 0 ? c->refine_stride : many ? 2 : 1;
+}
+
 t3r_config t3r_settled(const t3r_config *config)
 {
     t3r_config settled = *config;
     settled.clusters = t3r_cluster_count(config);
     settled.cluster_batches = t3r_cluster_batch_count(config);
+    settled.refine_stride = refine_stride(config);
     return settled;
 }
 

@@ -113,6 +113,10 @@
       "let a map of at most `gaussians` follow a camera with a depth sensor")                                          \
     X(half_life, number, 0, 1024, 32, NONE, 0, STREAM, "half-life",                                                    \
       "number of keyframes that halve the density of what they do not see; 0 = nothing fades")                         \
+    /* 2 = a pass compares one pixel in 2 x 2, another one in each pass and view, for about a quarter of the time. 1 = \
+     * every pixel, which always holds without `stream`. */                                                            \
+    X(refine_stride, number, 0, 2, 0, NONE, 0, STREAM, "refine-stride",                                                \
+      "compare one pixel in N x N in a pass of refinement; 0 = 2 where a Gaussian has 16 pixels and more, else 1")     \
     /* Takes two bytes a pixel for each. Each pass of refinement draws two of them in turn, and Gaussians that many    \
      * keyframes saw change by smaller steps, so the map keeps showing places that the camera has left. Without        \
      * room, the keyframe that the map needs least is forgotten. Ignored without `stream`. */                          \

@@ -11,22 +11,31 @@
 /* The room for placed splats is a multiple of this; entries after the last may hold anything. */
 #define T3R_PLACED 8
 
-/* Places the splats of the first `count` >= 1 entries of a list, all of which overlap the tile at (left, top): on any
- * eight columns if the splat's box is no wider there, else on both halves of the tile. A half on which it draws
- * nothing is not marked as drawn. The second group of a splat with one group may hold anything. */
-typedef void t3r_place_kernel(const t3r_splat *splats, const uint32_t *list, uint32_t count, uint32_t left,
-                              uint32_t top, t3r_tile_splat *placed);
+/* A tile: its first pixel in its picture, whose pixels are 2^spread pixels of the camera apart, spread 0 or 1. */
+typedef struct t3r_tile_place {
+    uint32_t left, top, spread;
+} t3r_tile_place;
+
+/* Places the splats of the first `count` >= 1 entries of a list, all of which overlap the tile: on any eight columns if
+ * the splat's box is no wider there, else on both halves of the tile. A half on which it draws nothing is not marked as
+ * drawn. The second group of a splat with one group may hold anything. Boxes are in pixels of the picture, centres and
+ * conics in those of the camera. */
+typedef void t3r_place_kernel(const t3r_splat *splats, const uint32_t *list, uint32_t count, const t3r_tile_place *tile,
+                              t3r_tile_splat *placed);
 t3r_place_kernel t3r_place_c;
 
 /* Places one splat. */
-void t3r_place(const t3r_splat *splat, uint32_t left, uint32_t top, t3r_tile_splat *placed);
+void t3r_place(const t3r_splat *splat, const t3r_tile_place *tile, t3r_tile_splat *placed);
 
 /* Sets only columns, rows, box and colour, which are all that scattering reads. */
 void t3r_splat_span(const t3r_splat *splat, uint32_t left, uint32_t top, t3r_tile_splat *placed);
 
-/* A splat whose centre is at most this far from a tile needs no test against its columns: within 24 + 16 px of the
- * centre, along both axes, the quadratic is below 5,400 and its partial sums below 10,300 (a, c <= 1 / 0.6), and Q17
- * holds 16,383. */
-#define T3R_SMALL_SPLAT 24
+/* Returns the distance of a splat's centre from a tile up to which it needs no test against the tile's columns: at most
+ * 39 px from the centre, along both axes, the quadratic is below 5,400 and its partial sums below 10,300 (a, c <=
+ * 1 / 0.6), and Q17 holds 16,383. */
+static inline int32_t t3r_near_tile(uint32_t spread)
+{
+    return 39 - ((T3R_TILE_SIDE - 1) << spread);
+}
 
 #endif

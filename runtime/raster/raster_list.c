@@ -10,6 +10,7 @@
 typedef struct project_job {
     const t3r_kernels *kernels;
     const t3r_projection *projection;
+    const t3r_lattice *lattice;
     const t3r_gaussian *gaussians;
     uint32_t count;
     t3r_splat *splats;
@@ -24,13 +25,21 @@ static void project_chunk(void *context, uint32_t index, uint32_t worker)
     uint32_t first = index * PROJECT_CHUNK, end = T3R_MIN(first + PROJECT_CHUNK, job->count);
     job->kernels->project(job->projection, job->gaussians + first, end - first, job->splats + first);
     for (uint32_t i = first; i < end; i++) {
+        if (job->lattice->spread > 0 && job->splats[i].z_q20 != 0) {
+            t3r_to_lattice(job->lattice, &job->splats[i]);
+        }
         job->depths[i] = (uint32_t)job->splats[i].z_q20;
         job->spans[i] = t3r_span_of(&job->splats[i]);
     }
 }
 
-t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *projection, const t3r_raster_room *room)
+const t3r_lattice t3r_all_pixels = {0, 0, 0};
+
+t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *projection, const t3r_lattice *lattice,
+                            const t3r_raster_room *room)
 {
+    const uint32_t width = t3r_lattice_side(projection->width, lattice->x, lattice->spread);
+    const uint32_t height = t3r_lattice_side(projection->height, lattice->y, lattice->spread);
     uint32_t count = rt->gaussians, most = rt->config.max_gaussians;
     uint32_t *histogram = room->order;
     uint32_t *keys[2] = {histogram + T3R_SORT_BYTES / 4, histogram + T3R_SORT_BYTES / 4 + most};
@@ -39,8 +48,8 @@ t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *project
     /* memory reused before its own use: the lists hold all spans, the second key buffer holds the depths */
     t3r_tile_span *all_spans = (t3r_tile_span *)(void *)room->lists;
     uint32_t *depths = keys[1];
-    project_job projecting = {&rt->kernels, projection, t3r_buffer_at(rt, T3R_BUFFER_SCENE), count, room->splats,
-                              depths,       all_spans};
+    project_job projecting = {&rt->kernels, projection,   lattice, t3r_buffer_at(rt, T3R_BUFFER_SCENE),
+                              count,        room->splats, depths,  all_spans};
     const t3r_workers workers = t3r_workers_of(rt);
     t3r_run_tasks(&workers, (count + PROJECT_CHUNK - 1) / PROJECT_CHUNK, project_chunk, &projecting);
     uint32_t visible = 0;
@@ -62,8 +71,8 @@ t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *project
         .order = order,
         .spans = spans,
         .visible = visible,
-        .across = (projection->width + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE,
-        .tiles = (uint32_t)T3R_TILES_(projection->width, projection->height),
+        .across = (width + T3R_TILE_SIDE - 1) / T3R_TILE_SIDE,
+        .tiles = (uint32_t)T3R_TILES_(width, height),
         .table = room->table,
         .lists = room->lists,
         .capacity = room->capacity,

@@ -14,9 +14,13 @@ typedef struct t3r_raster_room {
     uint64_t capacity; /* entries of lists, at least max_gaussians */
 } t3r_raster_room;
 
-/* Projects the scene (through the parallel hook), orders the splats and counts them into tiles. The splat of a culled
- * Gaussian has z_q20 = 0. t3r_bin_pass() fills the lists next. */
-t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *projection, const t3r_raster_room *room);
+/* Every pixel of a view. */
+extern const t3r_lattice t3r_all_pixels;
+
+/* Projects the scene (through the parallel hook), orders the splats and counts them into the tiles of the lattice's
+ * picture. The splat of a culled Gaussian has z_q20 = 0. t3r_bin_pass() fills the lists next. */
+t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *projection, const t3r_lattice *lattice,
+                            const t3r_raster_room *room);
 
 /* Draws all tiles of the binning into the target (through the parallel hook) and reports progress. *passes is the
  * number of passes taken. T3R_ERR_CANCELLED leaves the target partly drawn. */

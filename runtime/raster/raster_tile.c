@@ -66,11 +66,11 @@ static void write_alphas(const t3r_tile *tile, uint32_t j, uint32_t columns, uin
 
 void t3r_draw_end(const t3r_drawn_tile *tile, const t3r_target *target)
 {
-    const uint32_t left = tile->left;
+    const uint32_t left = tile->place.left, top = tile->place.top;
     const uint32_t columns = T3R_MIN(target->width - left, (uint32_t)T3R_TILE_SIDE);
-    const uint32_t rows = T3R_MIN(target->height - tile->top, (uint32_t)T3R_TILE_SIDE);
+    const uint32_t rows = T3R_MIN(target->height - top, (uint32_t)T3R_TILE_SIDE);
     for (uint32_t j = 0; j < rows; j++) {
-        const size_t y = tile->top + j;
+        const size_t y = top + j;
         if (target->rgb != NULL) {
             write_colours(&tile->pixels, j, columns, target->rgb + y * target->rgb_stride_bytes + 3 * (size_t)left);
         }
@@ -97,8 +97,7 @@ void t3r_tile_clear(t3r_tile *tile)
 
 void t3r_draw_begin(t3r_drawn_tile *tile, uint32_t tile_x, uint32_t tile_y)
 {
-    tile->left = tile_x * T3R_TILE_SIDE;
-    tile->top = tile_y * T3R_TILE_SIDE;
+    tile->place = (t3r_tile_place){tile_x * T3R_TILE_SIDE, tile_y * T3R_TILE_SIDE, 0};
     tile->noted = tile->stopped = false;
     memset(tile->depth_q20, 0, sizeof tile->depth_q20);
     t3r_tile_clear(&tile->pixels);
@@ -134,7 +133,7 @@ void t3r_draw_list(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_s
         if (at == 0) {
             const uint32_t next = T3R_MIN(count - i, 2 * PLACE_SPLATS);
             fetch(splats, list + i + PLACE_SPLATS, next > PLACE_SPLATS ? next - PLACE_SPLATS : 0);
-            kernels->place(splats, list + i, T3R_MIN(count - i, PLACE_SPLATS), tile->left, tile->top, placed);
+            kernels->place(splats, list + i, T3R_MIN(count - i, PLACE_SPLATS), &tile->place, placed);
         }
         if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1) {
             look_for_end(tile, target);

@@ -54,9 +54,9 @@ uint32_t t3r_bin_pass(const t3r_workers *workers, const t3r_binning *binning, ui
 typedef struct t3r_drawn_tile {
     t3r_tile pixels;
     uint32_t depth_q20[T3R_TILE_SIDE][T3R_TILE_SIDE];
-    uint32_t left, top; /* its first pixel in the target */
-    bool noted;         /* all its pixels have a depth, if depth is drawn */
-    bool stopped;       /* further splats add nothing to what is drawn */
+    t3r_tile_place place; /* its first pixel in the target */
+    bool noted;           /* all its pixels have a depth, if depth is drawn */
+    bool stopped;         /* further splats add nothing to what is drawn */
 } t3r_drawn_tile;
 
 /* Draw one tile: t3r_draw_begin() clears it, t3r_draw_list() blends its list front to back in any number of parts,

@@ -199,7 +199,7 @@ static t3r_status measure_view(const t3r_runtime *rt, const t3r_refine_layout *w
     if (status != T3R_OK) {
         return status;
     }
-    const t3r_binning bin = t3r_raster_list(rt, &projection, &w->room);
+    const t3r_binning bin = t3r_raster_list(rt, &projection, &t3r_all_pixels, &w->room);
     const t3r_refine_view view = {
         .kernels = &rt->kernels,
         .view = &views[v],
@@ -305,7 +305,15 @@ typedef struct shown_view {
     const uint16_t *gain_q14;
     const uint16_t *remembered;     /* pixels; NULL: the view has planes */
     const t3r_structure *structure; /* NULL: residuals count unchanged */
+    t3r_lattice lattice;            /* pixels that are compared */
 } shown_view;
+
+/* Returns the pixels that a pass compares: with a stride of 2 each of the four lattices in turn. */
+static t3r_lattice lattice_of(const t3r_runtime *rt, uint32_t turn)
+{
+    static const t3r_lattice quarters[] = {{1, 0, 0}, {1, 1, 1}, {1, 1, 0}, {1, 0, 1}};
+    return rt->config.refine_stride > 1 ? quarters[turn % 4] : t3r_all_pixels;
+}
 
 /* Draws the view and adds to the sums of the slice. */
 static t3r_status accumulate(const t3r_runtime *rt, slice_job *slice, const shown_view *shown, uint32_t done,
@@ -319,7 +327,7 @@ static t3r_status accumulate(const t3r_runtime *rt, slice_job *slice, const show
     }
     const t3r_workers workers = t3r_workers_of(rt);
     const t3r_refine_layout *w = slice->work;
-    const t3r_binning bin = t3r_raster_list(rt, &projection, &w->room);
+    const t3r_binning bin = t3r_raster_list(rt, &projection, &shown->lattice, &w->room);
     slice->projection = &projection;
     t3r_run_tasks(&workers, chunks_of(slice->slice.count), begin_chunk, slice);
     const t3r_refine_view view = {
@@ -329,6 +337,7 @@ static t3r_status accumulate(const t3r_runtime *rt, slice_job *slice, const show
         .slice = slice->slice,
         .borders = &w->borders,
         .across = bin.across,
+        .lattice = shown->lattice,
         .kept_words = w->kept_words,
         .gain_q14 = shown->gain_q14,
         .remembered = shown->remembered,
@@ -350,7 +359,8 @@ static t3r_status accumulate_remembered(const t3r_runtime *rt, slice_job *slice,
     const uint32_t most = t3r_remembered_a_pass(rt);
     for (uint32_t i = 0; i < most; i++, ++*done) {
         t3r_remembered *keyframe = t3r_remembered_at(rt, (turn * T3R_REMEMBERED_A_PASS + i) % rt->remembered);
-        const shown_view shown = {size, &keyframe->camera, keyframe->gain_q14, t3r_remembered_pixels(keyframe), NULL};
+        const shown_view shown = {size, &keyframe->camera,       keyframe->gain_q14, t3r_remembered_pixels(keyframe),
+                                  NULL, lattice_of(rt, turn + i)};
         t3r_pose pose;
         if (!t3r_progress(rt, T3R_STAGE_REFINE, *done, total)) {
             return T3R_ERR_CANCELLED;
@@ -375,8 +385,12 @@ static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, cons
         if (!t3r_progress(rt, T3R_STAGE_REFINE, *done, total)) {
             return T3R_ERR_CANCELLED;
         }
-        const shown_view shown = {&views[v], &rt->camera[v], rt->gain_q14[v], NULL,
-                                  T3R_FEATURE_LOSS && slice->structure != NULL ? &slice->structure[v] : NULL};
+        const shown_view shown = {&views[v],
+                                  &rt->camera[v],
+                                  rt->gain_q14[v],
+                                  NULL,
+                                  T3R_FEATURE_LOSS && slice->structure != NULL ? &slice->structure[v] : NULL,
+                                  lattice_of(rt, turn + v)};
         t3r_status status = accumulate(rt, slice, &shown, *done, total);
         if (status != T3R_OK) {
             return status;

@@ -26,20 +26,24 @@ static uint32_t shown_q7(const t3r_refine_view *job, size_t at, int channel)
 }
 
 /* Computes the residuals of the drawn tile. Columns and rows beyond the image don't count. */
-static void compare(const t3r_refine_view *job, uint32_t left, uint32_t top, t3r_wanted *want)
+static void compare(const t3r_refine_view *job, const t3r_tile_place *tile, t3r_wanted *want)
 {
     const t3r_view *view = job->view;
-    uint32_t columns = T3R_MIN(view->width - left, (uint32_t)T3R_TILE_SIDE);
-    uint32_t rows = T3R_MIN(view->height - top, (uint32_t)T3R_TILE_SIDE);
+    const t3r_lattice *lattice = &job->lattice;
+    const uint32_t width = t3r_lattice_side(view->width, lattice->x, lattice->spread);
+    const uint32_t height = t3r_lattice_side(view->height, lattice->y, lattice->spread);
+    const uint32_t columns = T3R_MIN(width - tile->left, (uint32_t)T3R_TILE_SIDE);
+    const uint32_t rows = T3R_MIN(height - tile->top, (uint32_t)T3R_TILE_SIDE);
     memset(want->residual_q4, 0, sizeof want->residual_q4);
     memset(want->counts, 0, sizeof want->counts);
     for (uint32_t j = 0; j < rows; j++) {
-        size_t row = (size_t)(top + j) * view->width + left;
-        for (uint32_t i = 0; i < columns; i++) {
-            want->counts[j][i] = is_wanted(job, row + i) ? UINT16_MAX : 0;
+        size_t at = (size_t)(((tile->top + j) << lattice->spread) + lattice->y) * view->width +
+                    (tile->left << lattice->spread) + lattice->x;
+        for (uint32_t i = 0; i < columns; i++, at += (size_t)1 << lattice->spread) {
+            want->counts[j][i] = is_wanted(job, at) ? UINT16_MAX : 0;
             for (int c = 0; c < 3; c++) {
                 int32_t drawn_q7 = T3R_MIN((int32_t)want->pixels.colour_q7[c][j][i], 32640);
-                int32_t residual_q7 = t3r_level_q7(shown_q7(job, row + i, c), job->gain_q14[c]) - drawn_q7;
+                int32_t residual_q7 = t3r_level_q7(shown_q7(job, at, c), job->gain_q14[c]) - drawn_q7;
                 want->residual_q4[c][j][i] = (int16_t)t3r_round_shift32(residual_q7, 3);
             }
         }
@@ -64,7 +68,7 @@ static t3r_blended_row *rows_at(const t3r_refine_view *job, uint32_t rows)
 
 /* Draws the list up to `end`, or until all pixels are opaque, and keeps its last splats: a full buffer is emptied and
  * filled again. */
-static kept_splats draw(const t3r_refine_view *job, const uint32_t *list, uint32_t end, uint32_t left, uint32_t top,
+static kept_splats draw(const t3r_refine_view *job, const uint32_t *list, uint32_t end, const t3r_tile_place *place,
                         t3r_tile *tile)
 {
     kept_splats kept = {0, 0, 0};
@@ -73,7 +77,7 @@ static kept_splats draw(const t3r_refine_view *job, const uint32_t *list, uint32
     for (uint32_t i = 0; i < end; i++) {
         const uint32_t at = i % T3R_STOP_INTERVAL;
         if (at == 0) {
-            job->kernels->place(job->splats, list + i, T3R_MIN(end - i, T3R_STOP_INTERVAL), left, top, placed);
+            job->kernels->place(job->splats, list + i, T3R_MIN(end - i, T3R_STOP_INTERVAL), place, placed);
         }
         if (at == T3R_STOP_INTERVAL - 1 && t3r_tile_is_below(tile, T3R_STOP_Q16)) {
             break;
@@ -97,14 +101,16 @@ static kept_splats draw(const t3r_refine_view *job, const uint32_t *list, uint32
 
 /* Computes x, y and their steps a pixel, from the axes in Q15 and the offset of the first pixel from the mean in Q12.
  * The results are modulo 2^16, so 32-bit intermediates are enough. */
-static void place(const t3r_refine_sums *sums, const t3r_splat *s, uint32_t x, uint32_t y, t3r_scatter_splat *out)
+static void place(const t3r_refine_sums *sums, const t3r_splat *s, uint32_t x, uint32_t y, uint32_t spread,
+                  t3r_scatter_splat *out)
 {
-    const uint32_t dx_q12 = (x << 12) - (uint32_t)s->x_q12, dy_q12 = (y << 12) - (uint32_t)s->y_q12;
+    const uint32_t dx_q12 = (x << (12 + spread)) - (uint32_t)s->x_q12;
+    const uint32_t dy_q12 = (y << (12 + spread)) - (uint32_t)s->y_q12;
     for (int k = 0; k < 2; k++) {
         const uint32_t at_q27 = (uint32_t)sums->right_q15[k] * dx_q12 + (uint32_t)sums->down_q15[k] * dy_q12;
         out->origin_q13[k] = (int16_t)(uint16_t)((at_q27 + (1 << 13)) >> 14);
-        out->right_q13[k] = (int16_t)t3r_round_shift32(sums->right_q15[k], 2);
-        out->down_q13[k] = (int16_t)t3r_round_shift32(sums->down_q15[k], 2);
+        out->right_q13[k] = (int16_t)t3r_round_shift32(sums->right_q15[k], 2 - spread);
+        out->down_q13[k] = (int16_t)t3r_round_shift32(sums->down_q15[k], 2 - spread);
     }
 }
 
@@ -124,10 +130,13 @@ static void ask_for_sums(const t3r_refine_slice *slice, uint32_t index)
     }
 }
 
+/* Leading zeros of weights below 1/64, which a pass over a part of the pixels passes over. */
+#define FAINT_SCALE 6
+
 /* Goes through the kept splats from the last down to list entry `first`: accumulates each and removes it from the
  * tile. */
 static void take_off(const t3r_refine_view *job, const uint32_t *list, const kept_splats *kept, uint32_t first,
-                     uint32_t left, uint32_t top)
+                     const t3r_tile_place *tile)
 {
     uint32_t rows = kept->rows;
     for (uint32_t i = kept->count; i-- > 0 && job->kept[i] >> SCALE_BITS >= first;) {
@@ -137,14 +146,15 @@ static void take_off(const t3r_refine_view *job, const uint32_t *list, const kep
             ask_for_sums(&job->slice, list[job->kept[i - SUMS_AHEAD] >> SCALE_BITS]);
         }
         t3r_tile_splat span;
-        t3r_splat_span(s, left, top, &span);
+        t3r_splat_span(s, tile->left, tile->top, &span);
         t3r_scatter_splat splat = {
             .span = &span, .rows = rows_at(job, rows), .scale = job->kept[i] & ((1 << SCALE_BITS) - 1)};
         rows -= t3r_rows_of(&span);
         t3r_refine_sums *sums = NULL;
-        if (is_in(&job->slice, index)) {
+        const bool faint = job->lattice.spread > 0 && splat.scale >= FAINT_SCALE;
+        if (!faint && is_in(&job->slice, index)) {
             sums = t3r_refine_sums_in(job->bands, job->band, job->borders, &job->slice, s, index, job->across);
-            place(sums, s, left + span.column, top + span.first, &splat);
+            place(sums, s, tile->left + span.column, tile->top + span.first, tile->spread, &splat);
             splat.pixels = (span.x1 - span.x0 + 1u) * (span.last - span.first + 1u);
         }
         job->kernels->scatter(job->wanted, &splat, sums);
@@ -153,10 +163,15 @@ static void take_off(const t3r_refine_view *job, const uint32_t *list, const kep
 
 /* Not inlined: its tile must not be on the stack while splats are removed. */
 static __attribute__((noinline)) kept_splats draw_again(const t3r_refine_view *job, const uint32_t *list, uint32_t end,
-                                                        uint32_t left, uint32_t top)
+                                                        const t3r_tile_place *place)
 {
     t3r_tile again;
-    return draw(job, list, end, left, top, &again);
+    return draw(job, list, end, place, &again);
+}
+
+static t3r_tile_place place_of(const t3r_refine_view *job, uint32_t tile_x, uint32_t tile_y)
+{
+    return (t3r_tile_place){tile_x * T3R_TILE_SIDE, tile_y * T3R_TILE_SIDE, job->lattice.spread};
 }
 
 /* Returns the list entry of the first splat in the slice, or `count` when there is none. Earlier entries don't
@@ -172,33 +187,33 @@ static uint32_t first_in(const t3r_refine_slice *slice, const uint32_t *list, ui
 
 void t3r_refine_tile(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x, uint32_t tile_y)
 {
-    uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
+    const t3r_tile_place at = place_of(job, tile_x, tile_y);
     t3r_wanted *want = job->wanted;
     const uint32_t first = first_in(&job->slice, list, count);
     if (first == count) {
         return; /* a slice holds neighbours, so most tiles are drawn for few slices */
     }
-    kept_splats kept = draw(job, list, count, left, top, &want->pixels);
-    compare(job, left, top, want);
+    kept_splats kept = draw(job, list, count, &at, &want->pixels);
+    compare(job, &at, want);
     if (T3R_FEATURE_LOSS && job->structure != NULL) {
         t3r_structural_loss(want, job->structure);
     }
     memset(want->pixels.colour_q7, 0, sizeof want->pixels.colour_q7); /* after the last splat nothing but black
                                                                        * follows */
-    take_off(job, list, &kept, first, left, top);
+    take_off(job, list, &kept, first, &at);
     while (kept.begin > first && job->goes_on(job->context, kept.begin)) {
-        kept = draw_again(job, list, kept.begin, left, top);
-        take_off(job, list, &kept, first, left, top);
+        kept = draw_again(job, list, kept.begin, &at);
+        take_off(job, list, &kept, first, &at);
     }
 }
 
 uint64_t t3r_refine_tile_error(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x,
                                uint32_t tile_y, uint32_t *pixels)
 {
-    uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
+    const t3r_tile_place at = place_of(job, tile_x, tile_y);
     t3r_wanted *want = job->wanted;
-    (void)draw(job, list, count, left, top, &want->pixels);
-    compare(job, left, top, want);
+    (void)draw(job, list, count, &at, &want->pixels);
+    compare(job, &at, want);
     uint64_t error = 0;
     for (uint32_t j = 0; j < T3R_TILE_SIDE; j++) {
         for (uint32_t i = 0; i < T3R_TILE_SIDE; i++) {
@@ -214,8 +229,8 @@ uint64_t t3r_refine_tile_error(const t3r_refine_view *job, const uint32_t *list,
 void t3r_refine_tile_levels(const t3r_refine_view *job, const uint32_t *list, uint32_t count, uint32_t tile_x,
                             uint32_t tile_y, t3r_level_sums *sums)
 {
-    uint32_t left = tile_x * T3R_TILE_SIDE, top = tile_y * T3R_TILE_SIDE;
-    (void)draw(job, list, count, left, top, &job->wanted->pixels);
-    compare(job, left, top, job->wanted);
+    const t3r_tile_place at = place_of(job, tile_x, tile_y);
+    (void)draw(job, list, count, &at, &job->wanted->pixels);
+    compare(job, &at, job->wanted);
     t3r_add_levels(job->wanted, &job->structure->levels, sums);
 }

@@ -19,11 +19,12 @@ typedef struct t3r_refine_view {
     t3r_refine_slice slice;
     const t3r_refine_borders *borders;
     const t3r_refine_band *bands;
-    uint32_t band;      /* index of the band being drawn */
-    uint32_t across;    /* tiles a row */
-    t3r_wanted *wanted; /* the tile and its residuals, too large for the stack */
-    uint32_t *kept;     /* memory for the splats kept while a tile is drawn, at least T3R_KEPT_LEAST words; with more, a
-                           full tile is drawn again less often */
+    uint32_t band;       /* index of the band being drawn */
+    uint32_t across;     /* tiles a row */
+    t3r_lattice lattice; /* the pixels that are compared */
+    t3r_wanted *wanted;  /* the tile and its residuals, too large for the stack */
+    uint32_t *kept; /* memory for the splats kept while a tile is drawn, at least T3R_KEPT_LEAST words; with more, a
+                       full tile is drawn again less often */
     uint32_t kept_words;
     const uint16_t *gain_q14;       /* of r, g, b: they level the view first */
     const uint16_t *remembered;     /* pixels of a remembered keyframe, which has no planes; NULL: a live view */

@@ -4,6 +4,7 @@
 #include "checks.h"
 #include "core/fixed.h"
 #include "guarded.h"
+#include "raster/raster_splat.h"
 
 enum { SIDE = T3R_TILE_SIDE, COUNT = 40 };
 
@@ -78,10 +79,12 @@ const char *check_project(const t3r_kernels *kernels, uint64_t *seed)
     return NULL;
 }
 
-/* Makes splats that reach one tile of a view: projects Gaussians until each does. */
-static uint32_t any_splats(uint64_t *seed, t3r_splat splats[COUNT], uint32_t *left, uint32_t *top)
+/* Makes splats that reach one tile of a view, or of a part of its pixels: projects Gaussians until each does. */
+static uint32_t any_splats(uint64_t *seed, t3r_splat splats[COUNT], t3r_tile_place *tile)
 {
     const t3r_projection p = any_projection(seed);
+    const uint32_t spread = (uint32_t)(unit_random(seed) % 2), odd = spread * 3 & (uint32_t)unit_random(seed);
+    const t3r_lattice lattice = {spread, odd & 1, odd >> 1};
     uint32_t count = 0;
     for (uint32_t tries = 0; tries < 20 * COUNT && count < COUNT; tries++) {
         const t3r_gaussian g = any_gaussian(seed, &p, unit_random(seed) % 4 == 0 ? unit_random(seed) % 8 : 0);
@@ -89,11 +92,15 @@ static uint32_t any_splats(uint64_t *seed, t3r_splat splats[COUNT], uint32_t *le
         if (!t3r_project(&p, &g, s)) {
             continue;
         }
-        if (count == 0) {
-            *left = (uint32_t)unit_between(seed, s->x0, s->x1) / SIDE * SIDE;
-            *top = (uint32_t)unit_between(seed, s->y0, s->y1) / SIDE * SIDE;
+        t3r_to_lattice(&lattice, s);
+        if (s->z_q20 == 0) {
+            continue;
         }
-        count += s->x0 < *left + SIDE && s->x1 >= *left && s->y0 < *top + SIDE && s->y1 >= *top;
+        if (count == 0) {
+            *tile = (t3r_tile_place){(uint32_t)unit_between(seed, s->x0, s->x1) / SIDE * SIDE,
+                                     (uint32_t)unit_between(seed, s->y0, s->y1) / SIDE * SIDE, spread};
+        }
+        count += s->x0 < tile->left + SIDE && s->x1 >= tile->left && s->y0 < tile->top + SIDE && s->y1 >= tile->top;
     }
     return count;
 }
@@ -101,8 +108,8 @@ static uint32_t any_splats(uint64_t *seed, t3r_splat splats[COUNT], uint32_t *le
 const char *check_place(const t3r_kernels *kernels, uint64_t *seed)
 {
     t3r_splat reach[COUNT];
-    uint32_t left, top;
-    const uint32_t splats_count = any_splats(seed, reach, &left, &top);
+    t3r_tile_place tile;
+    const uint32_t splats_count = any_splats(seed, reach, &tile);
     if (splats_count == 0) {
         return NULL;
     }
@@ -114,8 +121,8 @@ const char *check_place(const t3r_kernels *kernels, uint64_t *seed)
     for (uint32_t i = 0; i < count; i++) {
         list[i] = (uint32_t)(unit_random(seed) % splats_count);
     }
-    kernels->place(splats, list, count, left, top, placed);
-    t3r_place_c(splats, list, count, left, top, want);
+    kernels->place(splats, list, count, &tile, placed);
+    t3r_place_c(splats, list, count, &tile, want);
     for (uint32_t i = 0; i < count; i++) {
         const t3r_tile_splat *s = &placed[i], *w = &want[i];
         if (s->a != w->a || s->b != w->b || s->c != w->c || s->opacity_q16 != w->opacity_q16 ||

@@ -36,11 +36,13 @@ static inline T3R_LANES_TARGET void take(const t3r_splat *splats, const uint32_t
     e->last = word[9];
 }
 
-/* Returns all bits set where a centre lies within T3R_SMALL_SPLAT pixels of the tile along one axis. */
-static inline T3R_LANES_TARGET lanes near(lanes centre_q12, uint32_t tile)
+/* Returns all bits set where a centre lies within t3r_near_tile() of the tile, along one axis from its first pixel on.
+ */
+static inline T3R_LANES_TARGET lanes near(lanes centre_q12, uint32_t first, uint32_t spread)
 {
-    const lanes offset = subtract(centre_q12, all((int32_t)(tile - T3R_SMALL_SPLAT) * (1 << 12)));
-    return at_least(all((2 * T3R_SMALL_SPLAT + T3R_TILE_SIDE - 1) << 12), offset);
+    const int32_t reach = t3r_near_tile(spread);
+    const lanes offset = subtract(centre_q12, all(((int32_t)(first << spread) - reach) * (1 << 12)));
+    return at_least(all((2 * reach + ((T3R_TILE_SIDE - 1) << spread)) << 12), offset);
 }
 
 /* Return a coordinate of the box's corners in the tile, clamped to 0..15. */
@@ -122,31 +124,38 @@ static inline T3R_LANES_TARGET spans spans_of(const fields *e, uint32_t left, ui
 }
 
 /* Stores the groups, a and b: the first eight words. */
-static inline T3R_LANES_TARGET void store_groups(const fields *e, const spans *s, uint32_t left, uint32_t top,
+static inline T3R_LANES_TARGET void store_groups(const fields *e, const spans *s, const t3r_tile_place *tile,
                                                  uint8_t *const to[LANES])
 {
-    const lanes dx = subtract(OF_LANES(slli_epi32)(add(s->column, all((int32_t)left)), 12), e->x_q12);
-    const lanes dy = subtract(all((int32_t)(top << 12)), e->y_q12);
+    const lanes spread_q12 = all(1 << (12 + tile->spread)), spread = all(1 << tile->spread);
+    const lanes square = multiply(spread, spread);
+    const lanes dx = subtract(multiply(add(s->column, all((int32_t)tile->left)), spread_q12), e->x_q12);
+    const lanes dy = subtract(all((int32_t)(tile->top << (12 + tile->spread))), e->y_q12);
     lanes word[8];
     place_group(e, dx, dy, word);
     if (signs_of(s->is_wide) == 0) {
         word[3] = word[4] = word[5] = all(0);
     } else {
-        place_group(e, add(dx, all(T3R_LANES << 12)), dy, word + 3);
+        place_group(e, add(dx, multiply(all(T3R_LANES), spread_q12)), dy, word + 3);
+        word[4] = multiply(word[4], spread);
+        word[5] = multiply(word[5], spread);
     }
-    word[6] = rounded_q18(OF_LANES(srai_epi32)(e->a_q30, 1));
-    word[7] = rounded_q18(e->b_q30);
+    word[1] = multiply(word[1], spread);
+    word[2] = multiply(word[2], spread);
+    word[6] = multiply(rounded_q18(OF_LANES(srai_epi32)(e->a_q30, 1)), square);
+    word[7] = multiply(rounded_q18(e->b_q30), square);
     write_four(word, to, 0);
     write_four(word + 4, to, 16);
 }
 
 /* Stores the other five words. */
-static inline T3R_LANES_TARGET void store_rest(const fields *e, const spans *s, uint8_t *const to[LANES])
+static inline T3R_LANES_TARGET void store_rest(const fields *e, const spans *s, uint32_t spread,
+                                               uint8_t *const to[LANES])
 {
     const lanes opacity_q16 = OF_LANES(slli_epi32)(OF_LANES(srli_epi32)(e->colours[1], 16), 1);
     const lanes groups = subtract(all(1), s->is_wide), drawn = subtract(groups, s->is_wide); /* 1 and 1, or 2 and 3 */
     lanes word[5];
-    word[0] = rounded_q18(OF_LANES(srai_epi32)(e->c_q30, 1));
+    word[0] = multiply(rounded_q18(OF_LANES(srai_epi32)(e->c_q30, 1)), all(1 << (2 * spread)));
     word[1] = either(opacity_q16, OF_LANES(slli_epi32)(e->colours[0], 16));
     word[2] = either(OF_LANES(srli_epi32)(e->colours[0], 16), OF_LANES(slli_epi32)(e->colours[1], 16));
     word[3] = either(s->column, OF_LANES(slli_epi32)(groups, 8));
@@ -159,8 +168,8 @@ static inline T3R_LANES_TARGET void store_rest(const fields *e, const spans *s, 
 }
 
 /* Returns a bit for each splat that plain C has to place. */
-static T3R_LANES_TARGET uint32_t place_lanes(const t3r_splat *splats, const uint32_t list[LANES], uint32_t left,
-                                             uint32_t top, t3r_tile_splat placed[LANES])
+static T3R_LANES_TARGET uint32_t place_lanes(const t3r_splat *splats, const uint32_t list[LANES],
+                                             const t3r_tile_place *tile, t3r_tile_splat placed[LANES])
 {
     uint8_t *to[LANES];
     fields e;
@@ -169,32 +178,32 @@ static T3R_LANES_TARGET uint32_t place_lanes(const t3r_splat *splats, const uint
         to[i] = (uint8_t *)&placed[i];
     }
     take(splats, list, &e);
-    const spans s = spans_of(&e, left, top);
-    store_groups(&e, &s, left, top, to);
-    store_rest(&e, &s, to);
-    const lanes is_small = both(near(e.x_q12, left), near(e.y_q12, top));
+    const spans s = spans_of(&e, tile->left, tile->top);
+    store_groups(&e, &s, tile, to);
+    store_rest(&e, &s, tile->spread, to);
+    const lanes is_small = both(near(e.x_q12, tile->left, tile->spread), near(e.y_q12, tile->top, tile->spread));
     return ~signs_of(is_small) & ((1u << LANES) - 1);
 }
 
 static T3R_LANES_TARGET void place_up_to_lanes(const t3r_splat *splats, const uint32_t *list, uint32_t count,
-                                               uint32_t left, uint32_t top, t3r_tile_splat *placed)
+                                               const t3r_tile_place *tile, t3r_tile_splat *placed)
 {
     uint32_t filled[LANES]; /* pads by repeating the last splat */
     for (uint32_t i = 0; i < LANES && count < LANES; i++) {
         filled[i] = list[T3R_MIN(i, count - 1)];
     }
     list = count < LANES ? filled : list;
-    for (uint32_t far = place_lanes(splats, list, left, top, placed); far != 0; far &= far - 1) {
+    for (uint32_t far = place_lanes(splats, list, tile, placed); far != 0; far &= far - 1) {
         const uint32_t lane = (uint32_t)__builtin_ctz(far);
-        t3r_place(&splats[list[lane]], left, top, &placed[lane]);
+        t3r_place(&splats[list[lane]], tile, &placed[lane]);
     }
 }
 
-T3R_LANES_TARGET void PLACE(const t3r_splat *splats, const uint32_t *list, uint32_t count, uint32_t left, uint32_t top,
+T3R_LANES_TARGET void PLACE(const t3r_splat *splats, const uint32_t *list, uint32_t count, const t3r_tile_place *tile,
                             t3r_tile_splat *placed)
 {
     for (uint32_t i = 0; i < count; i += LANES) {
-        place_up_to_lanes(splats, list + i, count - i, left, top, placed + i);
+        place_up_to_lanes(splats, list + i, count - i, tile, placed + i);
     }
 }
 

@@ -8,6 +8,12 @@
 /* A quadratic that is nowhere below this draws nothing: 255 exp(-6) < 1. */
 #define LEVEL_MOST 6
 
+/* Returns the offset of a column or row of the picture from a centre, in pixels of the camera. */
+static int64_t offset_q12(uint32_t at, const t3r_tile_place *tile, int32_t centre_q12)
+{
+    return ((int64_t)at << (12 + tile->spread)) - centre_q12;
+}
+
 /* Returns the least of q + 2 h t + a t^2 for t in [0, length], all Q18 except the length in pixels. */
 static int64_t least_along(int64_t q, int64_t h, int64_t a, int64_t length)
 {
@@ -18,13 +24,13 @@ static int64_t least_along(int64_t q, int64_t h, int64_t a, int64_t length)
     return q + ((h * t_q8) >> 7) + ((a * t_q8 * t_q8) >> 16);
 }
 
-/* Whether the quadratic of a splat centred elsewhere falls below LEVEL_MOST on any of eight columns of a tile (pixel
- * centres). It is convex, so its least value there is on an edge. Within its box a splat is at most 2^14.6 px away:
- * half-gradients below 2^16 and products below 2^61 in Q18 x Q12. */
-static bool touches(const t3r_splat *s, uint32_t x, uint32_t y)
+/* Whether the quadratic of a splat centred elsewhere falls below LEVEL_MOST on any of eight columns of a tile, from x
+ * on (pixel centres). It is convex, so its least value there is on an edge. Within its box a splat is at most 2^14.6 px
+ * away: half-gradients below 2^16 and products below 2^61 in Q18 x Q12. */
+static bool touches(const t3r_splat *s, uint32_t x, const t3r_tile_place *tile)
 {
-    const int64_t width = T3R_LANES - 1, height = T3R_TILE_SIDE - 1;
-    int64_t left = ((int64_t)x << 12) - s->x_q12, top = ((int64_t)y << 12) - s->y_q12;
+    const int64_t width = (T3R_LANES - 1) << tile->spread, height = (T3R_TILE_SIDE - 1) << tile->spread;
+    int64_t left = offset_q12(x, tile, s->x_q12), top = offset_q12(tile->top, tile, s->y_q12);
     int64_t right = left + (width << 12), bottom = top + (height << 12);
     int64_t a = s->a_q30 >> 12, c = s->c_q30 >> 12;
     int64_t least = INT64_MAX;
@@ -39,24 +45,25 @@ static bool touches(const t3r_splat *s, uint32_t x, uint32_t y)
     return least < (int64_t)LEVEL_MOST << 18;
 }
 
-/* Computes the quadratic from the group's first pixel. If the columns are touched it is below 885 there (the root of 6
- * plus the group's diagonal in the steepest metric, squared), so half-gradients are below 2^5.3. The centre is less
+/* Computes the quadratic from the group's first pixel. If the columns are touched it is below 2,100 there (the root of
+ * 6 plus the group's diagonal in the steepest metric, squared), so half-gradients are below 2^5.9. The centre is less
  * than 2^14.6 px away: the two products of q sum to less than 2^62.8. */
-static void place_group(const t3r_splat *s, uint32_t x, uint32_t y, uint32_t group, t3r_tile_splat *out)
+static void place_group(const t3r_splat *s, uint32_t x, const t3r_tile_place *tile, uint32_t group, t3r_tile_splat *out)
 {
-    int64_t dx = ((int64_t)x << 12) - s->x_q12, dy = ((int64_t)y << 12) - s->y_q12;
+    const int32_t spread = 1 << tile->spread;
+    int64_t dx = offset_q12(x, tile, s->x_q12), dy = offset_q12(tile->top, tile, s->y_q12);
     int64_t hx_q30 = t3r_round_shift64(s->a_q30 * dx + s->b_q30 * dy, 12);
     int64_t hy_q30 = t3r_round_shift64(s->b_q30 * dx + s->c_q30 * dy, 12);
     out->group[group].q = (int32_t)t3r_round_shift64(hx_q30 * dx + hy_q30 * dy, 25);
-    out->group[group].gx = (int32_t)t3r_round_shift64(hx_q30, 12);
-    out->group[group].gy = (int32_t)t3r_round_shift64(hy_q30, 12);
+    out->group[group].gx = (int32_t)t3r_round_shift64(hx_q30, 12) * spread;
+    out->group[group].gy = (int32_t)t3r_round_shift64(hy_q30, 12) * spread;
 }
 
-/* Whether a centre lies within T3R_SMALL_SPLAT pixels of the tile, along one axis. */
-static bool is_near(int32_t centre_q12, uint32_t tile)
+/* Whether a centre lies within t3r_near_tile() of the tile, along one axis from its first pixel on. */
+static bool is_near(int32_t centre_q12, uint32_t first, uint32_t spread)
 {
-    int32_t offset = centre_q12 - (int32_t)(tile << 12);
-    return offset >= -(T3R_SMALL_SPLAT << 12) && offset <= (T3R_SMALL_SPLAT + T3R_TILE_SIDE - 1) << 12;
+    const int32_t offset = centre_q12 - (int32_t)(first << (12 + spread)), reach = t3r_near_tile(spread);
+    return offset >= -reach * (1 << 12) && offset <= (reach + ((T3R_TILE_SIDE - 1) << spread)) << 12;
 }
 
 void t3r_splat_span(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile_splat *out)
@@ -74,28 +81,29 @@ void t3r_splat_span(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile_sp
     out->x1 = (uint8_t)x1;
 }
 
-void t3r_place(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile_splat *out)
+void t3r_place(const t3r_splat *s, const t3r_tile_place *tile, t3r_tile_splat *out)
 {
-    const bool small = is_near(s->x_q12, left) && is_near(s->y_q12, top);
-    t3r_splat_span(s, left, top, out);
-    out->a = t3r_round_shift32(s->a_q30 >> 1, 12);
-    out->b = (int32_t)t3r_round_shift64(s->b_q30, 12);
-    out->c = t3r_round_shift32(s->c_q30 >> 1, 12);
+    const bool small = is_near(s->x_q12, tile->left, tile->spread) && is_near(s->y_q12, tile->top, tile->spread);
+    const int32_t spread = 1 << (2 * tile->spread);
+    t3r_splat_span(s, tile->left, tile->top, out);
+    out->a = t3r_round_shift32(s->a_q30 >> 1, 12) * spread;
+    out->b = (int32_t)t3r_round_shift64(s->b_q30, 12) * spread;
+    out->c = t3r_round_shift32(s->c_q30 >> 1, 12) * spread;
     out->opacity_q16 = (uint16_t)(2 * s->opacity_q15);
     out->drawn = 0;
     for (uint32_t group = 0; group < out->groups; group++) {
-        const uint32_t x = left + out->column + group * T3R_LANES;
-        if (small || touches(s, x, top)) {
-            place_group(s, x, top, group, out);
+        const uint32_t x = tile->left + out->column + group * T3R_LANES;
+        if (small || touches(s, x, tile)) {
+            place_group(s, x, tile, group, out);
             out->drawn |= (uint8_t)(1 << group);
         }
     }
 }
 
-void t3r_place_c(const t3r_splat *splats, const uint32_t *list, uint32_t count, uint32_t left, uint32_t top,
+void t3r_place_c(const t3r_splat *splats, const uint32_t *list, uint32_t count, const t3r_tile_place *tile,
                  t3r_tile_splat *placed)
 {
     for (uint32_t i = 0; i < count; i++) {
-        t3r_place(&splats[list[i]], left, top, &placed[i]);
+        t3r_place(&splats[list[i]], tile, &placed[i]);
     }
 }
