@@ -19,6 +19,7 @@
 #include "reconstruction/developed_frame.h"
 #include "reconstruction/reconstruction_error.h"
 #include "reconstruction/replay/hash_report.h"
+#include "reconstruction/replay/latency.h"
 
 #define TEXT_BYTES 4096
 
@@ -26,7 +27,8 @@ typedef struct keyframe {
     uint32_t frame;
     t3r_stream_report report;
     double milliseconds;
-    uint64_t hash; /* of all stages so far */
+    uint64_t hash;      /* of all stages so far; 0 without hashes */
+    stage_times stages; /* with the hash of each; all 0 without hashes */
 } keyframe;
 
 /* A frame that was no keyframe, drawn from the map after the next keyframe, and at the end. Frames after the last
@@ -141,6 +143,7 @@ static int take_keyframe(stream_run *s, uint32_t frame)
     }
     keyframe *k = &s->keyframes[s->keyframe_count];
     k->frame = frame;
+    stage_times_begin(&s->r.stages, s->r.config.workers);
     double start = cli_now();
     t3r_status status = t3r_stream_keyframe(s->r.runtime, &captured.frame, &captured.camera, &k->report);
     k->milliseconds = (cli_now() - start) * 1000;
@@ -148,7 +151,8 @@ static int take_keyframe(stream_run *s, uint32_t frame)
     if (status != T3R_OK) {
         return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
     }
-    k->hash = reconstruction_hash(&s->r);
+    k->stages = s->r.stages;
+    k->hash = s->options->no_hash ? 0 : reconstruction_hash(&s->r);
     s->keyframe_count++;
     return CLI_OK;
 }
@@ -261,6 +265,30 @@ static void add_decibels(cJSON *object, const char *key, double value)
     }
 }
 
+static latency latency_of_run(const stream_run *s)
+{
+    double *times = calloc((size_t)s->keyframe_count + 1, sizeof *times);
+    latency found = {0};
+    for (uint32_t i = 0; i < s->keyframe_count && times != NULL; i++) {
+        times[i] = s->keyframes[i].milliseconds;
+    }
+    if (s->keyframe_count > 0 && times != NULL) {
+        found = latency_of(times, s->keyframe_count);
+    }
+    free(times);
+    return found;
+}
+
+static void add_latency(cJSON *root, const stream_run *s)
+{
+    const latency found = latency_of_run(s);
+    cJSON *object = cJSON_AddObjectToObject(root, "keyframe_ms");
+    cJSON_AddNumberToObject(object, "median", found.median);
+    cJSON_AddNumberToObject(object, "most_95", found.most);
+    cJSON_AddNumberToObject(object, "worst", found.worst);
+    cJSON_AddNumberToObject(root, "keyframes_per_s", found.rate);
+}
+
 static void print_json(const stream_run *s, uint64_t hash, const expectation *e, const char *difference)
 {
     const reconstruction *r = &s->r;
@@ -294,7 +322,10 @@ static void print_json(const stream_run *s, uint64_t hash, const expectation *e,
         json_add_integer(item, "points", k->report.points);
         json_add_integer(item, "shown", k->report.shown);
         cJSON_AddNumberToObject(item, "ms", k->milliseconds);
-        json_add_hash(item, "hash", k->hash);
+        if (!s->options->no_hash) {
+            stage_times_add_json(item, "stages_ms", &k->stages);
+            json_add_hash(item, "hash", k->hash);
+        }
         cJSON_AddItemToArray(keyframes, item);
     }
     cJSON *held = cJSON_AddArrayToObject(root, "held_back");
@@ -315,8 +346,11 @@ static void print_json(const stream_run *s, uint64_t hash, const expectation *e,
     add_decibels(root, "live_psnr_all", m.live_all);
     add_decibels(root, "final_psnr", m.final);
     add_decibels(root, "final_psnr_all", m.final_all);
-    hash_report_add_stages(root, r);
-    json_add_hash(root, "hash", hash);
+    add_latency(root, s);
+    if (!s->options->no_hash) {
+        hash_report_add_stages(root, r);
+        json_add_hash(root, "hash", hash);
+    }
     expectation_add(root, e, difference);
     json_print(root);
 }
@@ -335,6 +369,9 @@ static void print_text(const stream_run *s, uint64_t hash)
                k->report.gaussians, k->report.added, k->report.removed, k->report.crowded,
                100.0 * k->report.shown / k->report.points, k->milliseconds);
     }
+    const latency found = latency_of_run(s);
+    printf("a keyframe%s: median %.1f ms, 95 %% at most %.1f ms, worst %.1f ms; %.1f a second\n",
+           s->options->no_hash ? " without hashes" : "", found.median, found.most, found.worst, found.rate);
     means m = means_of(s);
     if (m.final_count > 0) {
         printf("held-back frames, mean PSNR where they have a depth | everywhere:");
@@ -346,7 +383,9 @@ static void print_text(const stream_run *s, uint64_t hash)
     if (s->options->output != NULL) {
         printf("%s: %" PRIu32 " Gaussians\n", s->options->output, r->scene.count);
     }
-    hash_report_print(r, hash);
+    if (!s->options->no_hash) {
+        hash_report_print(r, hash);
+    }
 }
 
 /* Finds the first difference, as text; "" when there is none. A stage's hashes are chained over all keyframes, so the
@@ -376,6 +415,7 @@ int replay_stream(const replay_stream_options *options, const t3r_recording *rec
     };
     uint32_t frames = t3r_recording_frame_count(recording);
     reconstruction_options first = *settings; /* the frames that a budget in percent refers to */
+    first.hash = !options->no_hash;
     first.context_count = frames > s.every ? 2 : 1;
     first.context[0] = 0;
     first.context[1] = s.every;

@@ -19,6 +19,7 @@ typedef struct replay_stream_options {
     uint32_t at_hand;    /* live keyframes, whose planes are kept; 0 = REPLAY_STREAM_AT_HAND */
     const char *images;  /* folder for the views drawn; NULL = none */
     const char *output;  /* scene file of the final map; NULL = none */
+    bool no_hash;        /* time the keyframes without the hashes of their stages */
     bool json;
 } replay_stream_options;
 

@@ -63,6 +63,8 @@ static const struct argp_option options[] = {
     {"overlap", KEY_OVERLAP, "P%", 0,
      "least percent that a frame shares with the last keyframe; with less it becomes a keyframe too, 1..100", 0},
     {"at-hand", KEY_AT_HAND, "K", 0, "number of keyframes whose planes are kept, for refinement, 1..16 (4)", 0},
+    {"no-hash", OPTION_TO(replay_options, stream.no_hash), NULL, 0,
+     "hash no stage, which takes time in each keyframe; nothing can be expected then", 0},
     {"images", OPTION_TO(replay_options, stream.images), "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
      "folder to write the held-back frames that have a depth and their views into: frame_<frame>.png, mask_, live_, "
      "final_",
@@ -76,8 +78,14 @@ static void check_stream(struct argp_state *state, const replay_options *o)
     const t3r_config *c = &o->settings.config, usual = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1);
     if (!o->streams &&
         (o->stream.every > 0 || o->stream.at_hand > 0 || o->stream.overlap_q8 > 0 || c->half_life != usual.half_life ||
-         c->remember != usual.remember || o->stream.images != NULL || o->stream.output != NULL)) {
-        argp_error(state, "--every, --overlap, --at-hand, --half-life, --remember, --images and -o belong to --stream");
+         c->remember != usual.remember || c->refine_stride != usual.refine_stride || o->stream.no_hash ||
+         o->stream.images != NULL || o->stream.output != NULL)) {
+        argp_error(state,
+                   "--every, --overlap, --at-hand, --half-life, --remember, --refine-stride, --no-hash, --images and "
+                   "-o belong to --stream");
+    }
+    if (o->stream.no_hash && o->expect != NULL) {
+        argp_error(state, "--no-hash and --expect exclude each other");
     }
     scene_output_option(state, "-o", o->stream.output);
     if (o->streams &&
