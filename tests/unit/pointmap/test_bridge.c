@@ -48,7 +48,8 @@ static uint32_t bridge(rig *s, uint32_t views, uint32_t radius)
 enum { WORKERS = 7 };
 
 /* Runs the tasks from the last to the first, as different workers. */
-static void reversed(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker), void *context)
+static void reversed(void *user, uint32_t count, void (*task)(void *context, uint32_t index, uint32_t worker),
+                     void *context)
 {
     (void)user;
     for (uint32_t i = count; i-- > 0;) {
