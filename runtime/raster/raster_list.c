@@ -24,10 +24,12 @@ static void project_chunk(void *context, uint32_t index, uint32_t worker)
     const project_job *job = context;
     uint32_t first = index * PROJECT_CHUNK, end = T3R_MIN(first + PROJECT_CHUNK, job->count);
     job->kernels->project(job->projection, job->gaussians + first, end - first, job->splats + first);
-    for (uint32_t i = first; i < end; i++) {
-        if (job->lattice->spread > 0 && job->splats[i].z_q20 != 0) {
+    for (uint32_t i = first; i < end && job->lattice->spread > 0; i++) {
+        if (job->splats[i].z_q20 != 0) {
             t3r_to_lattice(job->lattice, &job->splats[i]);
         }
+    }
+    for (uint32_t i = first; i < end; i++) {
         job->depths[i] = (uint32_t)job->splats[i].z_q20;
         job->spans[i] = t3r_span_of(&job->splats[i]);
     }

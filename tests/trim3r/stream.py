@@ -56,6 +56,19 @@ def stream():
     turned = expect_json("replay", recording, "--working", "64x64", "--stream", "--every", 100, "--overlap", "90%",
                          "--gaussians", 500)
     check(0 == turned["keyframes"][0]["frame"] and 1 < len(turned["keyframes"]) < frames, "overlap chooses no keyframes")
+    parts = {}
+    for more in (["--refine-stride", 1], ["--refine-stride", 2], []):
+        found = expect_json("replay", recording, "--working", "64x64", "--stream", "--gaussians", 200, *more)
+        parts[str(more)] = found["hash"]
+        spread = found["keyframe_ms"]
+        check(0 < spread["median"] <= spread["most_95"] <= spread["worst"] and found["keyframes_per_s"] > 0, f"no latency: {spread}")
+        check(all({"image", "refine"} < set(k["stages_ms"]) for k in found["keyframes"]), "keyframes lack the times of stages")
+    whole, part, chosen = parts.values()
+    check(whole != part == chosen, "with 20 pixels a Gaussian, passes compare a part of them")
+    quick = expect_json("replay", recording, "--working", "64x64", "--stream", "--gaussians", 200, "--no-hash")
+    check("hash" not in quick and "stages" not in quick and quick["final_psnr"] == found["final_psnr"], "--no-hash hashes, or changes views")
+    expect(2, "replay", recording, "--stream", "--no-hash", "--expect", whole, err="--no-hash and --expect")
+    expect(2, "replay", recording, "--refine-stride", 2, err="belong to --stream")
     expect(2, "replay", recording, "--overlap", "80%", err="belong to --stream")
     expect(2, "replay", recording, "--every", 2, err="belong to --stream")
     expect(2, "replay", recording, "--stream", "--context", "0,1", err="--context")

@@ -8,12 +8,6 @@
 /* A quadratic that is nowhere below this draws nothing: 255 exp(-6) < 1. */
 #define LEVEL_MOST 6
 
-/* Returns the offset of a column or row of the picture from a centre, in pixels of the camera. */
-static int64_t offset_q12(uint32_t at, const t3r_tile_place *tile, int32_t centre_q12)
-{
-    return ((int64_t)at << (12 + tile->spread)) - centre_q12;
-}
-
 /* Returns the least of q + 2 h t + a t^2 for t in [0, length], all Q18 except the length in pixels. */
 static int64_t least_along(int64_t q, int64_t h, int64_t a, int64_t length)
 {
@@ -24,13 +18,13 @@ static int64_t least_along(int64_t q, int64_t h, int64_t a, int64_t length)
     return q + ((h * t_q8) >> 7) + ((a * t_q8 * t_q8) >> 16);
 }
 
-/* Whether the quadratic of a splat centred elsewhere falls below LEVEL_MOST on any of eight columns of a tile, from x
- * on (pixel centres). It is convex, so its least value there is on an edge. Within its box a splat is at most 2^14.6 px
- * away: half-gradients below 2^16 and products below 2^61 in Q18 x Q12. */
-static bool touches(const t3r_splat *s, uint32_t x, const t3r_tile_place *tile)
+/* Whether the quadratic of a splat centred elsewhere falls below LEVEL_MOST on any of eight columns of a tile (pixel
+ * centres), whose first pixel is left and top of the centre in Q12. It is convex, so its least value there is on an
+ * edge. Within its box a splat is at most 2^14.6 px away: half-gradients below 2^16 and products below 2^61 in Q18 x
+ * Q12. */
+static bool touches(const t3r_splat *s, int64_t left, int64_t top, uint32_t spread)
 {
-    const int64_t width = (T3R_LANES - 1) << tile->spread, height = (T3R_TILE_SIDE - 1) << tile->spread;
-    int64_t left = offset_q12(x, tile, s->x_q12), top = offset_q12(tile->top, tile, s->y_q12);
+    const int64_t width = (T3R_LANES - 1) << spread, height = (T3R_TILE_SIDE - 1) << spread;
     int64_t right = left + (width << 12), bottom = top + (height << 12);
     int64_t a = s->a_q30 >> 12, c = s->c_q30 >> 12;
     int64_t least = INT64_MAX;
@@ -45,25 +39,38 @@ static bool touches(const t3r_splat *s, uint32_t x, const t3r_tile_place *tile)
     return least < (int64_t)LEVEL_MOST << 18;
 }
 
-/* Computes the quadratic from the group's first pixel. If the columns are touched it is below 2,100 there (the root of
- * 6 plus the group's diagonal in the steepest metric, squared), so half-gradients are below 2^5.9. The centre is less
- * than 2^14.6 px away: the two products of q sum to less than 2^62.8. */
-static void place_group(const t3r_splat *s, uint32_t x, const t3r_tile_place *tile, uint32_t group, t3r_tile_splat *out)
+/* Computes the quadratic from the group's first pixel, dx and dy from the centre. If the columns are touched it is
+ * below 2,100 there (the root of 6 plus the group's diagonal in the steepest metric, squared), so half-gradients are
+ * below 2^5.9. The centre is less than 2^14.6 px away: the two products of q sum to less than 2^62.8. */
+static void place_group(const t3r_splat *s, int64_t dx, int64_t dy, uint32_t group, t3r_tile_splat *out)
 {
-    const int32_t spread = 1 << tile->spread;
-    int64_t dx = offset_q12(x, tile, s->x_q12), dy = offset_q12(tile->top, tile, s->y_q12);
     int64_t hx_q30 = t3r_round_shift64(s->a_q30 * dx + s->b_q30 * dy, 12);
     int64_t hy_q30 = t3r_round_shift64(s->b_q30 * dx + s->c_q30 * dy, 12);
     out->group[group].q = (int32_t)t3r_round_shift64(hx_q30 * dx + hy_q30 * dy, 25);
-    out->group[group].gx = (int32_t)t3r_round_shift64(hx_q30, 12) * spread;
-    out->group[group].gy = (int32_t)t3r_round_shift64(hy_q30, 12) * spread;
+    out->group[group].gx = (int32_t)t3r_round_shift64(hx_q30, 12);
+    out->group[group].gy = (int32_t)t3r_round_shift64(hy_q30, 12);
 }
 
-/* Whether a centre lies within t3r_near_tile() of the tile, along one axis from its first pixel on. */
-static bool is_near(int32_t centre_q12, uint32_t first, uint32_t spread)
+/* Takes gradients and curvatures from pixel to pixel of the picture, 2^spread of the camera's apart. */
+static void spread_out(uint32_t spread, t3r_tile_splat *out)
 {
-    const int32_t offset = centre_q12 - (int32_t)(first << (12 + spread)), reach = t3r_near_tile(spread);
-    return offset >= -reach * (1 << 12) && offset <= (reach + ((T3R_TILE_SIDE - 1) << spread)) << 12;
+    const int32_t one = 1 << spread, square = one * one;
+    for (uint32_t group = 0; group < out->groups; group++) {
+        if ((out->drawn >> group & 1) != 0) {
+            out->group[group].gx *= one;
+            out->group[group].gy *= one;
+        }
+    }
+    out->a *= square;
+    out->b *= square;
+    out->c *= square;
+}
+
+/* Whether a centre lies within t3r_near_tile() of the tile, along one axis: its first pixel is `offset` from there. */
+static bool is_near(int64_t offset_q12, uint32_t spread)
+{
+    const int32_t reach = t3r_near_tile(spread);
+    return offset_q12 <= reach << 12 && offset_q12 >= -((reach + ((T3R_TILE_SIDE - 1) << spread)) << 12);
 }
 
 void t3r_splat_span(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile_splat *out)
@@ -83,20 +90,25 @@ void t3r_splat_span(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile_sp
 
 void t3r_place(const t3r_splat *s, const t3r_tile_place *tile, t3r_tile_splat *out)
 {
-    const bool small = is_near(s->x_q12, tile->left, tile->spread) && is_near(s->y_q12, tile->top, tile->spread);
-    const int32_t spread = 1 << (2 * tile->spread);
+    const uint32_t spread = tile->spread;
+    const int64_t left = (int64_t)((uint64_t)tile->left << (12 + spread)) - s->x_q12;
+    const int64_t top = (int64_t)((uint64_t)tile->top << (12 + spread)) - s->y_q12;
+    const bool small = is_near(left, spread) && is_near(top, spread);
     t3r_splat_span(s, tile->left, tile->top, out);
-    out->a = t3r_round_shift32(s->a_q30 >> 1, 12) * spread;
-    out->b = (int32_t)t3r_round_shift64(s->b_q30, 12) * spread;
-    out->c = t3r_round_shift32(s->c_q30 >> 1, 12) * spread;
+    out->a = t3r_round_shift32(s->a_q30 >> 1, 12);
+    out->b = (int32_t)t3r_round_shift64(s->b_q30, 12);
+    out->c = t3r_round_shift32(s->c_q30 >> 1, 12);
     out->opacity_q16 = (uint16_t)(2 * s->opacity_q15);
     out->drawn = 0;
     for (uint32_t group = 0; group < out->groups; group++) {
-        const uint32_t x = tile->left + out->column + group * T3R_LANES;
-        if (small || touches(s, x, tile)) {
-            place_group(s, x, tile, group, out);
+        const int64_t dx = left + ((int64_t)(out->column + group * T3R_LANES) << (12 + spread));
+        if (small || touches(s, dx, top, spread)) {
+            place_group(s, dx, top, group, out);
             out->drawn |= (uint8_t)(1 << group);
         }
+    }
+    if (spread > 0) {
+        spread_out(spread, out);
     }
 }
 
