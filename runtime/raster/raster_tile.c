@@ -97,7 +97,7 @@ void t3r_tile_clear(t3r_tile *tile)
 
 void t3r_draw_begin(t3r_drawn_tile *tile, uint32_t tile_x, uint32_t tile_y)
 {
-    tile->place = (t3r_tile_place){tile_x * T3R_TILE_SIDE, tile_y * T3R_TILE_SIDE, 0};
+    tile->place = t3r_tile_place_of(tile_x * T3R_TILE_SIDE, tile_y * T3R_TILE_SIDE, 0);
     tile->noted = tile->stopped = false;
     memset(tile->depth_q20, 0, sizeof tile->depth_q20);
     t3r_tile_clear(&tile->pixels);

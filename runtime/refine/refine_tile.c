@@ -171,7 +171,7 @@ static __attribute__((noinline)) kept_splats draw_again(const t3r_refine_view *j
 
 static t3r_tile_place place_of(const t3r_refine_view *job, uint32_t tile_x, uint32_t tile_y)
 {
-    return (t3r_tile_place){tile_x * T3R_TILE_SIDE, tile_y * T3R_TILE_SIDE, job->lattice.spread};
+    return t3r_tile_place_of(tile_x * T3R_TILE_SIDE, tile_y * T3R_TILE_SIDE, job->lattice.spread);
 }
 
 /* Returns the list entry of the first splat in the slice, or `count` when there is none. Earlier entries don't

@@ -97,8 +97,8 @@ static uint32_t any_splats(uint64_t *seed, t3r_splat splats[COUNT], t3r_tile_pla
             continue;
         }
         if (count == 0) {
-            *tile = (t3r_tile_place){(uint32_t)unit_between(seed, s->x0, s->x1) / SIDE * SIDE,
-                                     (uint32_t)unit_between(seed, s->y0, s->y1) / SIDE * SIDE, spread};
+            *tile = t3r_tile_place_of((uint32_t)unit_between(seed, s->x0, s->x1) / SIDE * SIDE,
+                                      (uint32_t)unit_between(seed, s->y0, s->y1) / SIDE * SIDE, spread);
         }
         count += s->x0 < tile->left + SIDE && s->x1 >= tile->left && s->y0 < tile->top + SIDE && s->y1 >= tile->top;
     }

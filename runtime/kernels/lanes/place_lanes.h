@@ -36,13 +36,12 @@ static inline T3R_LANES_TARGET void take(const t3r_splat *splats, const uint32_t
     e->last = word[9];
 }
 
-/* Returns all bits set where a centre lies within t3r_near_tile() of the tile, along one axis from its first pixel on.
- */
-static inline T3R_LANES_TARGET lanes near(lanes centre_q12, uint32_t first, uint32_t spread)
+/* Returns all bits set where a centre lies near the tile along one axis, of which this is its first pixel. */
+static inline T3R_LANES_TARGET lanes near(lanes centre_q12, int32_t first_q12, uint32_t spread)
 {
-    const int32_t reach = t3r_near_tile(spread);
-    const lanes offset = subtract(centre_q12, all(((int32_t)(first << spread) - reach) * (1 << 12)));
-    return at_least(all((2 * reach + ((T3R_TILE_SIDE - 1) << spread)) << 12), offset);
+    const int32_t near_q12 = t3r_near_q12(spread);
+    const lanes offset = subtract(centre_q12, all(first_q12 - near_q12));
+    return at_least(all(near_q12 + T3R_NEAR_MOST_Q12), offset);
 }
 
 /* Return a coordinate of the box's corners in the tile, clamped to 0..15. */
@@ -130,7 +129,7 @@ static inline T3R_LANES_TARGET void store_groups(const fields *e, const spans *s
     const lanes spread_q12 = all(1 << (12 + tile->spread)), spread = all(1 << tile->spread);
     const lanes square = multiply(spread, spread);
     const lanes dx = subtract(multiply(add(s->column, all((int32_t)tile->left)), spread_q12), e->x_q12);
-    const lanes dy = subtract(all((int32_t)(tile->top << (12 + tile->spread))), e->y_q12);
+    const lanes dy = subtract(all(tile->top_q12), e->y_q12);
     lanes word[8];
     place_group(e, dx, dy, word);
     if (signs_of(s->is_wide) == 0) {
@@ -181,7 +180,8 @@ static T3R_LANES_TARGET uint32_t place_lanes(const t3r_splat *splats, const uint
     const spans s = spans_of(&e, tile->left, tile->top);
     store_groups(&e, &s, tile, to);
     store_rest(&e, &s, tile->spread, to);
-    const lanes is_small = both(near(e.x_q12, tile->left, tile->spread), near(e.y_q12, tile->top, tile->spread));
+    const lanes is_small =
+        both(near(e.x_q12, tile->left_q12, tile->spread), near(e.y_q12, tile->top_q12, tile->spread));
     return ~signs_of(is_small) & ((1u << LANES) - 1);
 }
 

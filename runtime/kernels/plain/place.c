@@ -22,7 +22,8 @@ static int64_t least_along(int64_t q, int64_t h, int64_t a, int64_t length)
  * centres), whose first pixel is left and top of the centre in Q12. It is convex, so its least value there is on an
  * edge. Within its box a splat is at most 2^14.6 px away: half-gradients below 2^16 and products below 2^61 in Q18 x
  * Q12. */
-static bool touches(const t3r_splat *s, int64_t left, int64_t top, uint32_t spread)
+static inline __attribute__((always_inline)) bool touches(const t3r_splat *s, int64_t left, int64_t top,
+                                                          uint32_t spread)
 {
     const int64_t width = (T3R_LANES - 1) << spread, height = (T3R_TILE_SIDE - 1) << spread;
     int64_t right = left + (width << 12), bottom = top + (height << 12);
@@ -66,11 +67,10 @@ static void spread_out(uint32_t spread, t3r_tile_splat *out)
     out->c *= square;
 }
 
-/* Whether a centre lies within t3r_near_tile() of the tile, along one axis: its first pixel is `offset` from there. */
-static bool is_near(int64_t offset_q12, uint32_t spread)
+/* Whether a centre lies near the tile along one axis: the tile's first pixel is `offset` from there. */
+static inline bool is_near(int32_t offset_q12, uint32_t spread)
 {
-    const int32_t reach = t3r_near_tile(spread);
-    return offset_q12 <= reach << 12 && offset_q12 >= -((reach + ((T3R_TILE_SIDE - 1) << spread)) << 12);
+    return offset_q12 <= t3r_near_q12(spread) && offset_q12 >= -T3R_NEAR_MOST_Q12;
 }
 
 void t3r_splat_span(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile_splat *out)
@@ -88,11 +88,11 @@ void t3r_splat_span(const t3r_splat *s, uint32_t left, uint32_t top, t3r_tile_sp
     out->x1 = (uint8_t)x1;
 }
 
-void t3r_place(const t3r_splat *s, const t3r_tile_place *tile, t3r_tile_splat *out)
+/* spread: that of the tile; a constant once inlined. */
+static inline __attribute__((always_inline)) void place_at(const t3r_splat *s, const t3r_tile_place *tile,
+                                                           uint32_t spread, t3r_tile_splat *out)
 {
-    const uint32_t spread = tile->spread;
-    const int64_t left = (int64_t)((uint64_t)tile->left << (12 + spread)) - s->x_q12;
-    const int64_t top = (int64_t)((uint64_t)tile->top << (12 + spread)) - s->y_q12;
+    const int32_t left = tile->left_q12 - s->x_q12, top = tile->top_q12 - s->y_q12; /* below 2^27 */
     const bool small = is_near(left, spread) && is_near(top, spread);
     t3r_splat_span(s, tile->left, tile->top, out);
     out->a = t3r_round_shift32(s->a_q30 >> 1, 12);
@@ -101,7 +101,7 @@ void t3r_place(const t3r_splat *s, const t3r_tile_place *tile, t3r_tile_splat *o
     out->opacity_q16 = (uint16_t)(2 * s->opacity_q15);
     out->drawn = 0;
     for (uint32_t group = 0; group < out->groups; group++) {
-        const int64_t dx = left + ((int64_t)(out->column + group * T3R_LANES) << (12 + spread));
+        const int32_t dx = left + (int32_t)((out->column + group * T3R_LANES) << (12 + spread));
         if (small || touches(s, dx, top, spread)) {
             place_group(s, dx, top, group, out);
             out->drawn |= (uint8_t)(1 << group);
@@ -109,6 +109,15 @@ void t3r_place(const t3r_splat *s, const t3r_tile_place *tile, t3r_tile_splat *o
     }
     if (spread > 0) {
         spread_out(spread, out);
+    }
+}
+
+void t3r_place(const t3r_splat *s, const t3r_tile_place *tile, t3r_tile_splat *out)
+{
+    if (!T3R_FEATURE_STREAMS || tile->spread == 0) {
+        place_at(s, tile, 0, out);
+    } else {
+        place_at(s, tile, 1, out);
     }
 }
 

@@ -194,7 +194,8 @@ static void blend_layer(const t3r_splat *s, uint32_t left, uint32_t top, t3r_til
 {
     t3r_tile_splat splat;
     t3r_blended_row rows[T3R_BLENDED_ROWS_MOST];
-    t3r_place(s, &(t3r_tile_place){left, top, 0}, &splat);
+    const t3r_tile_place place = t3r_tile_place_of(left, top, 0);
+    t3r_place(s, &place, &splat);
     memset(out, 0, sizeof *out);
     out->draws = t3r_blend_keep_c(tile, &splat, rows) != 0;
     const t3r_blended_row *row = rows;
