@@ -145,7 +145,6 @@ int evaluation_report_row(evaluation_report *report, bool known, const evaluatio
     if (!report->to.json && report->to.table == NULL) {
         cli_progress_end();
         evaluation_print_row(stdout, row, report->to.planar);
-        fflush(stdout);
     }
     cli_progress_within("rows", report->known_count, report->row_count, report->row_total);
     if (known) {

@@ -193,6 +193,7 @@ static void open_closed_streams(void)
 int trim3r_main(int argc, char **argv, const trim3r_extension *added)
 {
     open_closed_streams();
+    setvbuf(stdout, NULL, _IOLBF, 0); /* rows of long work appear at once, in pipes as well */
     json_watch_memory();
     list_commands(added);
     argp_err_exit_status = CLI_BAD_USAGE;
