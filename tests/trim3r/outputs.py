@@ -18,6 +18,7 @@ CONTENT = {
     "a PNG picture": b"\x89PNG\r\n\x1a\n" + bytes(99), "an SVG picture": b"<svg xmlns='http://www.w3.org/2000/svg'/>",
     "a page": b"<!DOCTYPE html>\n<html></html>", "a table": b"scene,context,psnr\nroom,0,1\n",
     "a weight file": b"T3RW" + bytes(99), "the C source of a head": b"/* The head `x` as a weight file */\n",
+    "lines of a stream": b'{"frame":0}\n', "the state of a stream": b"T3RSTATE" + bytes(99),
     "a file of another kind": b'{"a": 1, "b": 2}\n'}
 
 

@@ -18,7 +18,7 @@ def the_map_in_a_file(recording, base):
     expect(0, *base, "--gaussians", 500, "-o", "map.ply", out="map.ply: 500 Gaussians")
     expect(2, *base, "-o", "map.txt", err="scenes are written as")
     expect(2, *base, "-o", recording, err="one file")
-    expect(2, "replay", recording, "-o", "map.ply", err="belong to --stream")
+    expect(2, "replay", recording, "-o", "map.ply", err="--output belongs to --stream")
 
 
 def stream():
@@ -50,9 +50,9 @@ def stream():
     for more in (["--threads", 2], ["--arena", "min"], ["--cpu-mask", 0]):
         expect(0, *base[:-4], "--at-hand", 1, "--remember", 2, "--gaussians", 500, "--expect", "remembered.json", *more, out="as expected")
     expect(2, *base, "--remember", 17, err="--remember")
-    expect(2, "replay", recording, "--remember", 2, err="belong to --stream")
+    expect(2, "replay", recording, "--remember", 2, err="--remember belongs to --stream")
     expect(1, *base, "--expect", "0" * 16, err=found["hash"])
-    expect(0, "replay", recording, "--stream", "--keep", 2, "--working", "32x32", "--refine", 0, out="2 keyframes, one in 3")
+    expect(0, "replay", recording, "--stream", "--keep", 2, "--working", "32x32", "--refine", 0, out="2 keyframes of 6 frames")
     turned = expect_json("replay", recording, "--working", "64x64", "--stream", "--every", 100, "--overlap", "90%",
                          "--gaussians", 500)
     check(0 == turned["keyframes"][0]["frame"] and 1 < len(turned["keyframes"]) < frames, "overlap chooses no keyframes")
@@ -68,9 +68,9 @@ def stream():
     quick = expect_json("replay", recording, "--working", "64x64", "--stream", "--gaussians", 200, "--no-hash")
     check("hash" not in quick and "stages" not in quick and quick["final_psnr"] == found["final_psnr"], "--no-hash hashes, or changes views")
     expect(2, "replay", recording, "--stream", "--no-hash", "--expect", whole, err="--no-hash and --expect")
-    expect(2, "replay", recording, "--refine-stride", 2, err="belong to --stream")
-    expect(2, "replay", recording, "--overlap", "80%", err="belong to --stream")
-    expect(2, "replay", recording, "--every", 2, err="belong to --stream")
+    expect(2, "replay", recording, "--refine-stride", 2, err="--refine-stride belongs to --stream")
+    expect(2, "replay", recording, "--overlap", "80%", err="--overlap belongs to --stream")
+    expect(2, "replay", recording, "--every", 2, err="--every belongs to --stream")
     expect(2, "replay", recording, "--stream", "--context", "0,1", err="--context")
     expect(2, "replay", recording, "--stream", "--auto", err="--auto")
     expect(2, *base, "--at-hand", 17, err="--at-hand")

@@ -82,6 +82,9 @@ static int show_progress(void *user, t3r_stage stage, uint32_t done, uint32_t to
 static void keep_hash(void *user, t3r_stage stage, uint64_t hash)
 {
     reconstruction *r = user;
+    if (r->uncounted) {
+        return;
+    }
     r->stage_hash[stage] = r->stage_hashed[stage] ? t3r_hash_u64(r->stage_hash[stage], hash) : hash;
     r->stage_hashed[stage] = true;
     stage_times_end(&r->stages, stage);
@@ -520,6 +523,16 @@ int reconstruction_live_stream(reconstruction *r, uint32_t width, uint32_t heigh
         reconstruction_close(r);
     }
     return code;
+}
+
+int reconstruction_attach(reconstruction *r, const reconstruction_options *options)
+{
+    const t3r_status status = t3r_attach(&r->runtime, r->arena, r->arena_bytes);
+    if (status != T3R_OK) {
+        return reconstruction_error(status, "state", &r->config, r->arena_bytes);
+    }
+    (void)t3r_set_cpu(r->runtime, options->processor.cpu);
+    return bind_head(r, options);
 }
 
 /* ---- from a file ---------------------------------------------------------------------------------------------- */

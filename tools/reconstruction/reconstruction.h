@@ -87,6 +87,7 @@ typedef struct reconstruction {
     double give_up_at;        /* cli_now() at which the run is cancelled; 0 = never */
     uint64_t stage_hash[T3R_STAGE_COUNT]; /* the reports of a stage that reports several times are chained */
     bool stage_hashed[T3R_STAGE_COUNT];
+    bool uncounted; /* hashes reported now are left out */
 } reconstruction;
 
 /* The report on a build, by any method. */
@@ -120,6 +121,8 @@ int reconstruction_stream(reconstruction *r, const t3r_recording *recording, con
 /* The same without a recording: frames have that working size, and the options give the budget as a count. */
 int reconstruction_live_stream(reconstruction *r, uint32_t width, uint32_t height,
                                const reconstruction_options *options, uint32_t keyframes);
+/* Binds the runtime again, without hooks, to an arena whose bytes were restored: t3r_attach(). */
+int reconstruction_attach(reconstruction *r, const reconstruction_options *options);
 /* Configures a build without a recording (live_build.h): the options' configuration for the working size in r->config,
  * r->context_count views and r->head. The next function sets the budget. */
 void reconstruction_configure(reconstruction *r, const reconstruction_options *options);

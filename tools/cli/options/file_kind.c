@@ -29,6 +29,8 @@ static const struct {
     {FILE_PAGE, "a page", ".html", "<!DOCTYPE html", false},
     {FILE_WEIGHTS, "a weight file", ".t3w", "T3RW", false},
     {FILE_SOURCE, "the C source of a head", ".c", "/* The head `", false},
+    {FILE_LINES, "lines of a stream", ".jsonl", "{\"frame\":", false},
+    {FILE_STATE, "the state of a stream", ".t3s", "T3RSTATE", false},
     {FILE_TABLE, "a table", ".csv", NULL, false},
     {FILE_OTHER, "a file of another kind", NULL, NULL, false},
 };

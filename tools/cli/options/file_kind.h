@@ -13,10 +13,12 @@ typedef enum file_kind {
     FILE_TABLE = 32,
     FILE_WEIGHTS = 64,
     FILE_SOURCE = 128, /* a head as C source */
-    FILE_OTHER = 256,  /* none of these */
+    FILE_LINES = 256,  /* JSON objects of a stream's frames, one a line */
+    FILE_STATE = 512,  /* of a stream */
+    FILE_OTHER = 1024, /* none of these */
 } file_kind;
 
-#define FILE_KINDS 9
+#define FILE_KINDS 11
 
 /* Returns the kind of an existing file; 0 = no file or an empty one, which fits any kind. */
 file_kind file_kind_of(const char *path);

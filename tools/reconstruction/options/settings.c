@@ -78,6 +78,18 @@ void settings_add_json(cJSON *object, const t3r_config *config)
     }
 }
 
+#define NOT_ASKED(...)
+#define GIVEN_OF_FIELD NOT_ASKED
+#define GIVEN_OF_BUILD NOT_ASKED
+#define GIVEN_OF_STREAM(name, option) config->name != usual.name ? option:
+#define GIVEN(name, kind, low, high, usual, feature, from, group, option, help) GIVEN_OF_##group(name, option)
+
+const char *stream_setting_given(const t3r_config *config)
+{
+    const t3r_config usual = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1);
+    return T3R_SETTINGS(GIVEN) NULL;
+}
+
 #define FIRST_KEY 512 /* above the commands' keys */
 
 /* Appends the range and the default to the help of a setting: ", 0..16 (4)", " (on)". */

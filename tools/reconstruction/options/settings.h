@@ -32,6 +32,9 @@ extern const uint32_t settings_count;
 /* Options of builds, and options of streams. Each parent's parser passes a t3r_config * in state->child_inputs[]. */
 extern const struct argp settings_argp, stream_settings_argp;
 
+/* Returns the option of the first setting of streams that is not the default, or NULL. */
+const char *stream_setting_given(const t3r_config *config);
+
 uint32_t setting_value(const setting *s, const t3r_config *config);
 /* Writes the value as the option takes it: "0.5", "off", "haar". */
 void setting_text(const setting *s, const t3r_config *config, char *text, size_t bytes);

@@ -3,7 +3,6 @@
 
 #include <errno.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,63 +10,14 @@
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
-#include "cli/tables/json_output.h"
-#include "cli/text/style.h"
 #include "core/hash.h"
 #include "pictures/metrics.h"
 #include "pictures/picture.h"
-#include "reconstruction/developed_frame.h"
-#include "reconstruction/reconstruction_error.h"
-#include "reconstruction/replay/hash_report.h"
-#include "reconstruction/replay/latency.h"
+#include "reconstruction/replay/stream_run.h"
 
 #define TEXT_BYTES 4096
 
-typedef struct keyframe {
-    uint32_t frame;
-    t3r_stream_report report;
-    double milliseconds;
-    uint64_t hash;      /* of all stages so far; 0 without hashes */
-    stage_times stages; /* with the hash of each; all 0 without hashes */
-} keyframe;
-
-/* A frame that was no keyframe, drawn from the map after the next keyframe, and at the end. Frames after the last
- * keyframe are drawn only at the end. */
-typedef struct held_back {
-    uint32_t frame;
-    bool has_live;
-    double live_psnr, final_psnr; /* over pixels with depth */
-    double live_psnr_all, final_psnr_all;
-} held_back;
-
-typedef struct stream_run {
-    const replay_stream_options *options;
-    const t3r_recording *recording;
-    const char *path;
-    uint32_t every;
-    reconstruction r;
-    uint8_t *target, *drawn, *mask;
-    uint16_t *depth;
-    uint64_t views_hash; /* of all pictures drawn */
-    keyframe *keyframes;
-    uint32_t keyframe_count;
-    held_back *held;
-    uint32_t held_count;
-} stream_run;
-
 /* ---- held-back frames ------------------------------------------------------------------------------------------ */
-
-static int open_pictures(stream_run *s)
-{
-    const size_t pixels = (size_t)s->r.config.width * s->r.config.height;
-    s->target = malloc(pixels * 3);
-    s->drawn = malloc(pixels * 3);
-    s->mask = malloc(pixels);
-    s->depth = malloc(pixels * sizeof *s->depth);
-    return s->target != NULL && s->drawn != NULL && s->mask != NULL && s->depth != NULL
-               ? CLI_OK
-               : cli_error(CLI_BAD_INPUT, "out of memory");
-}
 
 static int write_picture(const stream_run *s, const char *what, uint32_t frame, uint32_t channels, uint8_t *samples)
 {
@@ -76,381 +26,180 @@ static int write_picture(const stream_run *s, const char *what, uint32_t frame, 
     if (length < 0 || (size_t)length >= sizeof path) {
         return cli_error(CLI_BAD_INPUT, "%s: the path is too long", s->options->images);
     }
-    picture p = {
-        .width = s->r.config.width, .height = s->r.config.height, .channels = channels, .bits = 8, .samples = samples};
+    picture p = {.width = s->view.width, .height = s->view.height, .channels = channels, .bits = 8, .samples = samples};
     return picture_write_png(path, &p, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
 /* Draws the frame's view from the current map and compares: over pixels where the frame has a depth, and over all. */
 static int draw_held(stream_run *s, uint32_t frame, const char *when, double *psnr, double *psnr_all)
 {
-    const uint32_t width = s->r.config.width, height = s->r.config.height;
+    const drawn_frame *d = &s->view;
     t3r_capture_frame captured;
     int code = recorded_frame_read(s->recording, s->path, frame, &captured);
-    t3r_camera camera;
-    if (code == CLI_OK) {
-        code = developed_capture(&captured, s->path, frame, width, height, s->target, s->depth, &camera);
-    }
     if (code != CLI_OK) {
         return code;
     }
-    const t3r_target target = {.width = width, .height = height, .rgb = s->drawn, .rgb_stride_bytes = width * 3};
-    const t3r_status status = t3r_render(s->r.runtime, &camera, &target);
+    const t3r_status status = drawn_frame_draw(&s->view, &s->map.r, &captured, DRAWN_WITH_DEPTH);
     if (status != T3R_OK) {
         return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
     }
-    size_t pixels = (size_t)width * height;
-    for (size_t i = 0; i < pixels; i++) {
-        s->mask[i] = captured.frame.depth != NULL && s->depth[i] != 0 ? 255 : 0;
-    }
-    *psnr = metric_psnr(s->target, s->drawn, s->mask, width, height);
-    *psnr_all = metric_psnr(s->target, s->drawn, NULL, width, height);
-    s->views_hash = t3r_hash_bytes(s->views_hash, s->drawn, pixels * 3);
+    *psnr = drawn_frame_psnr(d);
+    *psnr_all = metric_psnr(d->target, d->drawn, NULL, d->width, d->height);
+    s->is.views_hash = t3r_hash_bytes(s->is.views_hash, d->drawn, (size_t)d->width * d->height * 3);
     if (s->options->images == NULL) {
         return CLI_OK;
     }
-    code = write_picture(s, when, frame, 3, s->drawn);
+    code = write_picture(s, when, frame, 3, d->drawn);
     if (code == CLI_OK) {
-        code = write_picture(s, "frame", frame, 3, s->target);
+        code = write_picture(s, "frame", frame, 3, d->target);
     }
-    return code == CLI_OK ? write_picture(s, "mask", frame, 1, s->mask) : code;
+    return code == CLI_OK ? write_picture(s, "mask", frame, 1, d->mask) : code;
 }
 
 /* Draws the frames between the keyframe just taken and the previous one. */
-static int draw_live(stream_run *s, uint32_t now)
+static int draw_live(stream_run *s)
 {
-    for (uint32_t i = 0; i < s->held_count; i++) {
-        held_back *h = &s->held[i];
-        if (h->frame < now && !h->has_live) {
-            int code = draw_held(s, h->frame, "live", &h->live_psnr, &h->live_psnr_all);
-            if (code != CLI_OK) {
-                return code;
-            }
-            h->has_live = true;
-        }
+    int code = CLI_OK;
+    for (; code == CLI_OK && s->is.drawn < s->is.held_count; s->is.drawn++) {
+        held_back *h = &s->held[s->is.drawn];
+        code = draw_held(s, h->frame, "live", &h->live_psnr, &h->live_psnr_all);
+        h->has_live = true;
     }
-    return CLI_OK;
+    return code;
+}
+
+static int draw_final(stream_run *s)
+{
+    int code = CLI_OK;
+    for (uint32_t i = 0; i < s->is.held_count && code == CLI_OK; i++) {
+        held_back *h = &s->held[i];
+        code = draw_held(s, h->frame, "final", &h->final_psnr, &h->final_psnr_all);
+    }
+    return code;
 }
 
 /* ---- the run ----------------------------------------------------------------------------------------------------- */
 
-static int take_keyframe(stream_run *s, uint32_t frame)
+static bool is_past(const stream_run *s, const t3r_capture_frame *frame)
 {
-    t3r_capture_frame captured;
-    int code = recorded_frame_read(s->recording, s->path, frame, &captured);
-    if (code != CLI_OK) {
-        return code;
-    }
-    keyframe *k = &s->keyframes[s->keyframe_count];
-    k->frame = frame;
-    stage_times_begin(&s->r.stages, s->r.config.workers);
-    double start = cli_now();
-    t3r_status status = t3r_stream_keyframe(s->r.runtime, &captured.frame, &captured.camera, &k->report);
-    k->milliseconds = (cli_now() - start) * 1000;
-    cli_progress_end();
-    if (status != T3R_OK) {
-        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
-    }
-    k->stages = s->r.stages;
-    k->hash = s->options->no_hash ? 0 : reconstruction_hash(&s->r);
-    s->keyframe_count++;
-    return CLI_OK;
+    const replay_stream_options *o = s->options;
+    const int64_t first_ns = t3r_recording_frame_message(s->recording, 0, T3R_USE_COLOUR).stamp_ns;
+    return o->has_until && (o->until_frame < UINT32_MAX ? frame->index > o->until_frame
+                                                        : (uint64_t)(frame->stamp_ns - first_ns) > o->until_ns);
 }
 
-/* Whether a frame is a keyframe: every so many frames, and when the overlap with the last keyframe is small. */
-static int is_keyframe(const stream_run *s, uint32_t frame, bool *wanted)
+static int take_frame(stream_run *s, const t3r_capture_frame *frame)
 {
-    uint32_t since = s->keyframe_count == 0 ? s->every : frame - s->keyframes[s->keyframe_count - 1].frame;
-    *wanted = since >= s->every;
-    if (*wanted || s->options->overlap_q8 == 0) {
+    live_row *row = &s->rows[s->is.row_count];
+    s->is.next = frame->index + 1;
+    if (!live_map_frame(&s->map, frame, row)) {
+        s->held[s->is.held_count++] = (held_back){.frame = frame->index};
         return CLI_OK;
     }
-    t3r_capture_frame captured;
-    int code = recorded_frame_read(s->recording, s->path, frame, &captured);
-    if (code != CLI_OK) {
-        return code;
+    if (row->status != T3R_OK) {
+        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame->index,
+                         t3r_error_text(row->status));
     }
-    uint32_t overlap_q8;
-    t3r_status status =
-        t3r_stream_overlap(s->r.runtime, &captured.camera, captured.frame.width, captured.frame.height, &overlap_q8);
-    if (status != T3R_OK) {
-        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
+    s->is.row_count++;
+    int code = live_output_row(&s->output, &s->map, row);
+    if (code == CLI_OK) {
+        code = draw_live(s);
     }
-    *wanted = overlap_q8 < s->options->overlap_q8;
-    return CLI_OK;
+    return code == CLI_OK ? stream_save(s, row) : code;
 }
 
 static int run(stream_run *s)
 {
-    uint32_t frames = t3r_recording_frame_count(s->recording);
-    s->keyframes = calloc((size_t)frames + 1, sizeof *s->keyframes);
-    s->held = calloc((size_t)frames + 1, sizeof *s->held);
-    if (s->keyframes == NULL || s->held == NULL) {
-        return cli_error(CLI_BAD_INPUT, "out of memory");
-    }
-    for (uint32_t frame = 0; frame < frames; frame++) {
-        bool wanted;
-        int wants = is_keyframe(s, frame, &wanted);
-        if (wants != CLI_OK) {
-            return wants;
+    const uint32_t frames = t3r_recording_frame_count(s->recording);
+    int code = CLI_OK;
+    while (code == CLI_OK && s->is.next < frames) {
+        t3r_capture_frame frame;
+        code = recorded_frame_read(s->recording, s->path, s->is.next, &frame);
+        if (code == CLI_OK && is_past(s, &frame)) {
+            break;
         }
-        if (!wanted) {
-            s->held[s->held_count++].frame = frame;
-            continue;
-        }
-        int code = take_keyframe(s, frame);
-        if (code == CLI_OK) {
-            code = draw_live(s, frame);
-        }
-        if (code != CLI_OK) {
-            return code;
-        }
+        code = code == CLI_OK ? take_frame(s, &frame) : code;
     }
-    for (uint32_t i = 0; i < s->held_count; i++) {
-        held_back *h = &s->held[i];
-        int code = draw_held(s, h->frame, "final", &h->final_psnr, &h->final_psnr_all);
-        if (code != CLI_OK) {
-            return code;
-        }
+    if (code == CLI_OK) {
+        code = stream_save(s, NULL); /* before views of the whole map: they count in the hashes */
     }
-    t3r_status status = t3r_get_scene(s->r.runtime, &s->r.scene);
-    return status == T3R_OK ? CLI_OK : reconstruction_error(status, s->path, &s->r.config, s->r.arena_bytes);
-}
-
-static int write_map(const stream_run *s)
-{
-    char error[TEXT_BYTES] = "";
-    return scene_file_write(s->options->output, &s->r.scene, 0, NULL, error, sizeof error) == 0
-               ? CLI_OK
-               : cli_error(CLI_BAD_INPUT, "%s", error);
-}
-
-/* ---- the report
- * ---------------------------------------------------------------------------------------------------- */
-
-typedef struct means {
-    uint32_t live_count, final_count;
-    double live, live_all, final, final_all; /* means in dB; NaN without frames */
-} means;
-
-static means means_of(const stream_run *s)
-{
-    means m = {0};
-    for (uint32_t i = 0; i < s->held_count; i++) {
-        const held_back *h = &s->held[i];
-        if (h->has_live && !isnan(h->live_psnr)) {
-            m.live += h->live_psnr;
-            m.live_all += h->live_psnr_all;
-            m.live_count++;
-        }
-        if (!isnan(h->final_psnr)) {
-            m.final += h->final_psnr;
-            m.final_all += h->final_psnr_all;
-            m.final_count++;
-        }
-    }
-    m.live /= m.live_count;
-    m.live_all /= m.live_count;
-    m.final /= m.final_count;
-    m.final_all /= m.final_count;
-    return m;
-}
-
-static void add_decibels(cJSON *object, const char *key, double value)
-{
-    if (isnan(value) || isinf(value)) {
-        cJSON_AddNullToObject(object, key);
-    } else {
-        cJSON_AddNumberToObject(object, key, value);
-    }
-}
-
-static latency latency_of_run(const stream_run *s)
-{
-    double *times = calloc((size_t)s->keyframe_count + 1, sizeof *times);
-    latency found = {0};
-    for (uint32_t i = 0; i < s->keyframe_count && times != NULL; i++) {
-        times[i] = s->keyframes[i].milliseconds;
-    }
-    if (s->keyframe_count > 0 && times != NULL) {
-        found = latency_of(times, s->keyframe_count);
-    }
-    free(times);
-    return found;
-}
-
-static void add_latency(cJSON *root, const stream_run *s)
-{
-    const latency found = latency_of_run(s);
-    cJSON *object = cJSON_AddObjectToObject(root, "keyframe_ms");
-    cJSON_AddNumberToObject(object, "median", found.median);
-    cJSON_AddNumberToObject(object, "most_95", found.most);
-    cJSON_AddNumberToObject(object, "worst", found.worst);
-    cJSON_AddNumberToObject(root, "keyframes_per_s", found.rate);
-}
-
-static void print_json(const stream_run *s, uint64_t hash, const expectation *e, const char *difference)
-{
-    const reconstruction *r = &s->r;
-    cJSON *root = cJSON_CreateObject();
-    cJSON_AddStringToObject(root, "recording", s->path);
-    if (s->options->output != NULL) {
-        cJSON_AddStringToObject(root, "scene", s->options->output);
-    }
-    cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
-    json_add_integer(root, "every", s->every);
-    json_add_integer(root, "overlap_q8", s->options->overlap_q8);
-    json_add_integer(root, "at_hand", r->config.views);
-    json_add_integer(root, "width", r->config.width);
-    json_add_integer(root, "height", r->config.height);
-    json_add_integer(root, "cap", r->config.gaussians);
-    json_add_integer(root, "gaussians", r->scene.count);
-    cJSON_AddStringToObject(root, "head", r->head.name);
-    if (r->head.weights != NULL) {
-        cJSON_AddStringToObject(root, "head_crc", r->head.crc);
-    }
-    json_add_integer(root, "arena_bytes", (int64_t)r->arena_bytes);
-    cJSON *keyframes = cJSON_AddArrayToObject(root, "keyframes");
-    for (uint32_t i = 0; i < s->keyframe_count; i++) {
-        const keyframe *k = &s->keyframes[i];
-        cJSON *item = cJSON_CreateObject();
-        json_add_integer(item, "frame", k->frame);
-        json_add_integer(item, "gaussians", k->report.gaussians);
-        json_add_integer(item, "added", k->report.added);
-        json_add_integer(item, "removed", k->report.removed);
-        json_add_integer(item, "crowded", k->report.crowded);
-        json_add_integer(item, "points", k->report.points);
-        json_add_integer(item, "shown", k->report.shown);
-        cJSON_AddNumberToObject(item, "ms", k->milliseconds);
-        if (!s->options->no_hash) {
-            stage_times_add_json(item, "stages_ms", &k->stages);
-            json_add_hash(item, "hash", k->hash);
-        }
-        cJSON_AddItemToArray(keyframes, item);
-    }
-    cJSON *held = cJSON_AddArrayToObject(root, "held_back");
-    for (uint32_t i = 0; i < s->held_count; i++) {
-        const held_back *h = &s->held[i];
-        cJSON *item = cJSON_CreateObject();
-        json_add_integer(item, "frame", h->frame);
-        if (h->has_live) {
-            add_decibels(item, "live_psnr", h->live_psnr);
-            add_decibels(item, "live_psnr_all", h->live_psnr_all);
-        }
-        add_decibels(item, "final_psnr", h->final_psnr);
-        add_decibels(item, "final_psnr_all", h->final_psnr_all);
-        cJSON_AddItemToArray(held, item);
-    }
-    means m = means_of(s);
-    add_decibels(root, "live_psnr", m.live);
-    add_decibels(root, "live_psnr_all", m.live_all);
-    add_decibels(root, "final_psnr", m.final);
-    add_decibels(root, "final_psnr_all", m.final_all);
-    add_latency(root, s);
-    if (!s->options->no_hash) {
-        hash_report_add_stages(root, r);
-        json_add_hash(root, "hash", hash);
-    }
-    expectation_add(root, e, difference);
-    json_print(root);
-}
-
-static void print_text(const stream_run *s, uint64_t hash)
-{
-    const reconstruction *r = &s->r;
-    printf("%s: %" PRIu32 " keyframes, one in %" PRIu32 " frames at least, %" PRIu32 " live, at most %" PRIu32
-           " Gaussians, head %s, arena %zu bytes\n",
-           s->path, s->keyframe_count, s->every, r->config.views, r->config.gaussians, r->head.name, r->arena_bytes);
-    printf("%s%8s %10s %8s %8s %8s %8s %8s%s\n", style_begin(stdout, STYLE_HEADING), "keyframe", "Gaussians", "added",
-           "removed", "crowded", "shown, %", "ms", style_end(stdout));
-    for (uint32_t i = 0; i < s->keyframe_count; i++) {
-        const keyframe *k = &s->keyframes[i];
-        printf("%8" PRIu32 " %10" PRIu32 " %8" PRIu32 " %8" PRIu32 " %8" PRIu32 " %8.1f %8.1f\n", k->frame,
-               k->report.gaussians, k->report.added, k->report.removed, k->report.crowded,
-               100.0 * k->report.shown / k->report.points, k->milliseconds);
-    }
-    const latency found = latency_of_run(s);
-    printf("a keyframe%s: median %.1f ms, 95 %% at most %.1f ms, worst %.1f ms; %.1f a second\n",
-           s->options->no_hash ? " without hashes" : "", found.median, found.most, found.worst, found.rate);
-    means m = means_of(s);
-    if (m.final_count > 0) {
-        printf("held-back frames, mean PSNR where they have a depth | everywhere:");
-        if (m.live_count > 0) {
-            printf(" after the next keyframe %.2f | %.2f dB (%" PRIu32 "),", m.live, m.live_all, m.live_count);
-        }
-        printf(" in the end %.2f | %.2f dB (%" PRIu32 ")\n", m.final, m.final_all, m.final_count);
-    }
-    if (s->options->output != NULL) {
-        printf("%s: %" PRIu32 " Gaussians\n", s->options->output, r->scene.count);
-    }
-    if (!s->options->no_hash) {
-        hash_report_print(r, hash);
-    }
+    return code == CLI_OK ? draw_final(s) : code;
 }
 
 /* Finds the first difference, as text; "" when there is none. A stage's hashes are chained over all keyframes, so the
  * first stage that differs belongs to the first keyframe that differs, or to a later one. */
 static void find_difference(const expectation *e, const stream_run *s, uint64_t hash, char *text, size_t text_bytes)
 {
-    (void)expectation_missed(e, &s->r, hash, text, text_bytes);
-    for (uint32_t i = 0; i < e->keyframe_count && i < s->keyframe_count; i++) {
-        if (e->keyframes[i] != s->keyframes[i].hash) {
+    (void)expectation_missed(e, &s->map.r, hash, text, text_bytes);
+    for (uint32_t i = 0; i < e->keyframe_count && i < s->is.row_count; i++) {
+        if (e->keyframes[i] != s->rows[i].hash) {
             size_t length = strlen(text);
             snprintf(text + length, text_bytes - length, "%skeyframe %" PRIu32, length > 0 ? ", " : "",
-                     s->keyframes[i].frame);
+                     s->rows[i].frame);
             return;
         }
     }
 }
 
+static bool prints_text(const stream_run *s)
+{
+    return !s->options->json && !live_options_print_lines(&s->options->live);
+}
+
+static int report(const stream_run *s, const expectation *e)
+{
+    const uint64_t hash = t3r_hash_u64(reconstruction_hash(&s->map.r), s->is.views_hash);
+    char difference[128];
+    find_difference(e, s, hash, difference, sizeof difference);
+    if (s->options->json) {
+        stream_print_json(s, hash, e, difference);
+    } else if (prints_text(s)) {
+        stream_print(s, hash);
+    }
+    return expectation_verdict(e, s->path, hash, difference, !prints_text(s));
+}
+
+static int open_run(stream_run *s)
+{
+    const t3r_config *config = &s->map.r.config;
+    const size_t frames = t3r_recording_frame_count(s->recording);
+    const char *images = s->options->images;
+    s->rows = calloc(frames + 1, sizeof *s->rows);
+    s->held = calloc(frames + 1, sizeof *s->held);
+    if (s->rows == NULL || s->held == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    if (images != NULL && mkdir(images, 0777) != 0 && errno != EEXIST) {
+        return cli_error(CLI_BAD_INPUT, "%s: %s", images, strerror(errno));
+    }
+    if (prints_text(s)) {
+        stream_print_begin(s);
+    }
+    const int code = drawn_frame_open(&s->view, config->width, config->height);
+    return code == CLI_OK ? stream_open(s) : code;
+}
+
 int replay_stream(const replay_stream_options *options, const t3r_recording *recording, const char *path,
                   const reconstruction_options *settings, const expectation *e)
 {
-    stream_run s = {
-        .options = options,
-        .recording = recording,
-        .path = path,
-        .every = options->every > 0 ? options->every : REPLAY_STREAM_EVERY,
-        .views_hash = T3R_HASH_START,
-    };
-    uint32_t frames = t3r_recording_frame_count(recording);
-    reconstruction_options first = *settings; /* the frames that a budget in percent refers to */
-    first.hash = !options->no_hash;
-    first.context_count = frames > s.every ? 2 : 1;
-    first.context[0] = 0;
-    first.context[1] = s.every;
-    if (options->images != NULL && mkdir(options->images, 0777) != 0 && errno != EEXIST) {
-        return cli_error(CLI_BAD_INPUT, "%s: %s", options->images, strerror(errno));
-    }
-    int code = reconstruction_stream(&s.r, recording, path, &first,
-                                     options->at_hand > 0 ? options->at_hand : REPLAY_STREAM_AT_HAND);
+    stream_run s = {.options = options, .recording = recording, .path = path, .is = {.views_hash = T3R_HASH_START}};
+    reconstruction_options hashed = *settings;
+    hashed.hash = !options->no_hash;
+    int code = live_map_open_recorded(&s.map, recording, path, &hashed, &options->live);
     if (code != CLI_OK) {
         return code;
     }
-    code = open_pictures(&s);
+    code = open_run(&s);
     if (code == CLI_OK) {
         code = run(&s);
     }
-    if (code == CLI_OK && options->output != NULL) {
-        code = write_map(&s);
-    }
     if (code == CLI_OK) {
-        uint64_t hash = t3r_hash_u64(reconstruction_hash(&s.r), s.views_hash);
-        char difference[128];
-        find_difference(e, &s, hash, difference, sizeof difference);
-        if (options->json) {
-            print_json(&s, hash, e, difference);
-        } else {
-            print_text(&s, hash);
-        }
-        code = expectation_verdict(e, path, hash, difference, options->json);
+        code = report(&s, e);
     }
+    live_output_close(&s.output);
+    drawn_frame_close(&s.view);
     free(s.held);
-    free(s.keyframes);
-    free(s.depth);
-    free(s.mask);
-    free(s.drawn);
-    free(s.target);
-    reconstruction_close(&s.r);
+    free(s.rows);
+    live_map_close(&s.map);
     return code;
 }

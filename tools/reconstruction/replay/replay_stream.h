@@ -6,25 +6,23 @@
 
 #include <stdint.h>
 
+#include "reconstruction/live/live_options.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/replay/replay_expectation.h"
 #include "recording/recording.h"
 
-#define REPLAY_STREAM_EVERY 3u
-#define REPLAY_STREAM_AT_HAND 4u
-
 typedef struct replay_stream_options {
-    uint32_t every;      /* interval between keyframes in frames; 0 = REPLAY_STREAM_EVERY */
-    uint32_t overlap_q8; /* if not 0: a frame is also a keyframe when its overlap with the last keyframe is less */
-    uint32_t at_hand;    /* live keyframes, whose planes are kept; 0 = REPLAY_STREAM_AT_HAND */
-    const char *images;  /* folder for the views drawn; NULL = none */
-    const char *output;  /* scene file of the final map; NULL = none */
-    bool no_hash;        /* time the keyframes without the hashes of their stages */
+    live_options live;
+    bool has_until;
+    uint32_t until_frame; /* the last frame; UINT32_MAX = by time */
+    uint64_t until_ns;    /* the last time, from the first frame on */
+    const char *images;   /* folder for the views drawn; NULL = none */
+    bool no_hash;         /* time the keyframes without the hashes of their stages */
     bool json;
 } replay_stream_options;
 
 /* Makes frames 0, every, 2 every ... keyframes, or more by overlap_q8. A frame between two keyframes is drawn when the
- * later one has been taken, and all are drawn once more from the final map, which is then written. Returns an exit
+ * later one has been taken, and all are drawn once more from the final map, after that was written. Returns an exit
  * status of cli.h. */
 int replay_stream(const replay_stream_options *options, const t3r_recording *recording, const char *path,
                   const reconstruction_options *settings, const expectation *e);

@@ -45,7 +45,7 @@ typedef struct replayed_view {
     work_times times;
 } replayed_view;
 
-enum { KEY_JSON = 0x1000, KEY_EVERY, KEY_AT_HAND, KEY_OVERLAP };
+enum { KEY_JSON = 0x1000, KEY_EVERY, KEY_UNTIL };
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
@@ -60,38 +60,57 @@ static const struct argp_option options[] = {
      "compared",
      0},
     {"every", KEY_EVERY, "N", 0, "distance of keyframes in frames, 1..1000 (3)", 0},
-    {"overlap", KEY_OVERLAP, "P%", 0,
-     "least percent that a frame shares with the last keyframe; with less it becomes a keyframe too, 1..100", 0},
-    {"at-hand", KEY_AT_HAND, "K", 0, "number of keyframes whose planes are kept, for refinement, 1..16 (4)", 0},
+    {"until", KEY_UNTIL, "FRAME|TIME", 0,
+     "last frame to take, by its number, or by its time since the first one with a unit: 90s, 500ms (the last)", 0},
     {"no-hash", OPTION_TO(replay_options, stream.no_hash), NULL, 0,
      "hash no stage, which takes time in each keyframe; nothing can be expected then", 0},
     {"images", OPTION_TO(replay_options, stream.images), "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
      "folder to write the held-back frames that have a depth and their views into: frame_<frame>.png, mask_, live_, "
      "final_",
      0},
-    {"output", 'o', "MAP.ply", OPTION_WRITES(FILE_SCENE), "scene to write: the final map", 0},
+    {"output", 'o', "MAP.ply", OPTION_WRITES(FILE_SCENE),
+     "scene to write: the map in the end, and with --snapshot on "
+     "the way",
+     0},
     {0},
 };
 
 static void check_stream(struct argp_state *state, const replay_options *o)
 {
-    const t3r_config *c = &o->settings.config, usual = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1);
-    if (!o->streams &&
-        (o->stream.every > 0 || o->stream.at_hand > 0 || o->stream.overlap_q8 > 0 || c->half_life != usual.half_life ||
-         c->remember != usual.remember || c->refine_stride != usual.refine_stride || o->stream.no_hash ||
-         o->stream.images != NULL || o->stream.output != NULL)) {
-        argp_error(state,
-                   "--every, --overlap, --at-hand, --half-life, --remember, --refine-stride, --no-hash, --images and "
-                   "-o belong to --stream");
+    const live_options *live = &o->stream.live;
+    const char *given = live_options_given(live, &o->settings.config);
+    given = o->stream.has_until        ? "until"
+            : o->stream.no_hash        ? "no-hash"
+            : o->stream.images != NULL ? "images"
+            : live->scene != NULL      ? "output"
+                                       : given;
+    if (!o->streams && given != NULL) {
+        argp_error(state, "--%s belongs to --stream", given);
     }
-    if (o->stream.no_hash && o->expect != NULL) {
-        argp_error(state, "--no-hash and --expect exclude each other");
-    }
-    scene_output_option(state, "-o", o->stream.output);
+    scene_output_option(state, "-o", live->scene);
+    live_options_check(state, live);
     if (o->streams &&
         (o->settings.context_count > 0 || o->settings.automatic || o->settings.config.depth == T3R_DEPTH_STEREO ||
          o->settings.config.allocate == T3R_ALLOCATE_GIVEN)) {
         argp_error(state, "--stream takes no --context, --auto, --allocate given or --depth stereo");
+    }
+    if (o->stream.no_hash && o->expect != NULL) {
+        argp_error(state, "--no-hash and --expect exclude each other");
+    }
+    if (o->expect != NULL && live->most_ms > 0) {
+        argp_error(state, "--max-ms gives other bits in each run: --expect has nothing to compare");
+    }
+}
+
+/* Parses "120", a frame, or "4.5s", a time. */
+static void parse_until(struct argp_state *state, const char *text, replay_stream_options *o)
+{
+    o->has_until = true;
+    if (text[strspn(text, "0123456789")] == '\0') {
+        o->until_frame = option_number(state, "until", text, 0, UINT32_MAX - 1);
+    } else {
+        o->until_frame = UINT32_MAX;
+        o->until_ns = option_time(state, "until", text);
     }
 }
 
@@ -102,25 +121,19 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->settings;
         state->child_inputs[1] = &o->settings.config;
+        state->child_inputs[2] = &o->stream.live;
         return 0;
     case KEY_JSON:
         o->json = o->stream.json = true;
         return 0;
     case KEY_EVERY:
-        o->stream.every = option_number(state, "every", arg, 1, 1000);
+        o->stream.live.every = option_number(state, "every", arg, 1, 1000);
         return 0;
-    case KEY_OVERLAP: {
-        double percent;
-        uint32_t count;
-        option_percents(state, "overlap", arg, &percent, 1, &count);
-        o->stream.overlap_q8 = (uint32_t)(percent * 2.56 + 0.5);
-        return 0;
-    }
-    case KEY_AT_HAND:
-        o->stream.at_hand = option_number(state, "at-hand", arg, 1, T3R_MAX_VIEWS);
+    case KEY_UNTIL:
+        parse_until(state, arg, &o->stream);
         return 0;
     case 'o':
-        o->stream.output = arg;
+        o->stream.live.scene = arg;
         return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, (const char **[]){&o->recording}, 1);
@@ -143,7 +156,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-static const struct argp_child children[] = {{.argp = &reconstruction_argp}, {.argp = &stream_settings_argp}, {0}};
+static const struct argp_child children[] = {
+    {.argp = &reconstruction_argp}, {.argp = &stream_settings_argp}, {.argp = &live_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,

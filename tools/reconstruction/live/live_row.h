@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The outcome of offering a frame to a map as a keyframe: as a JSON object, a row of a table, and in help. */
+#ifndef TRIM3R_TOOLS_LIVE_ROW_H
+#define TRIM3R_TOOLS_LIVE_ROW_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <cjson/cJSON.h>
+
+#include "reconstruction/stage_times.h"
+#include "trim3r.h"
+
+typedef struct live_row {
+    uint32_t frame; /* number in the source, from 0 */
+    int64_t stamp_ns;
+    t3r_status status; /* T3R_OK: it is a keyframe, else why it is none */
+    t3r_stream_report report;
+    uint32_t passes, passes_planned; /* of refinement */
+    double milliseconds;             /* of the keyframe, without reading and writing */
+    double psnr_before;              /* dB of the frame's view of the map before it: live_map.h; NaN = not measured */
+    double position[3], rotation[4]; /* of the camera in the world; w x y z */
+    stage_times stages;              /* each with its hash; all 0 without hashes */
+    uint64_t hash;                   /* of all stages so far; 0 = none that is comparable */
+} live_row;
+
+/* Whether the frame became a keyframe. */
+static inline bool live_row_is_taken(const live_row *row)
+{
+    return row->status == T3R_OK;
+}
+
+/* Returns a new object with all fields. */
+cJSON *live_row_json(const live_row *row);
+/* Prints the headings of the table, and a row, on stdout. */
+void live_row_headings(void);
+void live_row_print(const live_row *row);
+/* Writes key, unit and meaning of the JSON's fields, a line each, for help. Returns the text. */
+char *live_row_help(char *text, size_t bytes);
+
+#endif

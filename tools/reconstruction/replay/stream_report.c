@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli/tables/json_output.h"
+#include "reconstruction/replay/hash_report.h"
+#include "reconstruction/replay/latency.h"
+#include "reconstruction/replay/stream_run.h"
+
+/* ---- sums over the run ------------------------------------------------------------------------------------------- */
+
+/* Means in dB; NaN without frames. */
+typedef struct means {
+    uint32_t live_count, final_count;
+    double live, live_all, final, final_all;
+} means;
+
+static means means_of(const stream_run *s)
+{
+    means m = {0};
+    for (uint32_t i = 0; i < s->is.held_count; i++) {
+        const held_back *h = &s->held[i];
+        if (h->has_live && !isnan(h->live_psnr)) {
+            m.live += h->live_psnr;
+            m.live_all += h->live_psnr_all;
+            m.live_count++;
+        }
+        if (!isnan(h->final_psnr)) {
+            m.final += h->final_psnr;
+            m.final_all += h->final_psnr_all;
+            m.final_count++;
+        }
+    }
+    m.live /= m.live_count;
+    m.live_all /= m.live_count;
+    m.final /= m.final_count;
+    m.final_all /= m.final_count;
+    return m;
+}
+
+/* The keyframes, their times and passes. */
+typedef struct work {
+    uint32_t count;
+    latency times; /* all 0 without keyframes */
+    uint64_t passes, planned;
+} work;
+
+static work work_of(const stream_run *s)
+{
+    double *ms = calloc((size_t)s->is.row_count + 1, sizeof *ms);
+    work w = {0};
+    for (uint32_t i = 0; i < s->is.row_count && ms != NULL; i++) {
+        const live_row *row = &s->rows[i];
+        if (live_row_is_taken(row)) {
+            ms[w.count++] = row->milliseconds;
+            w.passes += row->passes;
+            w.planned += row->passes_planned;
+        }
+    }
+    if (w.count > 0) {
+        w.times = latency_of(ms, w.count);
+    }
+    free(ms);
+    return w;
+}
+
+static bool is_comparable(const stream_run *s)
+{
+    return s->options->live.most_ms <= 0;
+}
+
+static bool is_hashed(const stream_run *s)
+{
+    return is_comparable(s) && !s->options->no_hash;
+}
+
+/* ---- JSON -------------------------------------------------------------------------------------------------------- */
+
+static void add_decibels(cJSON *object, const char *key, double value)
+{
+    if (isnan(value) || isinf(value)) {
+        cJSON_AddNullToObject(object, key);
+    } else {
+        cJSON_AddNumberToObject(object, key, value);
+    }
+}
+
+static void add_held(cJSON *root, const stream_run *s)
+{
+    cJSON *list = cJSON_AddArrayToObject(root, "held_back");
+    for (uint32_t i = 0; i < s->is.held_count; i++) {
+        const held_back *h = &s->held[i];
+        cJSON *item = cJSON_CreateObject();
+        json_add_integer(item, "frame", h->frame);
+        if (h->has_live) {
+            add_decibels(item, "live_psnr", h->live_psnr);
+            add_decibels(item, "live_psnr_all", h->live_psnr_all);
+        }
+        add_decibels(item, "final_psnr", h->final_psnr);
+        add_decibels(item, "final_psnr_all", h->final_psnr_all);
+        cJSON_AddItemToArray(list, item);
+    }
+    const means m = means_of(s);
+    add_decibels(root, "live_psnr", m.live);
+    add_decibels(root, "live_psnr_all", m.live_all);
+    add_decibels(root, "final_psnr", m.final);
+    add_decibels(root, "final_psnr_all", m.final_all);
+}
+
+static void add_work(cJSON *root, const stream_run *s)
+{
+    const work w = work_of(s);
+    if (s->resumed) {
+        json_add_integer(root, "resumed_at", s->resumed_at);
+    }
+    cJSON *times = cJSON_AddObjectToObject(root, "keyframe_ms");
+    cJSON_AddNumberToObject(times, "median", w.times.median);
+    cJSON_AddNumberToObject(times, "most_95", w.times.most);
+    cJSON_AddNumberToObject(times, "worst", w.times.worst);
+    cJSON_AddNumberToObject(root, "keyframes_per_s", w.times.rate);
+    json_add_integer(root, "passes", (int64_t)w.passes);
+    json_add_integer(root, "passes_planned", (int64_t)w.planned);
+    if (s->options->live.most_ms > 0) {
+        cJSON_AddNumberToObject(root, "max_ms", s->options->live.most_ms);
+    }
+}
+
+void stream_print_json(const stream_run *s, uint64_t hash, const expectation *e, const char *difference)
+{
+    const reconstruction *r = &s->map.r;
+    const live_options *o = &s->map.options;
+    cJSON *root = cJSON_CreateObject();
+    cJSON_AddStringToObject(root, "recording", s->path);
+    if (o->scene != NULL) {
+        cJSON_AddStringToObject(root, "scene", o->scene);
+    }
+    cJSON_AddNumberToObject(root, "bits_epoch", T3R_BITS_EPOCH);
+    json_add_integer(root, "every", o->every);
+    json_add_integer(root, "overlap_q8", o->overlap_q8);
+    json_add_integer(root, "at_hand", r->config.views);
+    json_add_integer(root, "width", r->config.width);
+    json_add_integer(root, "height", r->config.height);
+    json_add_integer(root, "cap", r->config.gaussians);
+    json_add_integer(root, "gaussians", r->scene.count);
+    cJSON_AddStringToObject(root, "head", r->head.name);
+    if (r->head.weights != NULL) {
+        cJSON_AddStringToObject(root, "head_crc", r->head.crc);
+    }
+    json_add_integer(root, "arena_bytes", (int64_t)r->arena_bytes);
+    add_work(root, s);
+    cJSON *keyframes = cJSON_AddArrayToObject(root, "keyframes");
+    for (uint32_t i = 0; i < s->is.row_count; i++) {
+        cJSON_AddItemToArray(keyframes, live_row_json(&s->rows[i]));
+    }
+    add_held(root, s);
+    cJSON_AddBoolToObject(root, "comparable", is_comparable(s));
+    if (is_hashed(s)) {
+        hash_report_add_stages(root, r);
+        json_add_hash(root, "hash", hash);
+    }
+    expectation_add(root, e, difference);
+    json_print(root);
+}
+
+/* ---- text -------------------------------------------------------------------------------------------------------- */
+
+void stream_print_begin(const stream_run *s)
+{
+    const reconstruction *r = &s->map.r;
+    printf("%s: a keyframe in %" PRIu32 " frames at least, %" PRIu32 " live, at most %" PRIu32
+           " Gaussians, head %s, arena %zu bytes\n",
+           s->path, s->map.options.every, r->config.views, r->config.gaussians, r->head.name, r->arena_bytes);
+}
+
+static void print_means(const stream_run *s)
+{
+    const means m = means_of(s);
+    if (m.final_count == 0) {
+        return;
+    }
+    printf("held-back frames, mean PSNR where they have a depth | everywhere:");
+    if (m.live_count > 0) {
+        printf(" after the next keyframe %.2f | %.2f dB (%" PRIu32 "),", m.live, m.live_all, m.live_count);
+    }
+    printf(" in the end %.2f | %.2f dB (%" PRIu32 ")\n", m.final, m.final_all, m.final_count);
+}
+
+void stream_print(const stream_run *s, uint64_t hash)
+{
+    const live_options *o = &s->map.options;
+    const work w = work_of(s);
+    printf("%s: %" PRIu32 " keyframes of %" PRIu32 " frames\n", s->path, w.count, s->is.next);
+    printf("a keyframe%s: median %.1f ms, 95 %% at most %.1f ms, worst %.1f ms; %.1f a second\n",
+           s->options->no_hash ? " without hashes" : "", w.times.median, w.times.most, w.times.worst, w.times.rate);
+    print_means(s);
+    if (o->scene != NULL) {
+        printf("%s: %" PRIu32 " Gaussians\n", o->scene, s->map.r.scene.count);
+    }
+    if (!is_comparable(s)) {
+        printf("--max-ms %g: %" PRIu64 " of %" PRIu64 " passes; no hashes, as each run gives other bits\n", o->most_ms,
+               w.passes, w.planned);
+    }
+    if (is_hashed(s)) {
+        hash_report_print(&s->map.r, hash);
+    }
+}
