@@ -64,6 +64,54 @@ def builds():
     capture("replay:room.mcap", "--build", "no.ply", "--arena", 1000, code=3, words="too small")
 
 
+def rows_of(path):
+    with open(path) as file:
+        return [{key: value for key, value in json.loads(line).items() if key not in ("ms", "psnr_before", "stages_ms")} for line in file]
+
+
+def streams():
+    """A map of live frames is that of their replay, and continues from its state."""
+    base = ("--gaussians", 300, "--every", 1, "--refine", 1)
+    replayed = expect_json("replay", "room.mcap", "--stream", *base, "-o", "replayed.ply", "--lines", "replayed.jsonl")
+    live = ("--build", "map.ply", "--stream", *base)
+    found = capture("replay:room.mcap", *live, "--lines", "map.jsonl", "--snapshot", 5)
+    check(rows_of("map.jsonl") == rows_of("replayed.jsonl"), "the rows of a replay")
+    check(read("map.ply") == read("replayed.ply"), "and its map")
+    check(found["keyframes"] == 12 and found["gaussians"] == 300 and found["hash"] == replayed["keyframes"][-1]["hash"], f"{found}")
+    twice = capture("replay:room.mcap", "--repeat", 2, *live)
+    capture("replay:room.mcap", *live, "--state", "room.t3s")
+    again = capture("replay:room.mcap", *live, "--state", "room.t3s", "--resume", "--lines", "more.jsonl")
+    check(again["hash"] == twice["hash"] and rows_of("more.jsonl")[0]["keyframe"] == 13, "it continues")
+    table = expect(0, "capture", "--source", "replay:room.mcap", *live)
+    check(table.count(" taken\n") == 12 and "300 Gaussians after 12 keyframes" in table, f"a row a keyframe: {table}")
+    hurried = capture("replay:room.mcap", *live, "--max-ms", 10000)
+    check("hash" not in hurried, "no hash that cannot be compared")
+    capture("replay:bare.mcap", *live, code=1, words="ended before the first keyframe")
+    expect(2, "capture", "--source", "replay:room.mcap", "-o", "no.mcap", "--stream", err="--stream needs --build")
+    expect(2, "capture", "--source", "replay:room.mcap", *live, "--local", err="takes no --local")
+    expect(2, "capture", "--source", "replay:room.mcap", "--build", "a.ply", "--half-life", 5, err="--half-life belongs to --stream")
+    expect(2, "capture", "--source", "replay:room.mcap", "--build", "a.ply", "--snapshot", 5, err="--snapshot belongs to --stream")
+
+
+def stream_stops(number):
+    """A signal: exit status 0, and a whole map of all keyframes so far."""
+    command = [TRIM3R, "capture", "--source", "replay:room.mcap", "--repeat", "4000000000", "--json", "--build", "stop.ply",
+               "--stream", "--gaussians", "300", "--lines", "stop.jsonl"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        until = time.monotonic() + 60
+        while not (os.path.exists("stop.jsonl") and read("stop.jsonl").count(b"\n") > 9):
+            check(time.monotonic() < until, "it takes keyframes")
+            time.sleep(0.005)
+        process.send_signal(number)
+        out, err = process.communicate(timeout=60)
+    check(process.returncode == 0, f"signal {number}: {process.returncode} {err}")
+    found, rows = json.loads(out), rows_of("stop.jsonl")
+    check(found["keyframes"] == len(rows) and found["hash"] == rows[-1]["hash"], f"all keyframes: {found}")
+    check(expect_json("info", "stop.ply")["scenes"][0]["gaussians"] == 300, "a whole map")
+    os.remove("stop.jsonl")
+    os.remove("stop.ply")
+
+
 def bare():
     """A recording without poses and intrinsics, like one of a camera alone."""
     with open("far.txt", "w", encoding="ascii") as file:
@@ -265,6 +313,9 @@ with tempfile.TemporaryDirectory() as folder:
     copies()
     bare()
     builds()
+    streams()
+    stream_stops(signal.SIGINT)
+    stream_stops(signal.SIGTERM)
     poses()
     rolls_over()
     spares_what_it_reads()

@@ -7,6 +7,7 @@
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "import/poses/pose_losses.h"
+#include "reconstruction/options/settings.h"
 #include "scene/scene_options.h"
 
 enum {
@@ -79,12 +80,21 @@ static const struct argp_option options[] = {
      "are there",
      0},
     {"every", KEY_EVERY, "N", 0,
-     "distance in frames of further builds, each of a frame and the Nth before it; SCENE.ply is the last one's", 0},
+     "distance in frames of further builds, each of a frame and the Nth before it, SCENE.ply being the last one's; "
+     "with "
+     "--stream that of keyframes (3)",
+     0},
     {"local", OPTION_TO(capture_options, local), NULL, 0, "write positions from the first context camera's centre", 0},
     {"hash", OPTION_TO(capture_options, hash), NULL, 0,
      "print the hash of all frames: a replay of the recording has the same", 0},
     {"quiet", OPTION_TO(capture_options, quiet), NULL, 0, "show no progress line", 0},
     {"json", OPTION_TO(capture_options, json), NULL, 0, "print one JSON object on stdout", 0},
+    {NULL, 0, NULL, 0, "A map that follows the camera:", 5},
+    {"stream", OPTION_TO(capture_options, streams), NULL, 0,
+     "write one map of at most --gaussians (10000) into SCENE.ply, which keyframes extend as they come; print a row "
+     "for "
+     "each",
+     0},
     {0},
 };
 
@@ -216,6 +226,11 @@ static void check(struct argp_state *state, capture_options *o)
         argp_error(state, "--allocate given needs a recording: trim3r build");
     } else if (o->build.config.depth == T3R_DEPTH_STEREO) {
         argp_error(state, "--depth stereo needs a recording: trim3r build");
+    } else if (o->streams && (o->scene == NULL || o->local || o->build.context_count > 0 || o->build.automatic ||
+                              o->build.keep_percent > 0)) {
+        argp_error(state, "--stream needs --build SCENE.ply, and takes no --local, --context, --auto or --keep");
+    } else if (!o->streams && live_options_given(&o->live, &o->build.config) != NULL) {
+        argp_error(state, "--%s belongs to --stream", live_options_given(&o->live, &o->build.config));
     } else if (o->every > 0 && o->build.context_count > 0) {
         argp_error(state, "--every and --context exclude each other");
     } else if (o->poses == NULL && (o->has_offset || o->pose_topic != NULL || o->strict)) {
@@ -235,7 +250,12 @@ static void check(struct argp_state *state, capture_options *o)
     if (o->fisheye) {
         o->intrinsics.distortion = T3R_DISTORTION_FISHEYE;
     }
-    if (o->scene != NULL && !budget) {
+    o->live.scene = o->streams ? o->scene : NULL;
+    live_options_check(state, &o->live);
+    o->live.every = o->every;
+    if (o->streams && !budget) {
+        o->build.gaussians = LIVE_GAUSSIANS;
+    } else if (o->scene != NULL && !budget) {
         o->build.keep_percent = 10;
     }
 }
@@ -252,6 +272,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         state->child_inputs[0] = &o->build;
         state->child_inputs[1] = &o->build;
         state->child_inputs[2] = &o->stored;
+        state->child_inputs[3] = &o->build.config;
+        state->child_inputs[4] = &o->live;
         return 0;
     case 'o':
         o->output = arg;
@@ -324,6 +346,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 static const struct argp_child children[] = {{&reconstruction_budget_argp, 0, "Views and budget of --build:", 10},
                                              {&reconstruction_settings_argp, 0, NULL, 0},
                                              {&recording_argp, 0, NULL, 0},
+                                             {&stream_settings_argp, 0, NULL, 0},
+                                             {&live_argp, 0, NULL, 0},
                                              {0}};
 static const struct argp argp = {
     .options = options,
@@ -337,7 +361,9 @@ static const struct argp argp = {
         "    --intrinsics 615,615,320,240 --max-bytes 2G -o rec.mcap\n"
         "  trim3r capture --source replay:rec.mcap --poses tracker.txt \\\n"
         "    --clock-offset estimate -o posed.mcap\n"
-        "  trim3r capture --source replay:posed.mcap --build s.ply --keep 10%\n\n"
+        "  trim3r capture --source replay:posed.mcap --build s.ply --keep 10%\n"
+        "  trim3r capture --source replay:posed.mcap --build map.ply --stream \\\n"
+        "    --snapshot 10 --lines map.jsonl\n\n"
         "Poses are known after the capture as a rule: record first, then add them from the recording as above. "
         "Devices may come back under another name: those of /dev/v4l/by-id do not.\n\n"
         "Every frame that is not recorded is counted under its cause and reported on the topic /camera/events, as is "

@@ -8,6 +8,7 @@
 
 #include "capture/capture.h"
 #include "cli/options/recording_options.h"
+#include "reconstruction/live/live_options.h"
 #include "reconstruction/reconstruction.h"
 
 typedef struct capture_options {
@@ -19,7 +20,8 @@ typedef struct capture_options {
     int64_t offset_ns; /* given, or the centre of an estimate */
     const char *scene;
     recording_options stored; /* how the recording stores messages */
-    bool list, json, sync, hash, local, quiet, strict;
+    bool list, json, sync, hash, local, quiet, strict, streams;
+    live_options live;
     uint32_t every, frames;
     uint64_t max_bytes;
     uint64_t poses_left_out; /* filled in when the poses are read */

@@ -73,11 +73,15 @@ static void print_json(const capture_options *o, const char *name, const t3r_cap
     }
     if (a->builds > 0) {
         cJSON_AddStringToObject(root, "scene", o->scene);
-        json_add_integer(root, "builds", a->builds);
+        json_add_integer(root, o->streams ? "keyframes" : "builds", a->builds);
         json_add_integer(root, "gaussians", a->gaussians);
+        json_add_integer(root, "arena_bytes", (int64_t)a->arena_bytes);
+    }
+    if (a->builds > 0 && !o->streams) {
         json_add_integer(root, "valid_points", a->valid_points);
         json_add_integers(root, "context", a->context, a->context_count);
-        json_add_integer(root, "arena_bytes", (int64_t)a->arena_bytes);
+    }
+    if (a->scene_hash != 0) {
         json_add_hash(root, "hash", a->scene_hash);
     }
     json_print(root);
@@ -116,7 +120,13 @@ static void print_text(const capture_options *o, const char *name, const t3r_cap
         printf("%s: %" PRIu64 " bytes in %" PRIu32 " file%s\n", o->output, a->bytes, a->files,
                a->files == 1 ? "" : "s");
     }
-    if (a->builds > 0) {
+    if (a->builds > 0 && o->streams) {
+        hash_text(a->scene_hash, text);
+        printf("%s: %" PRIu32 " Gaussians after %" PRIu32
+               " keyframes of %.1f ms (worst %.1f), written in %.1f ms, arena %zu bytes, %s%s\n",
+               o->scene, a->gaussians, a->builds, mean(&a->building), a->building.worst_ms, mean(&a->writing),
+               a->arena_bytes, a->scene_hash != 0 ? "hash " : "no hash: --max-ms", a->scene_hash != 0 ? text : "");
+    } else if (a->builds > 0) {
         hash_text(a->scene_hash, text);
         printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, %" PRIu32
                " builds of %.1f ms (worst %.1f), written in %.1f ms, arena %zu bytes, hash %s\n",
@@ -134,7 +144,7 @@ void capture_result_print(const capture_options *o, const char *name, const t3r_
 {
     if (o->json) {
         print_json(o, name, capture, a, offset);
-    } else {
+    } else if (!live_options_print_lines(&o->live)) {
         print_text(o, name, capture, a, offset);
     }
 }

@@ -22,6 +22,7 @@ typedef struct run_state {
     const capture_plan *plan;
     capture_account *account;
     capture_record *record; /* NULL = none */
+    live_stream stream;
     live_build build;
     bool building;         /* build is open */
     bool built_once;       /* the single build for plan->every == 0 is done */
@@ -186,7 +187,8 @@ static uint32_t context_at(const capture_plan *plan, uint32_t i)
 static int open_build(run_state *s, const t3r_capture_frame *frame)
 {
     const capture_plan *plan = s->plan;
-    bool chosen = plan->build != NULL && (plan->every > 0 || frame->index == context_at(plan, 0));
+    bool chosen =
+        plan->build != NULL && plan->stream == NULL && (plan->every > 0 || frame->index == context_at(plan, 0));
     if (!chosen || s->building || live_build_lacks(frame) != NULL) {
         return CLI_OK;
     }
@@ -259,6 +261,42 @@ static int build_repeatedly(run_state *s, const t3r_capture_frame *frame)
     return code == CLI_OK ? live_build_keep(&s->build, frame) : code;
 }
 
+/* Offers a frame to the map that follows the camera. Frames that it refuses, or that lack something, change nothing. */
+static int follow(run_state *s, const t3r_capture_frame *frame)
+{
+    const capture_plan *plan = s->plan;
+    capture_account *a = s->account;
+    live_stream *stream = &s->stream;
+    live_row row;
+    int code = CLI_OK;
+    if (live_build_lacks(frame) != NULL) {
+        return CLI_OK;
+    }
+    if (!stream->is_open) {
+        clear_line(s);
+        code = live_stream_open(stream, plan->build, plan->stream, frame, plan->prints_table);
+        a->arena_bytes = stream->map.r.arena_bytes;
+    }
+    if (code != CLI_OK || !live_map_frame(&stream->map, frame, &row)) {
+        return code;
+    }
+    if (live_row_is_taken(&row)) {
+        add_time(&a->building, row.milliseconds);
+        a->builds++;
+        a->gaussians = row.report.gaussians;
+        a->scene_hash = row.hash;
+    }
+    clear_line(s);
+    return live_stream_row(stream, &row);
+}
+
+static int take_into_scene(run_state *s, const t3r_capture_frame *frame)
+{
+    return s->plan->stream != NULL ? follow(s, frame)
+           : s->plan->every > 0    ? build_repeatedly(s, frame)
+                                   : build_chosen(s, frame);
+}
+
 static int handle(run_state *s, t3r_capture_frame *frame)
 {
     const capture_plan *plan = s->plan;
@@ -281,7 +319,7 @@ static int handle(run_state *s, t3r_capture_frame *frame)
         add_time(&a->recording, (cli_now() - start) * 1e3);
     }
     if (code == CLI_OK && plan->build != NULL) {
-        code = plan->every > 0 ? build_repeatedly(s, frame) : build_chosen(s, frame);
+        code = take_into_scene(s, frame);
     }
     if (code != CLI_OK) {
         return code;
@@ -364,8 +402,8 @@ static int loop(run_state *s)
         code = cli_error(CLI_BAD_INPUT, "%s: gave no frame", plan->source);
     }
     if (code == CLI_OK && plan->build != NULL && s->account->builds == 0) {
-        code =
-            cli_error(CLI_BAD_INPUT, "%s: ended before all context frames were there: nothing was built", plan->source);
+        code = cli_error(CLI_BAD_INPUT, "%s: ended before %s: nothing was built", plan->source,
+                         plan->stream != NULL ? "the first keyframe" : "all context frames were there");
     }
     return code;
 }
@@ -412,6 +450,13 @@ int capture_run(t3r_capture *capture, const capture_plan *plan, capture_account 
         account->bytes = s.record->bytes;
         free(s.record);
     }
+    const double save_start = cli_now();
+    const int saved = live_stream_save(&s.stream); /* also after an error of the camera */
+    code = code == CLI_OK ? saved : code;
+    if (s.stream.is_open) {
+        add_time(&account->writing, (cli_now() - save_start) * 1e3);
+    }
+    live_stream_close(&s.stream);
     if (s.building) {
         if (code == CLI_OK && plan->every > 0 && account->builds > 0) {
             code = write_scene(&s);

@@ -10,6 +10,7 @@
 
 #include "capture/capture.h"
 #include "capture/live_build.h"
+#include "capture/live_stream.h"
 #include "capture/record.h"
 #include "import/poses/trajectory.h"
 
@@ -26,6 +27,8 @@ typedef struct capture_plan {
     double seconds;                        /* stop after this long; 0 = no limit */
     double reconnect_seconds;              /* how long to try to reopen a lost device */
     const reconstruction_options *build;   /* NULL = no Gaussians */
+    const live_options *stream;            /* a map that follows, by the settings of `build`; NULL = scenes of views */
+    bool prints_table;                     /* of the map's keyframes, on stdout */
     uint32_t every;    /* build again from each N-th frame and the one N before; 0: once, from build->context */
     const char *scene; /* file for the newest scene; NULL = none */
     int scene_flags;
@@ -50,9 +53,9 @@ typedef struct capture_account {
     uint64_t frames_hash;                       /* FNV-1a over the delivered frames, in order */
     uint32_t files;
     uint64_t bytes;
-    uint32_t builds, gaussians, valid_points;
+    uint32_t builds, gaussians, valid_points;       /* scenes; with a stream keyframes */
     uint32_t context[T3R_MAX_VIEWS], context_count; /* of the last build */
-    uint64_t scene_hash;                            /* of the last build, as in `build --json` */
+    uint64_t scene_hash; /* of the last build, as in `build --json`; of the last keyframe, as in its row */
     size_t arena_bytes;
     t3r_capture_counts counts;
 } capture_account;

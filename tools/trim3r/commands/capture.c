@@ -162,6 +162,8 @@ static int run(const capture_options *o, const trajectory *poses, const clock_of
         .seconds = o->seconds,
         .reconnect_seconds = o->reconnect_seconds,
         .build = o->scene != NULL ? &o->build : NULL,
+        .stream = o->streams ? &o->live : NULL,
+        .prints_table = !o->json && !o->quiet,
         .every = o->every,
         .scene = o->scene,
         .scene_flags = o->local ? SCENE_FILE_LOCAL : 0,
