@@ -34,6 +34,16 @@ def check_hashes(log, replayed, name):
           f"{name}: all stages as `replay --stream` has them: {hashes(log)}, {replayed['keyframes']}")
 
 
+def check_lines(path, replayed, name):
+    """Checks that the lines are the rows of a replay, but for times, stamps and what is measured for lines alone."""
+    own = ("ms", "stages_ms", "stamp_ns", "psnr_before")
+    with open(path) as file:
+        rows = [json.loads(line) for line in file]
+    check([{key: row[key] for key in row if key not in own} for row in rows] ==
+          [{key: row[key] for key in row if key not in own} for row in replayed["keyframes"]], f"{name}: a line a keyframe")
+    check(all(row["psnr_before"] > 15 for row in rows[1:]), f"{name}: the map is scored before each keyframe")
+
+
 def ply_rows(path):
     """Returns rows of x y z nx ny nz f_dc_0..2 opacity scale_0..2 rot_0..3, floats."""
     with open(path, "rb") as file:

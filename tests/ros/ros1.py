@@ -14,7 +14,7 @@ import tempfile
 import time
 
 from checks import check, done, skip
-from common import EVERY, FRAMES, GAUSSIANS, SIDE, check_clouds, check_hashes, check_points, walk
+from common import EVERY, FRAMES, GAUSSIANS, SIDE, check_clouds, check_hashes, check_lines, check_points, walk
 
 trim3r, node, play = sys.argv[1:]
 master = shutil.which("rosmaster")
@@ -38,17 +38,17 @@ def wait_for_port(port, process):
     check(False, "the master answers")
 
 
-def stop(process):
-    """Ends a process with SIGINT, as a user does; returns its output."""
-    process.send_signal(signal.SIGINT)
+def stop(process, number):
+    """Ends a process as a user or a supervisor does; returns its output."""
+    process.send_signal(number)
     return process.communicate(timeout=60)[0]
 
 
 def session(folder, environment, recording, replayed, kind):
     """Runs the node once; returns the output of the player and of the node."""
-    scene, cloud = f"{folder}/{kind}.ply", f"{folder}/{kind}.cloud"
+    scene, cloud, lines = f"{folder}/{kind}.ply", f"{folder}/{kind}.cloud", f"{folder}/{kind}.jsonl"
     given = {"width": SIDE, "height": SIDE, "gaussians": GAUSSIANS, "every": EVERY, "queue": 32,
-             "patience_ms": 20000.0, "world": "world", "scene": scene, "pose": kind}
+             "patience_ms": 20000.0, "world": "world", "scene": scene, "pose": kind, "lines": lines, "snapshot": 4}
     settings = [f"_{name}:={value}" for name, value in given.items()]
     running = subprocess.Popen([node, *settings], env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                text=True)
@@ -58,13 +58,14 @@ def session(folder, environment, recording, replayed, kind):
                                capture_output=True, text=True, timeout=120)
         check(running.poll() is None, "the node runs")
     finally:
-        log = stop(running)
+        log = stop(running, signal.SIGTERM if by_tf else signal.SIGINT)
     check(heard.returncode == 0, f"{kind}: {heard.stderr}{log}")
     check(running.returncode == 0, f"{kind}: the node ends well: {log}")
     check_hashes(log, replayed, kind)
     check_clouds(heard.stdout.splitlines(), replayed, kind)
     check(f"{FRAMES} colour images, {FRAMES} frames, 0 refused" in log and f"saved {scene}" in log, f"{kind}: {log}")
     check_points(cloud, scene, kind)
+    check_lines(lines, replayed, kind)
 
 
 with tempfile.TemporaryDirectory() as folder:

@@ -56,6 +56,15 @@ TEST(settings_are_checked)
     s = small();
     s.width = 1;
     refused(s, "width");
+    s = small();
+    s.resume = true;
+    refused(s, "state");
+    s = small();
+    s.snapshot = 1;
+    refused(s, "scene");
+    s = small();
+    s.scene = "scene.txt";
+    refused(s, ".ply");
 }
 
 /* Feeds six frames of a wall a metre away, seen by a camera that moves `step` millimetres to the right each; returns
@@ -68,7 +77,7 @@ static uint32_t keyframes_of(const keyframe_map_settings *s, int step_mm)
     assert_true(keyframe_map_arena_bytes(map) > 0);
     t3r_scene scene;
     assert_int_equal(keyframe_map_scene(map, &scene), T3R_ERR_STATE);
-    assert_int_equal(keyframe_map_save(map, "never.ply", error, sizeof error), -1);
+    assert_int_equal(keyframe_map_save(map, error, sizeof error), -1);
     assert_non_null(strstr(error, "no scene"));
     for (int i = 0; i < SIDE * SIDE; i++) {
         depth[i / SIDE][i % SIDE][0] = 1000 & 255;
@@ -94,7 +103,8 @@ static uint32_t keyframes_of(const keyframe_map_settings *s, int step_mm)
                              .rotation_q30 = {1 << 30}};
         camera.position_q32[0] = (INT64_C(1) << 32) * i * step_mm / 1000;
         keyframe_map_report report;
-        assert_int_equal(keyframe_map_frame(map, &frame, &camera, &report), T3R_OK);
+        assert_int_equal(keyframe_map_frame(map, i, &frame, &camera, &report, error, sizeof error), T3R_OK);
+        assert_string_equal(error, "");
         seen += report.keyframe;
         assert_int_equal(report.taken.keyframes, report.keyframe ? seen : 0);
         assert_true(report.keyframe == (report.hash != 0));
@@ -103,8 +113,6 @@ static uint32_t keyframes_of(const keyframe_map_settings *s, int step_mm)
     assert_int_equal(keyframe_map_scene(map, &scene), T3R_OK);
     assert_true(scene.count <= 100);
     point_cloud_write(&scene, points);
-    assert_int_equal(keyframe_map_save(map, "scene.txt", error, sizeof error), -1);
-    assert_non_null(strstr(error, ".ply"));
     keyframe_map_close(map);
     return seen;
 }

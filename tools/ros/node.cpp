@@ -35,6 +35,12 @@ uint64_t unit_from(double unit)
     return static_cast<uint64_t>(std::llround(std::ldexp(unit, 40)));
 }
 
+// The path in a parameter; empty: none.
+const char *path_from(const std::string &value)
+{
+    return value.empty() ? nullptr : value.c_str();
+}
+
 keyframe_map_settings map_settings(const parameters &p)
 {
     keyframe_map_settings s = keyframe_map_defaults();
@@ -50,6 +56,12 @@ keyframe_map_settings map_settings(const parameters &p)
     s.threads = count_from(p.threads, "threads");
     s.warm = p.warm ? 1 : 0;
     s.head = p.head.c_str();
+    s.max_ms = p.max_ms;
+    s.snapshot = count_from(p.snapshot, "snapshot");
+    s.resume = p.resume;
+    s.scene = path_from(p.scene);
+    s.state = path_from(p.state);
+    s.lines = path_from(p.lines);
     return s;
 }
 
@@ -124,7 +136,11 @@ node::~node()
 void node::frame(int64_t stamp_ns, const char *world, const t3r_frame &frame, const t3r_camera &camera, int64_t now_ns)
 {
     keyframe_map_report report;
-    const t3r_status status = keyframe_map_frame(map_, &frame, &camera, &report);
+    char error[error_bytes];
+    const t3r_status status = keyframe_map_frame(map_, stamp_ns, &frame, &camera, &report, error, sizeof error);
+    if (error[0] != '\0') {
+        out_.warn(error);
+    }
     if (status != T3R_OK) {
         const std::string reason = std::string("a frame is no keyframe: ") + t3r_error_text(status);
         frame_feed_warn(feed_, FRAME_FEED_COLOUR, reason.c_str(), now_ns);
@@ -153,7 +169,7 @@ bool node::save(std::string &told) const
         return false;
     }
     char error[error_bytes];
-    const bool done = keyframe_map_save(map_, parameters_.scene.c_str(), error, sizeof error) == 0;
+    const bool done = keyframe_map_save(map_, error, sizeof error) == 0;
     told = done ? parameters_.scene : error;
     return done;
 }

@@ -30,6 +30,11 @@ struct parameters {
     std::string pose = "pose"; // or odometry, transform, tf: the message type of poses
     std::string world;         // the frame of poses; empty: the first pose's, which tf does not have
     std::string scene;         // file for the scene at the end and for the service; empty: none
+    int snapshot = 0;          // keyframes between two writes of scene and state; 0: at the end and by the service
+    std::string state;         // file of the whole stream; empty: none
+    bool resume = false;       // continue from it, if it exists
+    std::string lines;         // file of JSON lines; empty: none
+    double max_ms = 0;         // time of a keyframe; 0: no limit
 };
 
 // Calls `visit(name, field)` for each, so that all wrappers have the same parameters.
@@ -54,6 +59,11 @@ template <class Visit> void visit_parameters(parameters &p, Visit visit)
     visit("pose", p.pose);
     visit("world", p.world);
     visit("scene", p.scene);
+    visit("snapshot", p.snapshot);
+    visit("state", p.state);
+    visit("resume", p.resume);
+    visit("lines", p.lines);
+    visit("max_ms", p.max_ms);
 }
 
 // The wrapper's services for the node.

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 // The node for ROS 1: topics, parameters and services of roscpp. docs/ros.md describes them.
+#include <csignal>
 #include <cstdio>
 #include <memory>
 
@@ -168,6 +169,7 @@ class shell : public trim3r_ros::outlet
 int main(int argc, char **argv)
 {
     ros::init(argc, argv, "trim3r");
+    std::signal(SIGTERM, [](int) { ros::requestShutdown(); }); // as roscpp does for SIGINT: the scene is saved
     try {
         const shell here;
         ros::spin();
