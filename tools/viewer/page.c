@@ -11,7 +11,7 @@
 
 /* Embedded by the build: page/view.html with marks for the others, such as <!--style-->. The module is empty if there
  * was no compiler for it. */
-extern const char viewer_html[], viewer_css[], viewer_js[], viewer_worker_js[], viewer_wasm[];
+extern const char viewer_html[], viewer_css[], viewer_js[], viewer_follow_js[], viewer_worker_js[], viewer_wasm[];
 extern const unsigned viewer_wasm_bytes;
 
 bool viewer_page_is_built(void)
@@ -88,6 +88,7 @@ static void write_json(FILE *out, const char *text)
 }
 
 typedef struct parts {
+    bool follows;
     const char *json;
     const uint8_t *bundle;
     size_t bundle_bytes;
@@ -107,12 +108,16 @@ static void write_part(FILE *out, const char *mark, const parts *p)
         fputs(viewer_worker_js, out);
     } else if (strncmp(mark, "<!--script-->", 13) == 0) {
         fputs(viewer_js, out);
+    } else if (strncmp(mark, "<!--follow-->", 13) == 0 && p->follows) {
+        fputs(viewer_follow_js, out);
+    } else if (strncmp(mark, "<!--connect-->", 14) == 0 && p->follows) {
+        fputs("; connect-src 'self'", out);
     }
 }
 
 int viewer_page_write(const viewer_page *page, FILE *out)
 {
-    parts p = {.json = NULL};
+    parts p = {.follows = page->follows};
     char *json = json_of(page);
     uint8_t *bytes = bundle_bytes(&page->data, &p.bundle_bytes);
     p.json = json;

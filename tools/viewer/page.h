@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The page of `trim3r view`: one HTML file that contains the runtime as WebAssembly, a bundle, and the viewer. It
- * fetches nothing. */
+ * fetches nothing, unless it follows a growing map. */
 #ifndef TRIM3R_TOOLS_VIEWER_PAGE_H
 #define TRIM3R_TOOLS_VIEWER_PAGE_H
 
@@ -22,6 +22,7 @@ typedef struct viewer_page {
     uint32_t gaussians;    /* the initial budget */
     bool hashed;           /* `hash` is the hash of that build here */
     uint64_t hash;
+    bool follows; /* the page asks its server for a growing map: follow.h */
 } viewer_page;
 
 /* Whether this program contains the module, which needs clang and wasm-ld at build time. */

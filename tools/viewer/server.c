@@ -9,6 +9,7 @@
 #include <poll.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/socket.h>
@@ -34,15 +35,15 @@ typedef struct client {
     char request[REQUEST_BYTES];
     char head[HEAD_BYTES];
     size_t head_bytes; /* 0: the request is not complete */
-    const char *body;
-    size_t body_bytes;
+    size_t body_bytes; /* to be sent */
+    server_answer answer;
 } client;
 
 typedef struct server {
     int listener;
     uint16_t port;
-    const char *page;
-    size_t page_bytes;
+    server_answer (*find)(void *user, const char *path);
+    void *user;
     client clients[CLIENTS_MOST];
     uint32_t count;
 } server;
@@ -83,32 +84,32 @@ static bool is_own_host(const char *request, uint16_t port)
     return false;
 }
 
-static void begin_answer(client *c, const char *status, const char *body, size_t count, bool with_body)
+static void begin_answer(client *c, const char *status, server_answer answer, bool with_body)
 {
-    c->head_bytes =
-        (size_t)snprintf(c->head, sizeof c->head,
-                         "HTTP/1.1 %s\r\nContent-Type: text/html; charset=utf-8\r\nContent-Length: %zu\r\n"
-                         "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
-                         status, count);
-    c->body = body;
-    c->body_bytes = with_body ? count : 0;
+    c->head_bytes = (size_t)snprintf(c->head, sizeof c->head,
+                                     "HTTP/1.1 %s\r\nContent-Type: %s\r\nContent-Length: %zu\r\n"
+                                     "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n"
+                                     "Connection: close\r\n\r\n",
+                                     status, answer.type != NULL ? answer.type : "text/plain", answer.bytes);
+    c->answer = answer;
+    c->body_bytes = with_body ? answer.bytes : 0;
     c->count = 0;
     c->until = cli_now() + ANSWER_SECONDS;
 }
 
 static void choose_answer(const server *s, client *c)
 {
-    const char *request = c->request;
-    const bool get = strncmp(request, "GET ", 4) == 0, head = strncmp(request, "HEAD ", 5) == 0;
-    const char *path = request + (get ? 4 : 5);
-    if (!is_own_host(request, s->port)) {
-        begin_answer(c, "403 Forbidden", "", 0, true);
+    static const server_answer nothing = {.type = NULL};
+    const bool get = strncmp(c->request, "GET ", 4) == 0, head = strncmp(c->request, "HEAD ", 5) == 0;
+    if (!is_own_host(c->request, s->port)) {
+        begin_answer(c, "403 Forbidden", nothing, true);
     } else if (!get && !head) {
-        begin_answer(c, "405 Method Not Allowed", "", 0, true);
-    } else if (strncmp(path, "/ ", 2) != 0) {
-        begin_answer(c, "404 Not Found", "", 0, true);
+        begin_answer(c, "405 Method Not Allowed", nothing, true);
     } else {
-        begin_answer(c, "200 OK", s->page, s->page_bytes, get);
+        char *path = c->request + (get ? 4 : 5);
+        path[strcspn(path, " \r")] = '\0';
+        const server_answer found = s->find(s->user, path);
+        begin_answer(c, found.type != NULL ? "200 OK" : "404 Not Found", found, get);
     }
 }
 
@@ -132,7 +133,7 @@ static bool read_some(const server *s, client *c)
 static bool send_some(client *c)
 {
     const bool in_head = c->count < c->head_bytes;
-    const char *from = in_head ? c->head + c->count : c->body + (c->count - c->head_bytes);
+    const char *from = in_head ? c->head + c->count : c->answer.body + (c->count - c->head_bytes);
     const size_t left = in_head ? c->head_bytes - c->count : c->head_bytes + c->body_bytes - c->count;
     const ssize_t sent = send(c->socket, from, left, MSG_NOSIGNAL);
     if (sent < 0) {
@@ -145,6 +146,9 @@ static bool send_some(client *c)
 static void drop(server *s, uint32_t index)
 {
     close(s->clients[index].socket);
+    if (s->clients[index].answer.owned) {
+        free(s->clients[index].answer.body);
+    }
     s->clients[index] = s->clients[--s->count];
 }
 
@@ -169,6 +173,7 @@ static int take_client(server *s)
     c->socket = socket;
     c->until = cli_now() + ASK_SECONDS;
     c->count = c->head_bytes = 0;
+    c->answer = (server_answer){.type = NULL};
     return 0;
 }
 
@@ -182,10 +187,11 @@ static int wait_ms(const server *s)
     return s->count == 0 ? -1 : (int)(fmax(least, 0) * 1e3) + 1;
 }
 
-int server_run(int listener, uint16_t port, const char *page, size_t page_bytes, char *error, size_t error_bytes)
+int server_run(int listener, uint16_t port, server_answer (*find)(void *user, const char *path), void *user,
+               char *error, size_t error_bytes)
 {
     static server s; /* the process has one */
-    s = (server){.listener = listener, .port = port, .page = page, .page_bytes = page_bytes};
+    s = (server){.listener = listener, .port = port, .find = find, .user = user};
     for (;;) {
         struct pollfd polled[1 + CLIENTS_MOST] = {{.fd = listener, .events = POLLIN}};
         for (uint32_t i = 0; i < s.count; i++) {

@@ -18,6 +18,7 @@
 #include "reconstruction/reconstruction.h"
 #include "scene/scene_file.h"
 #include "scene/scene_options.h"
+#include "viewer/follow.h"
 #include "viewer/page.h"
 #include "viewer/server.h"
 #include "viewer/viewpoints.h"
@@ -28,6 +29,7 @@ typedef struct view_options {
     const char *inputs[2];
     const char *scene, *recording; /* which of them is which; NULL = not given */
     const char *output;            /* NULL = the page is served */
+    const char *follow;            /* lines of the run that makes the scene; NULL = the scene does not change */
     uint16_t port;
     bool json;
     uint32_t compare[T3R_MAX_VIEWS], compare_count;
@@ -43,6 +45,10 @@ static const struct argp_option options[] = {
     {"compare", KEY_COMPARE, "LIST", 0,
      "further frames of the recording to look from and to compare with (the one in the middle of the first two context "
      "frames)",
+     0},
+    {"follow", OPTION_TO(view_options, follow), "RUN.jsonl", OPTION_READS,
+     "lines that replay --stream or capture --stream writes beside SCENE.ply: the page shows the map as it grows, the "
+     "camera's path, latency and decisions",
      0},
     {"json", OPTION_TO(view_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
@@ -63,6 +69,8 @@ static void check_options(struct argp_state *state, view_options *o)
         argp_error(state, "REC.mcap or SCENE.ply is missing");
     } else if (o->settings.config.allocate == T3R_ALLOCATE_GIVEN) {
         argp_error(state, "a page builds by trim3r's own allocations alone");
+    } else if (o->follow != NULL && (o->scene == NULL || o->recording != NULL || o->output != NULL)) {
+        argp_error(state, "--follow needs a scene alone, and a page that is served");
     } else if (o->compare_count > 0 && o->recording == NULL) {
         argp_error(state, "--compare needs a recording");
     }
@@ -107,6 +115,7 @@ static const struct argp argp = {
            "  trim3r view room.mcap --context 0,2 --keep 5% --head tiny\n"
            "  trim3r view scene.ply -o view.html\n"
            "  trim3r view scene.ply room.mcap --context 0,2 --port 8080\n"
+           "  trim3r view map.ply --follow run.jsonl\n"
            "\n"
            "The page builds scenes of a recording itself: a slider changes the budget, and mask, SuperClusters, "
            "texture and error are drawn over the frames. The first scene is built here as well, and the page "
@@ -189,7 +198,6 @@ static void tell(const view_options *o, const viewer_page *page, const char *key
     } else {
         printf("%s (Ctrl-C ends it)\n", where);
     }
-    fflush(stdout);
 }
 
 static int write_file(const view_options *o, const viewer_page *page)
@@ -236,14 +244,19 @@ static int serve(const view_options *o, const viewer_page *page)
     if (listener < 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    char *text = page_text(page, &bytes);
-    if (text != NULL) {
+    viewer_follow follow = {.page = page_text(page, &bytes),
+                            .data = &page->data,
+                            .map = o->follow != NULL ? o->scene : NULL,
+                            .lines = o->follow,
+                            .scene_flags = o->settings.scene_flags};
+    follow.page_bytes = bytes;
+    if (follow.page != NULL) {
         snprintf(address, sizeof address, "http://127.0.0.1:%u/", (unsigned)port);
         tell(o, page, "address", address, bytes);
-        (void)server_run(listener, port, text, bytes, error, sizeof error);
+        (void)server_run(listener, port, viewer_follow_find, &follow, error, sizeof error);
     }
-    const int code = cli_error(CLI_BAD_INPUT, "%s", text != NULL ? error : "out of memory");
-    free(text);
+    const int code = cli_error(CLI_BAD_INPUT, "%s", follow.page != NULL ? error : "out of memory");
+    free(follow.page);
     close(listener);
     return code;
 }
@@ -258,7 +271,7 @@ static int show(const view_options *o, const scene_file *scene, reconstruction *
 {
     char title[256];
     viewpoints v = {.count = 0};
-    viewer_page page = {.title = title, .names = v.names, .viewpoints = v.frames};
+    viewer_page page = {.title = title, .names = v.names, .viewpoints = v.frames, .follows = o->follow != NULL};
     snprintf(title, sizeof title, "%s%s%s", last_part(o->inputs[0]), o->inputs[1] != NULL ? " and " : "",
              o->inputs[1] != NULL ? last_part(o->inputs[1]) : "");
     int code = CLI_OK;
