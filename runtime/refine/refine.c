@@ -266,17 +266,18 @@ static void solve_chunk(void *context, uint32_t index, uint32_t worker)
  * on. */
 static const uint16_t settled_q15[T3R_FITTED_MOST + 1] = {32768, 16384, 10923, 8192, 6554};
 
-/* Opacity and place settle, or a Gaussian that is seen again and again would drift off its surface. Colour and shape
- * settle only where keyframes are remembered; else they follow the newest ones. */
+/* Opacity and place settle, or a Gaussian that is seen again and again would drift off its surface. Shape settles half
+ * as much. Where keyframes are remembered, all settles; else colour follows the newest ones. */
 static t3r_correction settled(const t3r_correction *whole, uint32_t fitted, bool remembers)
 {
     const int32_t share_q15 = settled_q15[T3R_MIN(fitted, (uint32_t)T3R_FITTED_MOST)];
+    const int32_t shape_q15 = remembers ? share_q15 : (share_q15 + (1 << 15)) / 2;
     t3r_correction c = *whole;
     for (int i = 0; i < 3 && remembers; i++) {
         c.colour_q7[i] = (int16_t)t3r_round_shift32(c.colour_q7[i] * share_q15, 15);
     }
-    for (int i = 0; i < (remembers ? 6 : 3); i++) {
-        c.step_q16[i] = (int16_t)t3r_round_shift32(c.step_q16[i] * share_q15, 15);
+    for (int i = 0; i < 6; i++) {
+        c.step_q16[i] = (int16_t)t3r_round_shift32(c.step_q16[i] * (i < 3 ? share_q15 : shape_q15), 15);
     }
     return c;
 }

@@ -193,10 +193,12 @@ static void fit_some(void *context, uint32_t begin, uint32_t end, uint32_t worke
         t3r_gaussian *g = &density->map->gaussians[i];
         t3r_map_record *record = &density->map->records[i];
         disc d;
+        if (record->idle <= T3R_MAX_VIEWS) { /* refinement may have changed it */
+            t3r_map_hold_width(g, record);
+        }
         if (record->idle != 0) {
             continue;
         }
-        t3r_map_hold_width(g, record);
         const uint32_t mean_q16 = disc_of(density, i, &d) ? mean_density_q16(density, &d) : 0;
         const int32_t off_q10 = mean_q16 > 0 ? log_density_q10(mean_q16) - d.density_q10 : 0;
         if (is_faint(g, record) || is_in_excess(record, record->density_q10 + off_q10)) {

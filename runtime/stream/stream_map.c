@@ -207,6 +207,7 @@ void t3r_map_hold_width(t3r_gaussian *g, const t3r_map_record *record)
 
 void t3r_map_thin(t3r_map *map, const t3r_map_cut *cut)
 {
+    const bool all_stay = cut->threshold == UINT16_MAX; /* none left, so that nothing thinned out */
     uint32_t ties = 0, kept = 0;
     for (uint32_t i = 0; i < map->count; i++) {
         ties += key_of(&map->records[i]) == cut->threshold;
@@ -223,7 +224,7 @@ void t3r_map_thin(t3r_map *map, const t3r_map_cut *cut)
             continue;
         }
         const int32_t density_q10 = (int32_t)cut->threshold - T3R_KEY_ZERO + record->wanted_q10 - record->faded_q10;
-        if (record->density_q10 - T3R_MAX(density_q10, T3R_LEAST_DENSITY_Q10) >= WIDEN_STEP_Q10) {
+        if (!all_stay && record->density_q10 - T3R_MAX(density_q10, T3R_LEAST_DENSITY_Q10) >= WIDEN_STEP_Q10) {
             t3r_map_set_density(&map->gaussians[i], record, density_q10);
         }
         move_to(map, i, kept++);

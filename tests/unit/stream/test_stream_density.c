@@ -157,7 +157,7 @@ TEST(widths_follow_the_density)
     }
 }
 
-/* Widths stay within a quarter of the spacing and four times it; those that no keyframe saw do not change. */
+/* Widths stay within a quarter of the spacing and four times it; those that refinement leaves alone do not change. */
 TEST(widths_are_bounded)
 {
     static site s;
@@ -166,7 +166,7 @@ TEST(widths_are_bounded)
         const double usual = width_of(&s.gaussians[middle]);
         s.gaussians[middle].factor_exponent = (int8_t)(s.gaussians[middle].factor_exponent + octaves);
         s.gaussians[middle + 1] = s.gaussians[middle];
-        s.records[middle + 1].idle = 1;
+        s.records[middle + 1].idle = T3R_MAX_VIEWS + 1;
         for (int n = 0; n < 3; n++) { /* four octaves at most in each */
             t3r_map_density_find(&s.density);
             t3r_map_density_fit(&s.density);

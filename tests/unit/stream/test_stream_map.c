@@ -137,6 +137,20 @@ TEST(widens_by_density)
     }
 }
 
+/* Where all stay nothing widens, however long a Gaussian was unseen: its neighbours are still there. */
+TEST(nothing_widens_where_all_stay)
+{
+    static site s;
+    uint64_t seed = 6;
+    fill(&s, &seed, 20000);
+    s.map.count = 1;
+    s.records[0] = (t3r_map_record){.key = 40000, .faded_q10 = 60000, .wanted_q10 = 5000, .density_q10 = -1000};
+    const double before = size_of(&s.gaussians[0]);
+    t3r_map_thin(&s.map, &(t3r_map_cut){.threshold = UINT16_MAX, .ties = 1});
+    assert_true(s.map.count == 1 && size_of(&s.gaussians[0]) == before);
+    assert_int_equal(s.records[0].density_q10, -1000);
+}
+
 /* The density halves, an octave, in every `half_life` consecutive keyframes, evenly. */
 TEST(fades_by_half_life)
 {
