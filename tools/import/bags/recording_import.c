@@ -119,8 +119,8 @@ static void say_lost(const t3r_recording *recording, char *text, size_t bytes)
                  cut.offset, cut.messages);
     } else {
         snprintf(text, bytes,
-                 "everything after %" PRIu64 " complete messages: %s is cut or damaged from byte %" PRIu64 " of %" PRIu64
-                 " on",
+                 "everything after %" PRIu64 " complete messages: %s is cut or damaged from byte %" PRIu64
+                 " of %" PRIu64 " on",
                  cut.messages, file, cut.offset, cut.file_bytes);
     }
 }
