@@ -265,6 +265,8 @@
     X(with, IMAGE_WORK, "undistortion and resize work",                                                                \
       T3R_BUILDS_(shape) * T3R_IMAGE_WORK_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape), T3R_WORKERS_(shape)),          \
       T3R_AT_IMAGE, T3R_AT_IMAGE)                                                                                      \
+    X(with, HELD, "planes of the replaced keyframe", T3R_STREAMS_(shape) * T3R_VIEW_PIXELS_(shape) * 6, T3R_AT_IMAGE,  \
+      T3R_AT_POINTMAP)                                                                                                 \
     X(with, STEREO_WORK, "stereo work",                                                                                \
       T3R_STEREO_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape), T3R_VIEWS_(shape), T3R_STEREO_(shape)), T3R_AT_DEPTH,   \
       T3R_AT_DEPTH)                                                                                                    \

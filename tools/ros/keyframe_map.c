@@ -125,7 +125,11 @@ t3r_status keyframe_map_frame(keyframe_map *map, const t3r_frame *frame, const t
     if (status != T3R_OK) {
         return status;
     }
-    *report = (keyframe_map_report){true, reconstruction_hash(&map->r), (cli_now() - start) * 1000, taken};
+    const bool keyframe = taken.refusal == T3R_REFUSAL_NONE;
+    *report = (keyframe_map_report){keyframe, reconstruction_hash(&map->r), (cli_now() - start) * 1000, taken};
+    if (!keyframe) {
+        return T3R_OK;
+    }
     map->begun = true;
     map->since = 0;
     return T3R_OK;

@@ -18,6 +18,7 @@
 #include "pictures/picture.h"
 #include "reconstruction/developed_frame.h"
 #include "reconstruction/reconstruction_error.h"
+#include "reconstruction/replay/frame_decisions.h"
 #include "reconstruction/replay/hash_report.h"
 
 #define TEXT_BYTES 4096
@@ -51,6 +52,7 @@ typedef struct stream_run {
     uint32_t keyframe_count;
     held_back *held;
     uint32_t held_count;
+    frame_decisions decisions;
 } stream_run;
 
 /* ---- held-back frames ------------------------------------------------------------------------------------------ */
@@ -94,6 +96,10 @@ static int draw_held(stream_run *s, uint32_t frame, const char *when, double *ps
     }
     const t3r_target target = {.width = width, .height = height, .rgb = s->drawn, .rgb_stride_bytes = width * 3};
     const t3r_status status = t3r_render(s->r.runtime, &camera, &target);
+    if (status == T3R_ERR_CAMERA) { /* out of the map's range: nothing to compare */
+        *psnr = *psnr_all = NAN;
+        return CLI_OK;
+    }
     if (status != T3R_OK) {
         return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
     }
@@ -132,48 +138,35 @@ static int draw_live(stream_run *s, uint32_t now)
 
 /* ---- the run ----------------------------------------------------------------------------------------------------- */
 
-static int take_keyframe(stream_run *s, uint32_t frame)
+/* Returns whether the frame became a keyframe. */
+static bool take_keyframe(stream_run *s, const t3r_capture_frame *captured)
 {
-    t3r_capture_frame captured;
-    int code = recorded_frame_read(s->recording, s->path, frame, &captured);
-    if (code != CLI_OK) {
-        return code;
-    }
     keyframe *k = &s->keyframes[s->keyframe_count];
-    k->frame = frame;
+    k->frame = captured->index;
     double start = cli_now();
-    t3r_status status = t3r_stream_keyframe(s->r.runtime, &captured.frame, &captured.camera, &k->report);
+    t3r_status status = t3r_stream_keyframe(s->r.runtime, &captured->frame, &captured->camera, &k->report);
     k->milliseconds = (cli_now() - start) * 1000;
     cli_progress_end();
-    if (status != T3R_OK) {
-        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
+    if (!frame_decisions_took(&s->decisions, captured->index, status, &k->report)) {
+        return false;
     }
     k->hash = reconstruction_hash(&s->r);
     s->keyframe_count++;
-    return CLI_OK;
+    return true;
 }
 
 /* Whether a frame is a keyframe: every so many frames, and when the overlap with the last keyframe is small. */
-static int is_keyframe(const stream_run *s, uint32_t frame, bool *wanted)
+static bool is_keyframe(const stream_run *s, const t3r_capture_frame *captured)
 {
-    uint32_t since = s->keyframe_count == 0 ? s->every : frame - s->keyframes[s->keyframe_count - 1].frame;
-    *wanted = since >= s->every;
-    if (*wanted || s->options->overlap_q8 == 0) {
-        return CLI_OK;
-    }
-    t3r_capture_frame captured;
-    int code = recorded_frame_read(s->recording, s->path, frame, &captured);
-    if (code != CLI_OK) {
-        return code;
-    }
+    const uint32_t since =
+        s->keyframe_count == 0 ? s->every : captured->index - s->keyframes[s->keyframe_count - 1].frame;
     uint32_t overlap_q8;
-    t3r_status status =
-        t3r_stream_overlap(s->r.runtime, &captured.camera, captured.frame.width, captured.frame.height, &overlap_q8);
-    if (status != T3R_OK) {
-        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
+    if (since >= s->every || s->options->overlap_q8 == 0) {
+        return since >= s->every;
     }
-    *wanted = overlap_q8 < s->options->overlap_q8;
-    return CLI_OK;
+    return t3r_stream_overlap(s->r.runtime, &captured->camera, captured->frame.width, captured->frame.height,
+                              &overlap_q8) == T3R_OK &&
+           overlap_q8 < s->options->overlap_q8;
 }
 
 static int run(stream_run *s)
@@ -181,23 +174,19 @@ static int run(stream_run *s)
     uint32_t frames = t3r_recording_frame_count(s->recording);
     s->keyframes = calloc((size_t)frames + 1, sizeof *s->keyframes);
     s->held = calloc((size_t)frames + 1, sizeof *s->held);
-    if (s->keyframes == NULL || s->held == NULL) {
+    if (s->keyframes == NULL || s->held == NULL || !frame_decisions_open(&s->decisions, frames)) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
     for (uint32_t frame = 0; frame < frames; frame++) {
-        bool wanted;
-        int wants = is_keyframe(s, frame, &wanted);
-        if (wants != CLI_OK) {
-            return wants;
+        t3r_capture_frame captured;
+        if (!frame_decisions_read(&s->decisions, s->recording, frame, &captured)) {
+            continue;
         }
-        if (!wanted) {
+        if (!is_keyframe(s, &captured)) {
             s->held[s->held_count++].frame = frame;
             continue;
         }
-        int code = take_keyframe(s, frame);
-        if (code == CLI_OK) {
-            code = draw_live(s, frame);
-        }
+        const int code = take_keyframe(s, &captured) ? draw_live(s, frame) : CLI_OK;
         if (code != CLI_OK) {
             return code;
         }
@@ -293,10 +282,13 @@ static void print_json(const stream_run *s, uint64_t hash, const expectation *e,
         json_add_integer(item, "crowded", k->report.crowded);
         json_add_integer(item, "points", k->report.points);
         json_add_integer(item, "shown", k->report.shown);
+        json_add_integer(item, "moved", k->report.moved);
+        frame_figures_add(item, &k->report);
         cJSON_AddNumberToObject(item, "ms", k->milliseconds);
         json_add_hash(item, "hash", k->hash);
         cJSON_AddItemToArray(keyframes, item);
     }
+    frame_decisions_add(root, &s->decisions);
     cJSON *held = cJSON_AddArrayToObject(root, "held_back");
     for (uint32_t i = 0; i < s->held_count; i++) {
         const held_back *h = &s->held[i];
@@ -335,6 +327,7 @@ static void print_text(const stream_run *s, uint64_t hash)
                k->report.gaussians, k->report.added, k->report.removed, k->report.crowded,
                100.0 * k->report.shown / k->report.points, k->milliseconds);
     }
+    frame_decisions_print(&s->decisions);
     means m = means_of(s);
     if (m.final_count > 0) {
         printf("held-back frames, mean PSNR where they have a depth | everywhere:");
@@ -405,6 +398,7 @@ int replay_stream(const replay_stream_options *options, const t3r_recording *rec
         }
         code = expectation_verdict(e, path, hash, difference, options->json);
     }
+    frame_decisions_close(&s.decisions);
     free(s.held);
     free(s.keyframes);
     free(s.depth);

@@ -74,10 +74,12 @@ static const struct argp_option options[] = {
 static void check_stream(struct argp_state *state, const replay_options *o)
 {
     const t3r_config *c = &o->settings.config, usual = t3r_default_config(T3R_MIN_SIDE, T3R_MIN_SIDE, 2, 1);
-    if (!o->streams &&
-        (o->stream.every > 0 || o->stream.at_hand > 0 || o->stream.overlap_q8 > 0 || c->half_life != usual.half_life ||
-         c->remember != usual.remember || o->stream.images != NULL || o->stream.output != NULL)) {
-        argp_error(state, "--every, --overlap, --at-hand, --half-life, --remember, --images and -o belong to --stream");
+    if (!o->streams && (o->stream.every > 0 || o->stream.at_hand > 0 || o->stream.overlap_q8 > 0 ||
+                        c->half_life != usual.half_life || c->remember != usual.remember || c->gate != usual.gate ||
+                        o->stream.images != NULL || o->stream.output != NULL)) {
+        argp_error(
+            state,
+            "--every, --overlap, --at-hand, --gate, --half-life, --remember, --images and -o belong to --stream");
     }
     scene_output_option(state, "-o", o->stream.output);
     if (o->streams &&
