@@ -174,7 +174,7 @@ void t3r_gate_measure(const t3r_runtime *rt, const t3r_view *view, t3r_stream_re
 #define LEAST_DEPTH_Q8 4u      /* 1/64 of the pixels */
 #define UNLIT_Q8 240u          /* 15/16 of the pixels are too dark, or too bright */
 #define GAUSSIANS_LEAST 32u    /* fewer say nothing */
-#define HIDDEN_Q8 192u         /* 3/4 of what the last keyframe saw */
+#define HIDDEN_Q8 160u         /* 5/8 of what the last keyframe saw */
 #define HIDDEN_LIKENESS_Q8 80u /* 5/16 */
 #define DISAGREEMENT_Q8 168u   /* good poses: at most 147; 0.7 m off: at least 180 */
 #define EXPOSURE_MOST_Q8 256   /* an octave either way, as far as gains reach */

@@ -11,7 +11,7 @@
 #define JUMP_METRES 0.7
 #define ABSURD_METRES 1e6
 #define HAND_METRES 0.15
-#define HAND_HALF 0.50 /* half axes of the hand over the picture's sides */
+#define HAND_HALF 0.55 /* half axes of the hand over the picture's sides */
 #define HAND_EDGE 0.15 /* width of its soft edge over its half axes */
 
 /* ---- pixels ------------------------------------------------------------------------------------------------------ */
