@@ -396,7 +396,7 @@ typedef struct t3r_stream_report {
     uint32_t recent;
     /* The share of these that are behind something less than a quarter as far, or without a depth, 0..256, in 1/256. */
     uint32_t hidden_q8;
-    /* The correlation of the hidden ones' colours with the frame's, as likeness_q8. */
+    /* The correlation of the hidden ones' colours with the frame's where it has no depth, as likeness_q8. */
     uint32_t hidden_likeness_q8;
     /* The level of the frame's green over the map's, log2 in 1/256, -1024..1020. */
     int32_t exposure_q8;

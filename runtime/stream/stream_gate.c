@@ -134,7 +134,8 @@ static void compare_gaussian(const t3r_pointmap *frame, const t3r_gaussian *g, c
         all->contradicted++;
     } else if (recent && (!measured || surface_q20 < at.z_q20 / 4)) {
         all->hidden++;
-        add_pair(&all->covered, luma, luma_of(view, at.pixel));
+        /* what is near cannot show the Gaussian: its colour says nothing */
+        add_pair(&all->covered, luma, measured ? 0 : luma_of(view, at.pixel));
     }
 }
 
