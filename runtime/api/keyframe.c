@@ -19,16 +19,10 @@ t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3
     T3R_REFUSE_UNLESS(rt->config.stream && t3r_has_head(rt, rt->config.head) &&
                           rt->config.allocate != T3R_ALLOCATE_GIVEN,
                       T3R_ERR_STATE);
-    if (frame->depth == NULL) {
-        return T3R_ERR_NO_DEPTH;
-    }
     rt->build = t3r_build_of(&rt->config); /* a restored arena may hold another build, whose head is not bound */
     t3r_stream_report outcome = {0};
     t3r_camera taken;
     t3r_status status = t3r_frame_check(rt, frame, camera, &taken); /* before any change */
-    if (status == T3R_OK) {
-        status = t3r_stream_follow(rt, &taken);
-    }
     if (status == T3R_OK) {
         status = t3r_stream_take(rt, frame, &taken, &outcome);
     }

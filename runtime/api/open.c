@@ -66,6 +66,7 @@ t3r_status t3r_reset(t3r_runtime *rt)
     rt->keyframes = 0;
     if (T3R_FEATURE_STREAMS) {
         rt->remembered = 0;
+        rt->gate = (t3r_gate){0};
     }
     rt->next_slot = 0;
     rt->strips = (t3r_strips){0};

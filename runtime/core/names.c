@@ -47,6 +47,23 @@ const char *t3r_depth_name(t3r_depth depth)
     return pick(names, T3R_DEPTH_COUNT, (uint32_t)depth);
 }
 
+const char *t3r_refusal_name(t3r_refusal refusal)
+{
+    static const char *const names[] = {
+        [T3R_REFUSAL_NONE] = "none",
+        [T3R_REFUSAL_NO_DEPTH] = "no depth",
+        [T3R_REFUSAL_FAR] = "far",
+        [T3R_REFUSAL_DARK] = "dark",
+        [T3R_REFUSAL_BRIGHT] = "bright",
+        [T3R_REFUSAL_EXPOSURE] = "exposure",
+        [T3R_REFUSAL_BLURRED] = "blurred",
+        [T3R_REFUSAL_COVERED] = "covered",
+        [T3R_REFUSAL_CONTRADICTS] = "contradicts",
+    };
+    EVERY_NAME(names, T3R_REFUSAL_COUNT);
+    return pick(names, T3R_REFUSAL_COUNT, (uint32_t)refusal);
+}
+
 const char *t3r_preset_name(t3r_preset preset)
 {
     static const char *const names[] = {

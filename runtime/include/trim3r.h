@@ -205,6 +205,21 @@ enum {
     T3R_PAIR_COUNT
 };
 
+/* The reason why a stream did not take a frame. */
+typedef uint32_t t3r_refusal;
+enum {
+    T3R_REFUSAL_NONE,
+    T3R_REFUSAL_NO_DEPTH,    /* fewer than 1/64 of the pixels have a measured depth */
+    T3R_REFUSAL_FAR,         /* the camera is more than 1,024 scene units from the origin */
+    T3R_REFUSAL_DARK,        /* more than 15/16 of the pixels are below level 16 */
+    T3R_REFUSAL_BRIGHT,      /* more than 15/16 of the pixels are above level 239 */
+    T3R_REFUSAL_EXPOSURE,    /* the frame is more than twice as bright as the map, or less than half as bright */
+    T3R_REFUSAL_BLURRED,     /* the frame has less than 3/8 of the detail of the last keyframes */
+    T3R_REFUSAL_COVERED,     /* something hides most of what the last keyframe saw, such as a hand on the lens */
+    T3R_REFUSAL_CONTRADICTS, /* the depths or colours are not those of the map from there: the pose is wrong */
+    T3R_REFUSAL_COUNT
+};
+
 /* Amounts of work for a build: t3r_set_preset(). */
 typedef uint32_t t3r_preset;
 enum {
@@ -344,7 +359,7 @@ typedef struct t3r_plan_info {
     t3r_plan_buffer buffers[T3R_BUFFER_COUNT];
 } t3r_plan_info;
 
-/* The changes of a stream's map by one keyframe. */
+/* The changes of a stream's map by one keyframe, and the figures by which the gate decides. */
 typedef struct t3r_stream_report {
     /* The number of keyframes so far, including this one. */
     uint32_t keyframes;
@@ -360,6 +375,31 @@ typedef struct t3r_stream_report {
     uint32_t points;
     /* The number of these that the map already showed. */
     uint32_t shown;
+    /* The reason why the frame was not taken: the map is unchanged, and all numbers above are 0, except keyframes and
+     * gaussians. T3R_REFUSAL_NONE = the frame is a keyframe. */
+    t3r_refusal refusal;
+    /* 1 = a new piece of the map begins with this keyframe, because it and the frames refused before it contradict the
+     * map; else 0. */
+    uint32_t moved;
+    /* The share of the pixels that have a measured depth, and of those below level 16 and above level 239, 0..256, in
+     * 1/256. */
+    uint32_t depth_q8, dark_q8, bright_q8;
+    /* The fine differences of the picture over its coarse ones, 0..1024, in 1/256: low where it is blurred. */
+    uint32_t detail_q8;
+    /* The number of compared Gaussians: those that the frame shows, and those that it sees through; at most 4,096. */
+    uint32_t compared;
+    /* The share of these that it sees through, 0..256, in 1/256. */
+    uint32_t contradicted_q8;
+    /* The correlation of the others' colours with the frame's, 0..256, in 1/256; 256 where the map has no contrast. */
+    uint32_t likeness_q8;
+    /* The number of Gaussians in the picture that the last keyframe saw, at most 4,096. */
+    uint32_t recent;
+    /* The share of these that are behind something less than a quarter as far, or without a depth, 0..256, in 1/256. */
+    uint32_t hidden_q8;
+    /* The correlation of the hidden ones' colours with the frame's where it has no depth, as likeness_q8. */
+    uint32_t hidden_likeness_q8;
+    /* The level of the frame's green over the map's, log2 in 1/256, -1024..1020. */
+    int32_t exposure_q8;
 } t3r_stream_report;
 
 typedef struct t3r_runtime t3r_runtime;
@@ -570,7 +610,7 @@ t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner
 /* Streams (t3r_config.stream): takes the next keyframe of a moving camera into the map, which is the scene in the
  * arena. The map holds at most the configuration's `gaussians` over any number of keyframes, and a call takes bounded
  * time. The caller chooses which frames are keyframes. t3r_render() and t3r_get_scene() work in between, and
- * t3r_reset() empties the map. `report` may be NULL; it is all 0 unless the keyframe was taken.
+ * t3r_reset() empties the map. `report` may be NULL; it is all 0 after an error.
  *
  * Pixels that the map already shows add nothing. The others compete with the Gaussians of the map by one score, texture
  * density against blue noise. Allocations by SuperClusters count as `pixel`, so that the score means the same in every
@@ -580,13 +620,19 @@ t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner
  * The map has the scale of the first keyframe. Its origin follows the camera by whole scene units, and Gaussians more
  * than 1,024 scene units away are discarded. A Gaussian's `view` is its keyframe's number modulo `views`.
  *
+ * With `gate`, a frame that cannot be trusted is refused: the call returns T3R_OK, report->refusal has the reason, and
+ * the map, the keyframes and their gains are as before. The next frame is then due. Exposure, blur, covering and
+ * contradiction may last: after 4 to 32 refusals in a row the next such frame is taken. If it contradicts the map, and
+ * its camera is within half a scene unit of the last one along each axis, a new piece of the map begins. Earlier
+ * keyframes are then forgotten, and earlier Gaussians leave as soon as a keyframe covers them and does not show them.
+ *
  * T3R_ERR_STATE: the arena is not one for streams, the learned head has no weights, or the allocation is `given`.
  * T3R_ERR_UNSUPPORTED: this library has no streams, or no lenses and the camera's distorts. T3R_ERR_FRAME.
- * T3R_ERR_CAMERA: out of range, or more than 1,024 scene units from the origin. These four change nothing.
- * T3R_ERR_NO_DEPTH, T3R_ERR_CAMERA of a lens that shows too little, and T3R_ERR_CANCELLED: the keyframe adds nothing.
- * Refinement then uses neither it nor the one of `views` keyframes ago, and Gaussians that it contradicts may be gone.
- * T3R_ERR_CANCELLED during refinement: the keyframe is taken, and passes are missing. The map stays valid and within
- * its cap after any error. */
+ * T3R_ERR_CAMERA: out of range, or the lens shows too little; without `gate` also more than 1,024 scene units from the
+ * origin. T3R_ERR_NO_DEPTH: without `gate`, a frame without a measured depth. These five change nothing.
+ * T3R_ERR_CANCELLED: the keyframe adds nothing; from its comparison with earlier keyframes on, refinement uses neither
+ * it nor the one of `views` keyframes ago, and Gaussians that it contradicts may be gone. T3R_ERR_CANCELLED during
+ * refinement: the keyframe is taken, and passes are missing. The map stays valid and within its cap after any error. */
 t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                                t3r_stream_report *report);
 
@@ -658,6 +704,7 @@ const char *t3r_depth_name(t3r_depth depth);
 const char *t3r_preset_name(t3r_preset preset);
 const char *t3r_wavelet_name(t3r_wavelet wavelet);
 const char *t3r_pixel_format_name(t3r_pixel_format format);
+const char *t3r_refusal_name(t3r_refusal refusal);
 /* Returns whether two views can be matched, or the reason why not, as text for people. Never NULL. */
 const char *t3r_pair_text(t3r_pair pair);
 

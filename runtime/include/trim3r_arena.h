@@ -261,7 +261,9 @@
 #define T3R_BUFFERS_FROM_IMAGE_(X, with, shape)                                                                        \
     X(with, COLOUR, "colour planes", T3R_ALL_PIXELS_(shape) * 3, T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))        \
     X(with, DEPTH, "depth planes", T3R_ALL_PIXELS_(shape) * 2, T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))          \
-    X(with, VALIDITY, "validity planes", T3R_ALL_PIXELS_(shape), T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))
+    X(with, VALIDITY, "validity planes", T3R_ALL_PIXELS_(shape), T3R_AT_IMAGE, T3R_LAST_(shape, T3R_AT_REFINE))        \
+    X(with, HELD, "planes of the replaced keyframe", T3R_STREAMS_(shape) * T3R_VIEW_PIXELS_(shape) * 6, T3R_AT_IMAGE,  \
+      T3R_AT_POINTMAP)
 #define T3R_BUFFERS_IN_IMAGE_(X, with, shape)                                                                          \
     X(with, IMAGE_WORK, "undistortion and resize work",                                                                \
       T3R_BUILDS_(shape) * T3R_IMAGE_WORK_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape), T3R_WORKERS_(shape)),          \

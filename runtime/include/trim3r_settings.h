@@ -111,6 +111,10 @@
      * without views and with depth by stereo. */                                                                      \
     X(stream, toggle, 0, 1, 0, STREAMS, 1, FIELD, NULL,                                                                \
       "let a map of at most `gaussians` follow a camera with a depth sensor")                                          \
+    /* 1 = a frame is measured before it touches the map, and refused if it cannot be trusted: t3r_refusal lists the   \
+     * reasons. 0 = every frame with a depth is taken. Ignored without `stream`. */                                    \
+    X(gate, toggle, 0, 1, 1, NONE, 0, STREAM, "gate",                                                                  \
+      "refuse frames that are dark, blurred, covered, without depth, or contradict the map")                           \
     X(half_life, number, 0, 1024, 32, NONE, 0, STREAM, "half-life",                                                    \
       "number of keyframes that halve the density of what they do not see; 0 = nothing fades")                         \
     /* 2 = a pass compares one pixel in 2 x 2, another one in each pass and view, for about a quarter of the time. 1 = \

@@ -53,6 +53,14 @@ typedef struct t3r_strips {
     uint32_t rows, depth_rows;
 } t3r_strips;
 
+/* What a stream's gate knows of the frames before. Any values are safe. */
+typedef struct t3r_gate {
+    int32_t refused_at_q20[3]; /* camera of the frame refused last, scene units */
+    uint16_t detail_q8;        /* mean of the keyframes' figures; 0 = none yet */
+    uint8_t refused;           /* frames in a row, for reasons that may last */
+    uint8_t unused;
+} t3r_gate;
+
 struct t3r_runtime {
     uint32_t magic;
     uint32_t bits_epoch;
@@ -85,6 +93,7 @@ struct t3r_runtime {
     uint32_t next_slot;  /* the view that a stream's next keyframe replaces; with `warm`, that the next view replaces
                             when all slots are used */
     uint32_t remembered; /* keyframes that a stream keeps without planes, at most config.remember */
+    t3r_gate gate;       /* 0 without a stream */
     t3r_reuse reuse;     /* empty without `warm` */
     uint32_t follows;    /* 1 = the last analysis reused something */
     t3r_strips strips;   /* 0 unless a view arrives in strips */

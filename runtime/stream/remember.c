@@ -5,7 +5,6 @@
 #include "core/camera.h"
 #include "core/memory.h"
 #include "pointmap/reproject.h"
-#include "refine/refine.h"
 #include "state/remembered.h"
 
 /* Sets the view's lens and pose to the keyframe's. Returns false if it is out of the map's range. */
@@ -83,39 +82,32 @@ static uint32_t weight_of(uint32_t number)
     return number & (0u - number);
 }
 
-/* Sets bit `bit` of each Gaussian that the view shows. */
-static void add_shown(const t3r_map *map, const t3r_view *view, const uint16_t *pixels, uint32_t bit,
-                      uint32_t *shown_by)
-{
-    for (uint32_t i = 0; i < map->count; i++) {
-        shown_by[i] |= (uint32_t)shows(view, pixels, &map->gaussians[i], &map->records[i]) << bit;
-    }
-}
-
-/* Returns the remembered keyframe that the map needs least, other than the one in the slot: by the Gaussians that it
- * shows, times its weight. */
-static uint32_t least_needed(const t3r_runtime *rt, uint32_t slot)
+/* Returns the remembered keyframe that the map needs least, if `old` is remembered too: by the Gaussians that it shows,
+ * times its weight. Not inlined, so that its views are not on the stack later. */
+static __attribute__((noinline)) uint32_t least_needed(const t3r_runtime *rt, const t3r_view *old,
+                                                       const t3r_camera *camera)
 {
     const t3r_map map = t3r_map_of(rt);
-    uint32_t *shown_by = t3r_refine_room(rt).order; /* one bit per keyframe; the memory is unused between keyframes */
-    memset(shown_by, 0, map.count * sizeof *shown_by);
-    t3r_view view;
+    t3r_view views[T3R_MAX_REMEMBERED], replaced;
+    const bool stands = stand_at(rt, camera, &replaced);
+    replaced.validity = old->validity;
     for (uint32_t k = 0; k < rt->remembered; k++) {
-        t3r_remembered *keyframe = t3r_remembered_at(rt, k);
-        if (!stand_at(rt, &keyframe->camera, &view)) {
+        if (!stand_at(rt, &t3r_remembered_at(rt, k)->camera, &views[k])) {
             return k;
         }
-        add_shown(&map, &view, t3r_remembered_pixels(keyframe), k, shown_by);
-    }
-    if (stand_at(rt, &rt->camera[slot], &view)) {
-        view.validity = t3r_view_of(rt, slot).validity;
-        add_shown(&map, &view, NULL, rt->remembered, shown_by);
     }
     uint64_t need_q8[T3R_MAX_REMEMBERED] = {0};
     for (uint32_t i = 0; i < map.count; i++) {
-        const uint32_t part_q8 = 256 / T3R_MAX(t3r_ones(shown_by[i]), 1u);
+        const t3r_gaussian *g = &map.gaussians[i];
+        uint32_t shown_by = 0; /* a bit for each remembered keyframe, and one for the old one */
         for (uint32_t k = 0; k < rt->remembered; k++) {
-            need_q8[k] += (shown_by[i] >> k & 1) * part_q8;
+            const uint16_t *pixels = t3r_remembered_pixels(t3r_remembered_at(rt, k));
+            shown_by |= (uint32_t)shows(&views[k], pixels, g, &map.records[i]) << k;
+        }
+        shown_by |= (uint32_t)(stands && shows(&replaced, NULL, g, &map.records[i])) << rt->remembered;
+        const uint32_t part_q8 = 256 / T3R_MAX(t3r_ones(shown_by), 1u);
+        for (uint32_t k = 0; k < rt->remembered; k++) {
+            need_q8[k] += (shown_by >> k & 1) * part_q8;
         }
     }
     uint32_t least = 0;
@@ -126,21 +118,20 @@ static uint32_t least_needed(const t3r_runtime *rt, uint32_t slot)
     return least;
 }
 
-void t3r_remember(t3r_runtime *rt, uint32_t slot)
+void t3r_remember(t3r_runtime *rt, const t3r_view *old, const t3r_camera *camera, const uint16_t gain_q14[3])
 {
-    const t3r_view view = t3r_view_of(rt, slot);
-    if (rt->config.remember == 0 || slot >= rt->views || !shows_anything(&view)) {
+    if (rt->config.remember == 0 || !shows_anything(old)) {
         return;
     }
-    const uint32_t number = rt->keyframes - rt->views + 1; /* the oldest of the live ones */
-    const uint32_t at = rt->remembered < rt->config.remember ? rt->remembered++ : least_needed(rt, slot);
+    const uint32_t number = rt->keyframes - rt->config.views + 1; /* the oldest of the live ones */
+    const uint32_t at = rt->remembered < rt->config.remember ? rt->remembered++ : least_needed(rt, old, camera);
     t3r_remembered *keyframe = t3r_remembered_at(rt, at);
-    *keyframe = (t3r_remembered){.camera = rt->camera[slot], .number = number};
-    memcpy(keyframe->gain_q14, rt->gain_q14[slot], sizeof keyframe->gain_q14);
+    *keyframe = (t3r_remembered){.camera = *camera, .number = number};
+    memcpy(keyframe->gain_q14, gain_q14, sizeof keyframe->gain_q14);
     uint16_t *pixels = t3r_remembered_pixels(keyframe);
-    for (uint32_t y = 0; y < view.height; y++) {
-        for (uint32_t x = 0; x < view.width; x++) {
-            *pixels++ = packed(&view, x, y);
+    for (uint32_t y = 0; y < old->height; y++) {
+        for (uint32_t x = 0; x < old->width; x++) {
+            *pixels++ = packed(old, x, y);
         }
     }
 }

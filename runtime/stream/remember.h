@@ -6,10 +6,10 @@
 #include "stream_map.h"
 #include "trim3r.h"
 
-/* Remembers the keyframe of the slot before another takes its planes. Without room it replaces the keyframe that the
- * map needs least: a Gaussian counts in equal parts for all that show it about as finely as its own keyframe. Does
- * nothing with `remember` 0, or if the slot holds no depth. */
-void t3r_remember(t3r_runtime *rt, uint32_t slot);
+/* Remembers the keyframe whose planes are in `old` before it leaves the live ones. Without room it replaces the
+ * keyframe that the map needs least: a Gaussian counts in equal parts for all that show it about as finely as its own
+ * keyframe. Does nothing with `remember` 0, or if the keyframe has no depth. */
+void t3r_remember(t3r_runtime *rt, const t3r_view *old, const t3r_camera *camera, const uint16_t gain_q14[3]);
 
 /* Keeps each Gaussian that a remembered keyframe shows about as finely as its own below the idle count at which
  * refinement omits it. */

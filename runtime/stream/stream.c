@@ -14,6 +14,7 @@
 #include "core/memory.h"
 #include "core/scene_frame.h"
 #include "head/head_views.h"
+#include "held.h"
 #include "image/develop.h"
 #include "pointmap/exposure.h"
 #include "pointmap/pointmap.h"
@@ -23,6 +24,7 @@
 #include "stages.h"
 #include "state/state.h"
 #include "stream_density.h"
+#include "stream_gate.h"
 #include "stream_map.h"
 #include "superclusters/one_cluster.h"
 
@@ -46,29 +48,26 @@ static void rebase(t3r_runtime *rt, const int32_t position_q20[3])
     rt->gaussians = map.count;
 }
 
-t3r_status t3r_stream_follow(t3r_runtime *rt, const t3r_camera *camera)
+/* Moves the map's origin after the camera, in the map's range, if it is far away. */
+static void follow(t3r_runtime *rt, const t3r_camera *camera)
 {
-    if (rt->keyframes == 0) {
-        return T3R_OK;
-    }
     t3r_pose pose;
-    const t3r_status status = t3r_pose_in_scene(camera, &rt->frame, &pose);
     bool far = false;
-    for (int i = 0; i < 3 && status == T3R_OK; i++) {
+    (void)t3r_pose_in_scene(camera, &rt->frame, &pose);
+    for (int i = 0; i < 3; i++) {
         far = far || t3r_abs32(pose.position_q20[i]) > REBASE_Q20;
     }
     if (far) {
         rebase(rt, pose.position_q20);
     }
-    return status;
 }
 
-/* Ignores retained keyframes out of range of the new origin. */
-static void leave_far_keyframes(t3r_runtime *rt, const t3r_view *views, uint32_t slot)
+/* Ignores retained keyframes out of range of the new origin, or with `all` every one but the slot's. */
+static void leave_keyframes(t3r_runtime *rt, const t3r_view *views, uint32_t slot, bool all)
 {
     for (uint32_t v = 0; v < rt->views; v++) {
         t3r_pose pose;
-        if (t3r_pose_in_scene(&rt->camera[v], &rt->frame, &pose) != T3R_OK) {
+        if ((all && v != slot) || t3r_pose_in_scene(&rt->camera[v], &rt->frame, &pose) != T3R_OK) {
             memset(views[v].validity, T3R_NO_DEPTH, (size_t)views[v].width * views[v].height);
             rt->camera[v] = rt->camera[slot];
         }
@@ -190,15 +189,20 @@ static t3r_status join_map(t3r_runtime *rt, t3r_view *views, uint32_t slot, t3r_
 
 /* --- the whole keyframe ----------------------------------------------------------------------------------------- */
 
+/* Makes all Gaussians and keyframes those of an earlier piece of the map. */
+static void begin_piece(t3r_runtime *rt)
+{
+    t3r_map map = t3r_map_of(rt);
+    t3r_map_begin_piece(&map);
+    rt->remembered = 0;
+}
+
 /* Takes the keyframe whose planes are in the slot. Not inlined, like refine_map(), so that only one of them has its
  * views on the stack. */
 static __attribute__((noinline)) t3r_status take(t3r_runtime *rt, uint32_t slot, t3r_stream_report *report)
 {
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
-    if (!t3r_is_reliable_anywhere(&views[slot])) {
-        return T3R_ERR_NO_DEPTH;
-    }
     t3r_hash_image(rt, views, slot, slot + 1);
     t3r_status status = t3r_find_depth(rt, views, alone(slot));
     if (status == T3R_OK && rt->keyframes == 0) {
@@ -207,7 +211,10 @@ static __attribute__((noinline)) t3r_status take(t3r_runtime *rt, uint32_t slot,
     if (status != T3R_OK) {
         return status;
     }
-    leave_far_keyframes(rt, views, slot);
+    if (report->moved != 0) {
+        begin_piece(rt);
+    }
+    leave_keyframes(rt, views, slot, report->moved != 0);
     t3r_views_of(rt, views); /* poses in the current frame */
     status = compare_keyframes(rt, views, slot);
     return status == T3R_OK ? join_map(rt, views, slot, report) : status;
@@ -225,31 +232,86 @@ static __attribute__((noinline)) t3r_status refine_map(t3r_runtime *rt)
     return status;
 }
 
-t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_stream_report *report)
+/* --- a frame: taken or refused ---------------------------------------------------------------------------------- */
+
+/* Measures the developed frame in the slot and decides. */
+static __attribute__((noinline)) t3r_status judge(t3r_runtime *rt, uint32_t slot, t3r_stream_report *report)
 {
-    const uint32_t slot = rt->next_slot, views = rt->views;
-    const t3r_camera replaced = rt->camera[slot];
-    const uint64_t replaced_unit_q40 = rt->depth_unit_q40[slot];
-    *report = (t3r_stream_report){0};
-    t3r_remember(rt, slot);
-    t3r_status status = develop(rt, slot, frame, camera);
-    if (status == T3R_OK) {
-        rt->views = T3R_MAX(views, slot + 1);
-        status = take(rt, slot, report);
+    const t3r_view view = t3r_view_of(rt, slot);
+    if (!rt->config.gate) {
+        return t3r_is_reliable_anywhere(&view) ? T3R_OK : T3R_ERR_NO_DEPTH;
     }
-    if (status != T3R_OK) { /* the slot's planes no longer hold a keyframe */
-        const t3r_view view = t3r_view_of(rt, slot);
-        memset(view.validity, T3R_NO_DEPTH, (size_t)view.width * view.height);
-        rt->views = views;
-        rt->camera[slot] = replaced;
-        rt->depth_unit_q40[slot] = replaced_unit_q40;
+    t3r_gate_measure(rt, &view, report);
+    report->refusal = t3r_gate_decide(rt, &view, report);
+    return T3R_OK;
+}
+
+static void count_map(const t3r_runtime *rt, t3r_stream_report *report)
+{
+    report->keyframes = rt->keyframes;
+    report->gaussians = rt->gaussians;
+}
+
+/* Whether the camera is in the range of the map. */
+static bool is_in_range(const t3r_runtime *rt, const t3r_camera *camera)
+{
+    t3r_pose pose;
+    return rt->keyframes == 0 || t3r_pose_in_scene(camera, &rt->frame, &pose) == T3R_OK;
+}
+
+/* Refuses a frame whose pixels need not be looked at. */
+static t3r_status look_ahead(const t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
+                             t3r_refusal *refusal)
+{
+    const bool far = !is_in_range(rt, camera);
+    if (!rt->config.gate) {
+        return far ? T3R_ERR_CAMERA : frame->depth == NULL ? T3R_ERR_NO_DEPTH : T3R_OK;
+    }
+    *refusal = far ? T3R_REFUSAL_FAR : frame->depth == NULL ? T3R_REFUSAL_NO_DEPTH : T3R_REFUSAL_NONE;
+    return T3R_OK;
+}
+
+/* Takes the developed frame, which the gate accepted. */
+static t3r_status enter(t3r_runtime *rt, const t3r_held *held, t3r_stream_report *report)
+{
+    if (rt->keyframes > 0) {
+        follow(rt, &rt->camera[held->slot]);
+    }
+    if (held->slot < held->views) {
+        const t3r_view old = t3r_held_view(rt);
+        t3r_remember(rt, &old, &held->camera, rt->gain_q14[held->slot]);
+    }
+    const t3r_status status = take(rt, held->slot, report);
+    if (status != T3R_OK) {
+        t3r_give_up(rt, held);
         *report = (t3r_stream_report){0};
         return status;
     }
-    rt->next_slot = (slot + 1) % rt->config.views;
+    rt->next_slot = (held->slot + 1) % rt->config.views;
     rt->keyframes += rt->keyframes < UINT32_MAX;
     rt->has_scene = 1;
-    report->keyframes = rt->keyframes;
-    report->gaussians = rt->gaussians;
+    count_map(rt, report);
     return rt->config.refine > 0 ? refine_map(rt) : T3R_OK;
+}
+
+t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_stream_report *report)
+{
+    *report = (t3r_stream_report){0};
+    t3r_status status = look_ahead(rt, frame, camera, &report->refusal);
+    if (status == T3R_OK && report->refusal == T3R_REFUSAL_NONE) {
+        const t3r_held held = t3r_hold(rt, rt->next_slot);
+        status = develop(rt, held.slot, frame, camera);
+        if (status == T3R_OK) {
+            rt->views = T3R_MAX(held.views, held.slot + 1);
+            status = judge(rt, held.slot, report);
+        }
+        if (status == T3R_OK && report->refusal == T3R_REFUSAL_NONE) {
+            return enter(rt, &held, report);
+        }
+        t3r_put_back(rt, &held);
+    }
+    if (status == T3R_OK) {
+        count_map(rt, report);
+    }
+    return status;
 }

@@ -5,10 +5,7 @@
 
 #include "trim3r.h"
 
-/* Moves the map's origin after the checked camera if it is far away. An error: the camera is beyond the map's range. */
-t3r_status t3r_stream_follow(t3r_runtime *rt, const t3r_camera *camera);
-
-/* Takes the checked keyframe into the map. `camera` comes from t3r_frame_check(). */
+/* Takes the checked frame into the map, or refuses it: report->refusal. `camera` comes from t3r_frame_check(). */
 t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                            t3r_stream_report *report);
 

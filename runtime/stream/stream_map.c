@@ -40,7 +40,9 @@ static look look_at(const t3r_gaussian *g, const t3r_map_record *record, const t
         int32_t wider_q8 = t3r_grain_q8(view, projected.z_q20) - record->grain_q8;
         return wider_q8 < -FINER_Q8 ? COARSE : wider_q8 <= T3R_AFAR_Q8 ? SEEN : SEEN_AFAR;
     }
-    return t3r_seen_through(keyframe, &projected, false) ? CONTRADICTED : HIDDEN;
+    /* a Gaussian of an earlier piece has no place that can be trusted: it may not hide either */
+    const bool leaves = record->fitted == T3R_EARLIER_PIECE || t3r_seen_through(keyframe, &projected, false);
+    return leaves ? CONTRADICTED : HIDDEN;
 }
 
 static void move_to(t3r_map *map, uint32_t from, uint32_t to)
@@ -70,7 +72,9 @@ uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyfra
             continue;
         }
         record->idle = seen == SEEN ? 0 : (uint8_t)T3R_MIN(record->idle + 1, UINT8_MAX);
-        record->fitted = (uint8_t)T3R_MIN(record->fitted + (seen == SEEN), T3R_FITTED_MOST);
+        if (seen == SEEN) {
+            record->fitted = (uint8_t)T3R_MIN(record->fitted + 1, T3R_FITTED_MOST);
+        }
         record->faded_q10 =
             seen == SEEN || seen == SEEN_AFAR ? 0 : (uint16_t)T3R_MIN(record->faded_q10 + fade, (uint32_t)UINT16_MAX);
         move_to(map, i, kept++);
@@ -264,6 +268,13 @@ uint32_t t3r_map_append(t3r_map *map, uint32_t count, const t3r_pointmap *keyfra
         };
     }
     return map->count - before;
+}
+
+void t3r_map_begin_piece(t3r_map *map)
+{
+    for (uint32_t i = 0; i < map->count; i++) {
+        map->records[i].fitted = T3R_EARLIER_PIECE;
+    }
 }
 
 void t3r_map_move(t3r_map *map, const int64_t by_q20[3])

@@ -66,6 +66,10 @@ void t3r_map_thin(t3r_map *map, const t3r_map_cut *cut);
 uint32_t t3r_map_append(t3r_map *map, uint32_t count, const t3r_pointmap *keyframe, const t3r_budget_settings *settings,
                         const t3r_cluster *clusters);
 
+/* Makes all Gaussians those of an earlier piece: a later keyframe that measures their pixel and does not see them
+ * removes them. */
+void t3r_map_begin_piece(t3r_map *map);
+
 /* Moves all positions; Gaussians that leave the frame's range are removed. */
 void t3r_map_move(t3r_map *map, const int64_t by_q20[3]);
 

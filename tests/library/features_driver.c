@@ -118,6 +118,7 @@ static void print_lost_keyframe(void)
     static uint8_t before[sizeof arena];
     t3r_config config = plain_config();
     config.stream = 1;
+    config.gate = 0; /* the frame is black */
     t3r_camera camera;
     const t3r_frame frame = black_frame(&camera);
     const t3r_camera lens = wide_angle(camera);

@@ -59,6 +59,7 @@ static t3r_config stream_config(void)
     t3r_config c = t3r_default_config(W, H, AT_HAND, CAP);
     c.stream = 1;
     c.refine = 2;
+    c.gate = 0; /* strides are long, and pictures small */
     return c;
 }
 

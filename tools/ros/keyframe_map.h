@@ -48,7 +48,7 @@ typedef struct keyframe_map_report {
     bool keyframe; /* the frame became a keyframe */
     uint64_t hash; /* of all stages so far: what `trim3r replay --stream --every 1` reports for a keyframe */
     double milliseconds;
-    t3r_stream_report taken; /* for a keyframe */
+    t3r_stream_report taken; /* of a frame that was due: a keyframe, or the reason why it was refused */
 } keyframe_map_report;
 
 /* Adds the next frame in time, and writes the files that are due; a reason why they cannot be written is in error[],

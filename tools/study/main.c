@@ -10,6 +10,7 @@ static const trim3r_command commands[] = {
     {"eval", command_eval_methods, NULL},
     {"chart", command_chart, "plot scores against time and bytes, as a picture or a report"},
     {"stress", command_stress, "measure each method under noise, wrong poses and hard scenes"},
+    {"trouble", command_trouble, "put a trouble of a moving camera into a recording"},
     {"quantize", command_quantize, "turn a trained head into integers: a weight file or a C source"},
 };
 

@@ -18,7 +18,7 @@ static t3r_config stream_config(uint32_t remember)
     c.stream = 1;
     c.refine = 2;
     c.remember = remember;
-    c.exposure = c.fill_radius = c.bridge_radius = 0;
+    c.gate = c.exposure = c.fill_radius = c.bridge_radius = 0;
     return c;
 }
 

@@ -63,6 +63,7 @@ TEST(each_setting)
     t3r_config base = t3r_default_config(SIDE, SIDE, 2, BUDGET);
     base.stream = 1;
     base.refine = 1;
+    base.gate = 0; /* the pictures have little to do with each other */
     const uint32_t usually = run(&base, usual);
     t3r_config other[14];
     size_t n = 0;
@@ -102,6 +103,7 @@ TEST(fitted_passes_have_a_bound)
     static t3r_gaussian fitted[BUDGET], bound[BUDGET], more[BUDGET];
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
     config.stream = 1;
+    config.gate = 0;
     config.fit_passes = 1;
     config.refine = 2 * T3R_STREAM_REFINE;
     const uint32_t count = run(&config, fitted);

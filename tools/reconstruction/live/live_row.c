@@ -11,6 +11,7 @@
 
 typedef enum field_kind {
     FIELD_COUNT,
+    FIELD_SIGNED,
     FIELD_SHARE, /* a count; in the table percent of the points */
     FIELD_STAMP,
     FIELD_NUMBER, /* a double; NaN and infinity are null */
@@ -33,14 +34,27 @@ static const struct {
 } fields[] = {
     {"frame", "frame", 7, FIELD_COUNT, AT(frame), "", "number of the frame in the source, from 0"},
     {"stamp_ns", NULL, 0, FIELD_STAMP, AT(stamp_ns), "ns", "time of the frame, by the source's clock"},
-    {"decision", NULL, 0, FIELD_DECISION, AT(status), "", "taken, or why the frame is no keyframe"},
-    {"keyframe", NULL, 0, FIELD_COUNT, AT(report.keyframes), "", "number of keyframes so far; 0: it is none"},
+    {"decision", NULL, 0, FIELD_DECISION, AT(loss), "", "taken, or why the frame is no keyframe"},
+    {"keyframe", NULL, 0, FIELD_COUNT, AT(report.keyframes), "", "number of keyframes so far"},
     {"gaussians", "Gaussians", 9, FIELD_COUNT, AT(report.gaussians), "", "Gaussians in the map"},
     {"added", "added", 7, FIELD_COUNT, AT(report.added), "", "Gaussians that the keyframe added"},
     {"removed", "removed", 8, FIELD_COUNT, AT(report.removed), "", "Gaussians that it contradicts or replaces"},
     {"crowded", "crowded", 8, FIELD_COUNT, AT(report.crowded), "", "Gaussians removed for lack of room"},
     {"points", NULL, 0, FIELD_COUNT, AT(report.points), "", "pixels with a depth, also a filled one"},
     {"shown", "shown, %", 8, FIELD_SHARE, AT(report.shown), "", "pixels of these that the map already showed"},
+    {"moved", NULL, 0, FIELD_COUNT, AT(report.moved), "", "1: a new piece of the map begins, as poses jumped"},
+    {"depth_q8", NULL, 0, FIELD_COUNT, AT(report.depth_q8), "1/256", "share of pixels with a measured depth"},
+    {"dark_q8", NULL, 0, FIELD_COUNT, AT(report.dark_q8), "1/256", "share of pixels below level 16"},
+    {"bright_q8", NULL, 0, FIELD_COUNT, AT(report.bright_q8), "1/256", "share of pixels above level 239"},
+    {"detail_q8", NULL, 0, FIELD_COUNT, AT(report.detail_q8), "1/256", "fine differences over coarse ones"},
+    {"compared", NULL, 0, FIELD_COUNT, AT(report.compared), "", "Gaussians that were compared with the frame"},
+    {"contradicted_q8", NULL, 0, FIELD_COUNT, AT(report.contradicted_q8), "1/256",
+     "share of these that the frame sees through"},
+    {"likeness_q8", NULL, 0, FIELD_COUNT, AT(report.likeness_q8), "1/256", "correlation of colours with the rest"},
+    {"recent", NULL, 0, FIELD_COUNT, AT(report.recent), "", "Gaussians that the last keyframe saw"},
+    {"hidden_q8", NULL, 0, FIELD_COUNT, AT(report.hidden_q8), "1/256", "share of these that something near hides"},
+    {"hidden_likeness_q8", NULL, 0, FIELD_COUNT, AT(report.hidden_likeness_q8), "1/256", "their likeness"},
+    {"exposure_q8", NULL, 0, FIELD_SIGNED, AT(report.exposure_q8), "1/256", "stops brighter than the map"},
     {"passes", "passes", 6, FIELD_COUNT, AT(passes), "", "passes of refinement"},
     {"passes_planned", NULL, 0, FIELD_COUNT, AT(passes_planned), "", "passes without --max-ms"},
     {"ms", "ms", 8, FIELD_NUMBER, AT(milliseconds), "ms", "time that the keyframe took"},
@@ -53,9 +67,53 @@ static const struct {
 };
 enum { FIELDS = sizeof fields / sizeof fields[0] };
 
-static const char *decision_of(const live_row *row)
+const char *live_row_decision(const live_row *row)
 {
-    return live_row_is_taken(row) ? "taken" : t3r_error_text(row->status);
+    static const char *const losses[] = {NULL, "unreadable", "no pose", "no camera_info"};
+    return row->loss != LIVE_WHOLE                   ? losses[row->loss]
+           : row->status != T3R_OK                   ? t3r_error_text(row->status)
+           : row->report.refusal != T3R_REFUSAL_NONE ? t3r_refusal_name(row->report.refusal)
+                                                     : "taken";
+}
+
+static double percent(uint32_t share_q8)
+{
+    return share_q8 / 2.56;
+}
+
+/* Writes the figure by which the gate refused the frame; "" without a refusal. */
+static void describe(const t3r_stream_report *r, char *text, size_t bytes)
+{
+    text[0] = '\0';
+    switch (r->refusal) {
+    case T3R_REFUSAL_NONE:
+        break;
+    case T3R_REFUSAL_NO_DEPTH:
+        snprintf(text, bytes, ": %.1f %% of the pixels have a depth", percent(r->depth_q8));
+        break;
+    case T3R_REFUSAL_DARK:
+        snprintf(text, bytes, ": %.1f %% of the pixels are below level 16", percent(r->dark_q8));
+        break;
+    case T3R_REFUSAL_BRIGHT:
+        snprintf(text, bytes, ": %.1f %% of the pixels are above level 239", percent(r->bright_q8));
+        break;
+    case T3R_REFUSAL_EXPOSURE:
+        snprintf(text, bytes, ": %+.1f stops against the map", r->exposure_q8 / 256.0);
+        break;
+    case T3R_REFUSAL_BLURRED:
+        snprintf(text, bytes, ": detail %.3f", r->detail_q8 / 256.0);
+        break;
+    case T3R_REFUSAL_COVERED:
+        snprintf(text, bytes, ": %.1f %% of what the last keyframe saw is hidden, likeness %.2f", percent(r->hidden_q8),
+                 r->hidden_likeness_q8 / 256.0);
+        break;
+    case T3R_REFUSAL_CONTRADICTS:
+        snprintf(text, bytes, ": %.1f %% of the map is seen through, likeness %.2f of the rest",
+                 percent(r->contradicted_q8), r->likeness_q8 / 256.0);
+        break;
+    default:
+        snprintf(text, bytes, ": the camera is out of the map's range");
+    }
 }
 
 static uint32_t count_at(const live_row *row, size_t offset)
@@ -110,6 +168,9 @@ cJSON *live_row_json(const live_row *row)
         case FIELD_SHARE:
             json_add_integer(object, key, count_at(row, at));
             break;
+        case FIELD_SIGNED:
+            json_add_integer(object, key, (int32_t)count_at(row, at));
+            break;
         case FIELD_STAMP:
             json_add_integer(object, key, row->stamp_ns);
             break;
@@ -123,7 +184,7 @@ cJSON *live_row_json(const live_row *row)
             add_numbers(object, key, numbers_at(row, at), 4);
             break;
         case FIELD_DECISION:
-            cJSON_AddStringToObject(object, key, decision_of(row));
+            cJSON_AddStringToObject(object, key, live_row_decision(row));
             break;
         case FIELD_STAGES:
             stage_times_add_json(object, key, &row->stages);
@@ -161,7 +222,9 @@ void live_row_print(const live_row *row)
             printf("%*.1f ", fields[i].width, fields[i].kind == FIELD_SHARE ? share : *numbers_at(row, at));
         }
     }
-    puts(decision_of(row));
+    char figure[160];
+    describe(&row->report, figure, sizeof figure);
+    printf("%s%s\n", live_row_decision(row), figure);
 }
 
 char *live_row_help(char *text, size_t bytes)

@@ -12,10 +12,14 @@
 #include "reconstruction/stage_times.h"
 #include "trim3r.h"
 
+/* What a frame lacks before it can be offered. */
+typedef enum live_loss { LIVE_WHOLE, LIVE_UNREADABLE, LIVE_NO_POSE, LIVE_NO_INTRINSICS } live_loss;
+
 typedef struct live_row {
     uint32_t frame; /* number in the source, from 0 */
     int64_t stamp_ns;
-    t3r_status status; /* T3R_OK: it is a keyframe, else why it is none */
+    live_loss loss;
+    t3r_status status; /* of the runtime; not T3R_OK: it refused the call */
     t3r_stream_report report;
     uint32_t passes, passes_planned; /* of refinement */
     double milliseconds;             /* of the keyframe, without reading and writing */
@@ -28,9 +32,11 @@ typedef struct live_row {
 /* Whether the frame became a keyframe. */
 static inline bool live_row_is_taken(const live_row *row)
 {
-    return row->status == T3R_OK;
+    return row->loss == LIVE_WHOLE && row->status == T3R_OK && row->report.refusal == T3R_REFUSAL_NONE;
 }
 
+/* Returns "taken", or the reason why the frame is no keyframe, in one or two words or as an error text. */
+const char *live_row_decision(const live_row *row);
 /* Returns a new object with all fields. */
 cJSON *live_row_json(const live_row *row);
 /* Prints the headings of the table, and a row, on stdout. */

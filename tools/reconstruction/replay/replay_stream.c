@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,6 +41,10 @@ static int draw_held(stream_run *s, uint32_t frame, const char *when, double *ps
         return code;
     }
     const t3r_status status = drawn_frame_draw(&s->view, &s->map.r, &captured, DRAWN_WITH_DEPTH);
+    if (status == T3R_ERR_CAMERA) { /* out of the map's range: nothing to compare */
+        *psnr = *psnr_all = NAN;
+        return CLI_OK;
+    }
     if (status != T3R_OK) {
         return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
     }
@@ -88,21 +93,27 @@ static bool is_past(const stream_run *s, const t3r_capture_frame *frame)
                                                         : (uint64_t)(frame->stamp_ns - first_ns) > o->until_ns);
 }
 
-static int take_frame(stream_run *s, const t3r_capture_frame *frame)
+/* Reads the next frame, or what it lacks into the next row. */
+static bool read_frame(stream_run *s, t3r_capture_frame *frame)
 {
+    char lost[512] = "", error[512] = "";
+    const int status =
+        t3r_recording_frame_readable(s->recording, s->is.next, frame, lost, sizeof lost, error, sizeof error);
     live_row *row = &s->rows[s->is.row_count];
-    s->is.next = frame->index + 1;
-    if (!live_map_frame(&s->map, frame, row)) {
-        s->held[s->is.held_count++] = (held_back){.frame = frame->index};
-        return CLI_OK;
-    }
-    if (row->status != T3R_OK) {
-        return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame->index,
-                         t3r_error_text(row->status));
-    }
-    s->is.row_count++;
+    *row = (live_row){.frame = s->is.next, .stamp_ns = frame->stamp_ns, .psnr_before = NAN};
+    row->loss = status != T3R_CAPTURE_FRAME ? LIVE_UNREADABLE
+                : !frame->has_pose          ? LIVE_NO_POSE
+                : !frame->has_intrinsics    ? LIVE_NO_INTRINSICS
+                                            : LIVE_WHOLE;
+    return row->loss == LIVE_WHOLE;
+}
+
+/* Reports the row of a frame that was offered, or could not be. Only a keyframe changes the map. */
+static int end_row(stream_run *s)
+{
+    const live_row *row = &s->rows[s->is.row_count++];
     int code = live_output_row(&s->output, &s->map, row);
-    if (code == CLI_OK) {
+    if (code == CLI_OK && live_row_is_taken(row)) {
         code = draw_live(s);
     }
     return code == CLI_OK ? stream_save(s, row) : code;
@@ -113,12 +124,17 @@ static int run(stream_run *s)
     const uint32_t frames = t3r_recording_frame_count(s->recording);
     int code = CLI_OK;
     while (code == CLI_OK && s->is.next < frames) {
-        t3r_capture_frame frame;
-        code = recorded_frame_read(s->recording, s->path, s->is.next, &frame);
-        if (code == CLI_OK && is_past(s, &frame)) {
+        t3r_capture_frame frame = {0};
+        const bool whole = read_frame(s, &frame);
+        if (whole && is_past(s, &frame)) {
             break;
         }
-        code = code == CLI_OK ? take_frame(s, &frame) : code;
+        s->is.next++;
+        if (!whole || live_map_frame(&s->map, &frame, &s->rows[s->is.row_count])) {
+            code = end_row(s);
+        } else {
+            s->held[s->is.held_count++] = (held_back){.frame = frame.index};
+        }
     }
     if (code == CLI_OK) {
         code = stream_save(s, NULL); /* before views of the whole map: they count in the hashes */
@@ -131,11 +147,11 @@ static int run(stream_run *s)
 static void find_difference(const expectation *e, const stream_run *s, uint64_t hash, char *text, size_t text_bytes)
 {
     (void)expectation_missed(e, &s->map.r, hash, text, text_bytes);
-    for (uint32_t i = 0; i < e->keyframe_count && i < s->is.row_count; i++) {
-        if (e->keyframes[i] != s->rows[i].hash) {
-            size_t length = strlen(text);
-            snprintf(text + length, text_bytes - length, "%skeyframe %" PRIu32, length > 0 ? ", " : "",
-                     s->rows[i].frame);
+    for (uint32_t i = 0, keyframe = 0; i < s->is.row_count && keyframe < e->keyframe_count; i++) {
+        const live_row *row = &s->rows[i];
+        if (live_row_is_taken(row) && e->keyframes[keyframe++] != row->hash) {
+            const size_t length = strlen(text);
+            snprintf(text + length, text_bytes - length, "%skeyframe %" PRIu32, length > 0 ? ", " : "", row->frame);
             return;
         }
     }

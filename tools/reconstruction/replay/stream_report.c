@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/tables/json_output.h"
 #include "reconstruction/replay/hash_report.h"
@@ -76,6 +77,23 @@ static bool is_hashed(const stream_run *s)
     return is_comparable(s) && !s->options->no_hash;
 }
 
+/* Returns how many of the first `rows` frames were skipped with this reason. */
+static uint32_t count_skipped(const stream_run *s, uint32_t rows, const char *reason)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < rows; i++) {
+        count += !live_row_is_taken(&s->rows[i]) && strcmp(live_row_decision(&s->rows[i]), reason) == 0;
+    }
+    return count;
+}
+
+/* Returns the reason of row i if the row is the first that was skipped with it, else NULL. */
+static const char *new_reason(const stream_run *s, uint32_t i)
+{
+    const char *reason = live_row_decision(&s->rows[i]);
+    return live_row_is_taken(&s->rows[i]) || count_skipped(s, i, reason) > 0 ? NULL : reason;
+}
+
 /* ---- JSON -------------------------------------------------------------------------------------------------------- */
 
 static void add_decibels(cJSON *object, const char *key, double value)
@@ -84,6 +102,21 @@ static void add_decibels(cJSON *object, const char *key, double value)
         cJSON_AddNullToObject(object, key);
     } else {
         cJSON_AddNumberToObject(object, key, value);
+    }
+}
+
+/* Adds the keyframes, the skipped frames, and the count of each reason. */
+static void add_rows(cJSON *root, const stream_run *s)
+{
+    cJSON *keyframes = cJSON_AddArrayToObject(root, "keyframes"), *skipped = cJSON_AddArrayToObject(root, "skipped");
+    cJSON *counts = cJSON_AddObjectToObject(root, "skip_counts");
+    for (uint32_t i = 0; i < s->is.row_count; i++) {
+        const live_row *row = &s->rows[i];
+        cJSON_AddItemToArray(live_row_is_taken(row) ? keyframes : skipped, live_row_json(row));
+        const char *reason = new_reason(s, i);
+        if (reason != NULL) {
+            json_add_integer(counts, reason, count_skipped(s, s->is.row_count, reason));
+        }
     }
 }
 
@@ -150,10 +183,7 @@ void stream_print_json(const stream_run *s, uint64_t hash, const expectation *e,
     }
     json_add_integer(root, "arena_bytes", (int64_t)r->arena_bytes);
     add_work(root, s);
-    cJSON *keyframes = cJSON_AddArrayToObject(root, "keyframes");
-    for (uint32_t i = 0; i < s->is.row_count; i++) {
-        cJSON_AddItemToArray(keyframes, live_row_json(&s->rows[i]));
-    }
+    add_rows(root, s);
     add_held(root, s);
     cJSON_AddBoolToObject(root, "comparable", is_comparable(s));
     if (is_hashed(s)) {
@@ -172,6 +202,19 @@ void stream_print_begin(const stream_run *s)
     printf("%s: a keyframe in %" PRIu32 " frames at least, %" PRIu32 " live, at most %" PRIu32
            " Gaussians, head %s, arena %zu bytes\n",
            s->path, s->map.options.every, r->config.views, r->config.gaussians, r->head.name, r->arena_bytes);
+}
+
+static void print_skipped(const stream_run *s)
+{
+    bool any = false;
+    for (uint32_t i = 0; i < s->is.row_count; i++) {
+        const char *reason = new_reason(s, i);
+        if (reason != NULL) {
+            printf("%s%s %" PRIu32, any ? ", " : "skipped frames: ", reason, count_skipped(s, s->is.row_count, reason));
+            any = true;
+        }
+    }
+    printf("%s", any ? "\n" : "");
 }
 
 static void print_means(const stream_run *s)
@@ -194,6 +237,7 @@ void stream_print(const stream_run *s, uint64_t hash)
     printf("%s: %" PRIu32 " keyframes of %" PRIu32 " frames\n", s->path, w.count, s->is.next);
     printf("a keyframe%s: median %.1f ms, 95 %% at most %.1f ms, worst %.1f ms; %.1f a second\n",
            s->options->no_hash ? " without hashes" : "", w.times.median, w.times.most, w.times.worst, w.times.rate);
+    print_skipped(s);
     print_means(s);
     if (o->scene != NULL) {
         printf("%s: %" PRIu32 " Gaussians\n", o->scene, s->map.r.scene.count);

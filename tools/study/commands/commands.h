@@ -8,6 +8,7 @@ int command_build_by_method(int argc, char **argv);
 int command_eval_methods(int argc, char **argv);
 int command_chart(int argc, char **argv);
 int command_stress(int argc, char **argv);
+int command_trouble(int argc, char **argv);
 int command_quantize(int argc, char **argv);
 
 #endif

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Measures a frame before it touches the map, and decides whether it becomes a keyframe (SPEC.md, "Gate"). */
+#ifndef T3R_STREAM_GATE_H
+#define T3R_STREAM_GATE_H
+
+#include "state/state.h"
+#include "state/views.h"
+#include "trim3r.h"
+
+/* Measures the developed planes of the slot, and puts the figures into the report: holes are not filled yet, and the
+ * pose is in the map's frame. Without a keyframe the map agrees. */
+void t3r_gate_measure(const t3r_runtime *rt, const t3r_view *view, t3r_stream_report *report);
+
+/* Decides by the figures and by how many frames in a row were refused, and notes the decision for the next frames. Sets
+ * report->moved if the frame is taken although it contradicts the map. */
+t3r_refusal t3r_gate_decide(t3r_runtime *rt, const t3r_view *view, t3r_stream_report *report);
+
+#endif

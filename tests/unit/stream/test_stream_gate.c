@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The gate of a stream in the built-in room: honest frames pass, each trouble is refused for its reason and leaves no
+ * trace, and what lasts is taken in the end. */
+#include "unit/unit.h"
+
+#include "rgbd_frame.h"
+#include "room/room.h"
+#include "state/state.h"
+#include "stream/stream_map.h"
+
+enum { W = 64, H = 48, PIXELS = W * H, CAP = 1500, LIVE = 3, STRIDE = 3, FIRST = 8 };
+
+static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[4 << 20], before[4 << 20];
+static size_t arena_bytes;
+static uint8_t rgb[PIXELS * 3];
+static uint16_t depth[PIXELS];
+static t3r_camera camera;
+
+static t3r_runtime *begin(uint32_t gate)
+{
+    t3r_config config = t3r_default_config(W, H, LIVE, CAP);
+    config.stream = 1;
+    config.refine = 1;
+    config.fit_passes = 0;
+    config.remember = 2;
+    config.gate = gate;
+    t3r_runtime *rt;
+    t3r_plan_info plan;
+    assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
+    assert_true(plan.bytes <= sizeof arena);
+    arena_bytes = plan.bytes;
+    assert_int_equal(t3r_init(&rt, arena, plan.bytes, &config), T3R_OK);
+    return rt;
+}
+
+static void look(uint32_t frame)
+{
+    room_frame(frame, W, H, 1, rgb, depth);
+    room_camera(frame, W, H, &camera);
+}
+
+static t3r_status take(t3r_runtime *rt, t3r_stream_report *report)
+{
+    t3r_frame frame = rgbd_frame(rgb, (const uint8_t *)depth, W, H, MILLIMETRE_Q40);
+    return t3r_stream_keyframe(rt, &frame, &camera, report);
+}
+
+/* Takes honest keyframes `first` to `end` - 1 of the path. */
+static void walk(t3r_runtime *rt, uint32_t first, uint32_t end)
+{
+    for (uint32_t i = first; i < end; i++) {
+        t3r_stream_report report;
+        look(i * STRIDE);
+        assert_int_equal(take(rt, &report), T3R_OK);
+        assert_int_equal(report.refusal, T3R_REFUSAL_NONE);
+        assert_int_equal(report.moved, 0);
+        assert_int_equal(report.keyframes, rt->keyframes);
+    }
+}
+
+/* ---- troubles ---- */
+
+static void scale(uint32_t part, uint32_t of)
+{
+    for (uint32_t i = 0; i < sizeof rgb; i++) {
+        const uint32_t level = rgb[i] * part / of;
+        rgb[i] = (uint8_t)(level < 255 ? level : 255);
+    }
+}
+
+static void black(void)
+{
+    scale(0, 1);
+}
+
+static void dark(void)
+{
+    scale(1, 8);
+}
+
+static void white(void)
+{
+    memset(rgb, 255, sizeof rgb);
+}
+
+static void blind(void)
+{
+    memset(depth, 0, sizeof depth);
+}
+
+/* A hand covers all but the leftmost columns. */
+static void cover(uint16_t mm)
+{
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        if (i % W >= W / 8) {
+            rgb[3 * i] = (uint8_t)(190 + i % W / 8);
+            rgb[3 * i + 1] = (uint8_t)(140 + i / W / 8);
+            rgb[3 * i + 2] = 120;
+            depth[i] = mm;
+        }
+    }
+}
+
+static void hand(void)
+{
+    cover(150);
+}
+
+static void blind_hand(void)
+{
+    cover(0);
+}
+
+static void jump(void)
+{
+    camera.position_q32[0] += (int64_t)(0.7 * 4294967296.0);
+}
+
+static void absurd(void)
+{
+    camera.position_q32[2] += (int64_t)1000000 << 32;
+}
+
+static void blur(void)
+{
+    for (uint32_t pass = 0; pass < 12; pass++) {
+        for (uint32_t i = 0; i + 1 < PIXELS; i++) {
+            for (uint32_t c = 0; c < 3; c++) {
+                rgb[3 * i + c] = (uint8_t)((rgb[3 * i + c] + rgb[3 * i + 3 + c]) / 2);
+            }
+        }
+    }
+}
+
+static const struct {
+    const char *name;
+    void (*apply)(void);
+    t3r_refusal refusal;
+} troubles[] = {
+    {"black", black, T3R_REFUSAL_DARK},      {"white", white, T3R_REFUSAL_BRIGHT},
+    {"dark", dark, T3R_REFUSAL_EXPOSURE},    {"blind", blind, T3R_REFUSAL_NO_DEPTH},
+    {"hand", hand, T3R_REFUSAL_COVERED},     {"blind hand", blind_hand, T3R_REFUSAL_COVERED},
+    {"jump", jump, T3R_REFUSAL_CONTRADICTS}, {"absurd", absurd, T3R_REFUSAL_FAR},
+    {"blur", blur, T3R_REFUSAL_BLURRED},
+};
+enum { TROUBLES = sizeof troubles / sizeof *troubles };
+
+/* ---- tests ---- */
+
+TEST(honest_frames_pass)
+{
+    t3r_runtime *rt = begin(1);
+    walk(rt, 0, 2 * 70 / STRIDE);
+}
+
+/* Whether everything that later keyframes use is as it was: the map, the keyframes and their state. */
+static bool is_as_before(const t3r_runtime *rt)
+{
+    static const enum t3r_buffer lasting[] = {T3R_BUFFER_MAP_RECORDS, T3R_BUFFER_REMEMBERED, T3R_BUFFER_COLOUR,
+                                              T3R_BUFFER_DEPTH,       T3R_BUFFER_VALIDITY,   T3R_BUFFER_SCENE};
+    t3r_runtime now = *rt;
+    now.gate = ((const t3r_runtime *)(const void *)before)->gate; /* its own memory is all that may change */
+    bool same = memcmp(&now, before, sizeof now) == 0;
+    t3r_plan_info plan;
+    assert_int_equal(t3r_plan(&rt->config, &plan), T3R_OK);
+    for (size_t i = 0; i < sizeof lasting / sizeof *lasting; i++) {
+        const size_t at = (size_t)rt->offset[lasting[i]];
+        same = same && memcmp(arena + at, before + at, plan.buffers[lasting[i]].bytes) == 0;
+    }
+    return same;
+}
+
+TEST(a_refused_frame_leaves_no_trace)
+{
+    for (size_t i = 0; i < TROUBLES; i++) {
+        t3r_runtime *rt = begin(1);
+        walk(rt, 0, FIRST);
+        memcpy(before, arena, arena_bytes);
+        t3r_stream_report report;
+        look(FIRST * STRIDE);
+        troubles[i].apply();
+        assert_int_equal(take(rt, &report), T3R_OK);
+        if (report.refusal != troubles[i].refusal) {
+            fail_msg("%s: %s", troubles[i].name, t3r_refusal_name(report.refusal));
+        }
+        assert_true(report.keyframes == FIRST && report.gaussians == rt->gaussians && report.added == 0 &&
+                    report.points == 0);
+        assert_true(is_as_before(rt));
+        walk(rt, FIRST, FIRST + LIVE + 2);
+    }
+}
+
+/* A frame without a depth plane is refused, too; without the gate it is an error, which leaves no trace either. */
+TEST(without_a_gate)
+{
+    for (uint32_t gate = 0; gate < 2; gate++) {
+        t3r_runtime *rt = begin(gate);
+        walk(rt, 0, FIRST);
+        memcpy(before, arena, arena_bytes);
+        t3r_stream_report report;
+        look(FIRST * STRIDE);
+        t3r_frame frame = rgbd_frame(rgb, NULL, W, H, MILLIMETRE_Q40);
+        assert_int_equal(t3r_stream_keyframe(rt, &frame, &camera, &report), gate ? T3R_OK : T3R_ERR_NO_DEPTH);
+        assert_int_equal(report.refusal, gate ? T3R_REFUSAL_NO_DEPTH : T3R_REFUSAL_NONE);
+        blind();
+        assert_int_equal(take(rt, &report), gate ? T3R_OK : T3R_ERR_NO_DEPTH);
+        look(FIRST * STRIDE);
+        absurd();
+        assert_int_equal(take(rt, &report), gate ? T3R_OK : T3R_ERR_CAMERA);
+        assert_true(is_as_before(rt));
+        look(FIRST * STRIDE);
+        black();
+        assert_int_equal(take(rt, &report), T3R_OK);
+        assert_int_equal(report.keyframes, FIRST + !gate);
+    }
+}
+
+/* A jump that lasts begins a new piece: what the new frames cover and do not show leaves the map. */
+TEST(a_lasting_jump_begins_a_new_piece)
+{
+    enum { REFUSED = 4 };
+    t3r_runtime *rt = begin(1);
+    walk(rt, 0, FIRST);
+    t3r_stream_report report;
+    for (uint32_t i = 0; i <= REFUSED; i++) {
+        look((FIRST + i) * STRIDE);
+        jump();
+        assert_int_equal(take(rt, &report), T3R_OK);
+        assert_int_equal(report.refusal, i < REFUSED ? T3R_REFUSAL_CONTRADICTS : T3R_REFUSAL_NONE);
+        assert_int_equal(report.moved, i == REFUSED);
+    }
+    assert_true(report.removed > CAP / 4 && rt->remembered == 0);
+    for (uint32_t i = REFUSED + 1; i < REFUSED + 6; i++) {
+        look((FIRST + i) * STRIDE);
+        jump();
+        assert_int_equal(take(rt, &report), T3R_OK);
+        assert_int_equal(report.refusal, T3R_REFUSAL_NONE);
+        assert_int_equal(report.moved, 0);
+    }
+}
+
+/* Poses that jump about are no path. */
+TEST(wild_poses_are_never_taken)
+{
+    t3r_runtime *rt = begin(1);
+    walk(rt, 0, FIRST);
+    for (uint32_t i = 0; i < 12; i++) {
+        t3r_stream_report report;
+        look(FIRST * STRIDE);
+        camera.position_q32[0] += (i % 2 == 0 ? 1 : -1) * (int64_t)(0.7 * 4294967296.0);
+        assert_int_equal(take(rt, &report), T3R_OK);
+        assert_int_equal(report.refusal, T3R_REFUSAL_CONTRADICTS);
+    }
+}
