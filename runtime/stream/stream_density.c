@@ -223,14 +223,14 @@ void t3r_map_density_raise_keys(const t3r_map_density *density, const t3r_budget
     const t3r_view *view = density->keyframe->view;
     const size_t pixels = (size_t)view->width * view->height;
     for (size_t i = 0; i < pixels; i++) {
-        uint32_t *least = &density->plane_q16[i];
-        if (*least == 0) {
-            continue;
+        uint32_t *least = &density->plane_q16[i], key = T3R_MAP_KEY_LEAST;
+        if (*least > 0) {
+            const int32_t taken_q10 = log_density_q10(*least) + TAKEN_Q10;
+            const int32_t raised = T3R_KEY_ZERO + taken_q10 - t3r_log_wanted_q10(view->texture[i], settings);
+            key = (uint32_t)t3r_clamp32(raised, T3R_MAP_KEY_LEAST, UINT16_MAX);
+            *least = taken_q10 > 0 ? NO_KEY_LEFT : key;
         }
-        const int32_t taken_q10 = log_density_q10(*least) + TAKEN_Q10;
-        const int32_t key = T3R_KEY_ZERO + taken_q10 - t3r_log_wanted_q10(view->texture[i], settings);
-        *least = taken_q10 > 0 ? NO_KEY_LEFT : (uint32_t)t3r_clamp32(key, 1, UINT16_MAX);
-        view->key[i] = (uint16_t)T3R_MAX(view->key[i], T3R_MIN(*least, (uint32_t)UINT16_MAX));
+        view->key[i] = (uint16_t)T3R_MAX((uint32_t)view->key[i], key);
     }
     (void)t3r_map_density_mark(density, UINT16_MAX);
 }

@@ -107,11 +107,6 @@ static bool competes(const t3r_view *view, size_t pixel, const t3r_budget_settin
     return t3r_has_depth(view->validity[pixel]) && !t3r_is_deferred(view, pixel, settings);
 }
 
-static uint32_t point_key(const t3r_view *view, size_t pixel)
-{
-    return T3R_MAX((uint32_t)view->key[pixel], (uint32_t)T3R_MAP_KEY_LEAST);
-}
-
 /* Numbers of Gaussians and points for each of 256 values of a byte of the key. */
 typedef struct counts {
     uint32_t gaussians[256], points[256];
@@ -138,7 +133,7 @@ static void count_keys(const t3r_map *map, const t3r_view *view, const t3r_budge
     const size_t pixels = (size_t)view->width * view->height;
     for (size_t i = 0; i < pixels; i++) {
         if (competes(view, i, settings)) {
-            count_key(point_key(view, i), upper, n->points);
+            count_key(view->key[i], upper, n->points);
         }
     }
 }
@@ -261,7 +256,7 @@ uint32_t t3r_map_append(t3r_map *map, uint32_t count, const t3r_pointmap *keyfra
         }
         map->gaussians[map->count] = map->gaussians[before + i];
         map->records[map->count++] = (t3r_map_record){
-            .key = (uint16_t)point_key(view, pixel),
+            .key = view->key[pixel],
             .wanted_q10 = (int16_t)T3R_MIN(t3r_log_wanted_q10(view->texture[pixel], settings), INT16_MAX),
             .density_q10 = (int16_t)t3r_log_density_q10(view, pixel, settings, clusters),
             .grain_q8 = (int16_t)t3r_grain_q8(view, t3r_depth_q20(keyframe->scale, view->depth[pixel])),

@@ -94,7 +94,7 @@ given("bag", "pose-infinite.mcap",
 given("bag", "pose-without-rotation.mcap",
       f.mcap(f.channels(), f.frame(0, pose=lambda t: f.pose(t, rotation=(0, 0, 0, 0))), f.frame(1)), "no direction")
 given("recording", "focal-negative.mcap",
-      f.mcap(f.channels(), f.frame(0, camera_info=lambda t: f.camera_info(t, k=(-9, 0, 8, 0, 40, 8, 0, 0, 1)))), "fx")
+      f.mcap(f.channels(), f.frame(0, camera_info=lambda t: f.camera_info(t, k=(-9, 0, 8, 0, 40, 8, 0, 0, 1)))), "no camera matrix")
 given("recording", "distortion-huge.mcap",
       f.mcap(f.channels(), f.frame(0, camera_info=lambda t: f.camera_info(t, d=(1e300, 0, 0, 0, 0)))), "D has a coefficient")
 given("bag", "distortion-of-2^32.mcap",
@@ -152,7 +152,7 @@ def lone_pipe(path):
     os.mkfifo(path)
 
 
-@case("path", "folder.mcap", "Is a directory")
+@case("path", "folder.mcap", "no pictures")
 def lone_folder(path):
     os.mkdir(path)
 
@@ -290,7 +290,7 @@ def deep(path):
     return transforms(path, b'{"frames":' + b"[" * 1000000)
 
 
-@case("folder", "nan-pose", "not JSON")
+@case("folder", "nan-pose", "not a finite number")
 def nan_pose(path):
     return transforms(path, json.dumps(one_frame(transform_matrix=[[float("nan")] * 4] * 4)).encode())
 

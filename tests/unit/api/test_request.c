@@ -39,6 +39,7 @@ static t3r_config good_config(void)
     config.clusters = 12;
     config.cluster_batches = 24;
     config.refine = 1;
+    config.refine_stride = 1;
     config.keep_analysis = 1;
     return config;
 }

@@ -178,6 +178,20 @@ TEST(widths_are_bounded)
     }
 }
 
+/* Without any Gaussian, keys are raised to the least key of the map alone. */
+TEST(no_key_is_below_the_least)
+{
+    static site s;
+    const t3r_budget_settings settings = {.allocate = T3R_ALLOCATE_PIXEL, .clusters = 1, .gamma_q8 = 256};
+    open_site(&s);
+    s.key[9] = 60000;
+    t3r_map_density_find(&s.density);
+    t3r_map_density_raise_keys(&s.density, &settings);
+    for (int i = 0; i < PIXELS; i++) {
+        assert_int_equal(s.key[i], i == 9 ? 60000 : T3R_MAP_KEY_LEAST);
+    }
+}
+
 /* A wall of one Gaussian in nine pixels takes all thresholds below 4 / 9; of one in two, all. */
 TEST(keys_are_raised)
 {
@@ -186,6 +200,7 @@ TEST(keys_are_raised)
     const int texture_q10 = t3r_log_wanted_q10(0, &settings);
     (void)fill_wall(&s, 3, -2 * (int)lround(log2(3) * 1024));
     s.key[PIXELS / 2] = 60000;
+    s.key[3] = 7; /* a sure point */
     t3r_map_density_find(&s.density);
     t3r_map_density_raise_keys(&s.density, &settings);
     const int key = T3R_KEY_ZERO + (int)lround(log2(4.0 / 9) * 1024) - texture_q10;

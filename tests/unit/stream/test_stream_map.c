@@ -36,7 +36,7 @@ static void fill(site *s, uint64_t *seed, uint32_t key_range)
     for (int i = 0; i < PIXELS; i++) {
         s->validity[i] = validities[unit_between(seed, 0, 4)];
         s->key[i] =
-            (uint16_t)(unit_between(seed, 0, 9) == 0 ? 3 : T3R_MAP_KEY_LEAST + unit_between(seed, 0, key_range));
+            (uint16_t)(T3R_MAP_KEY_LEAST + (unit_between(seed, 0, 9) == 0 ? 0 : unit_between(seed, 0, key_range)));
     }
     s->view = (t3r_view){.width = WIDTH,
                          .height = HEIGHT,
@@ -64,6 +64,21 @@ static int by_order(const void *a, const void *b)
     return x->key != y->key ? (x->key > y->key) - (x->key < y->key) : (x->rank > y->rank) - (x->rank < y->rank);
 }
 
+/* Returns how many points are retained by the cut: as many Gaussians will be made of them. */
+static uint32_t count_retained(site *s, const t3r_map_cut *cut)
+{
+    static uint32_t mask[(PIXELS + 31) / 32];
+    t3r_cluster clusters[2];
+    memset(clusters, 0, sizeof clusters);
+    uint32_t count = 0;
+    s->view.mask = mask;
+    t3r_retain_below(&s->view, &s->settings, cut->threshold, cut->point_ties, clusters);
+    for (size_t i = 0; i < PIXELS; i++) {
+        count += t3r_retained(&s->view, i);
+    }
+    return count;
+}
+
 TEST(compete_as_sorted)
 {
     static site s;
@@ -77,7 +92,7 @@ TEST(compete_as_sorted)
         }
         for (uint32_t i = 0; i < PIXELS; i++) {
             if (s.validity[i] == T3R_MEASURED || s.validity[i] == T3R_FILLED) {
-                rivals[count++] = (rival){T3R_MAX((uint32_t)s.key[i], (uint32_t)T3R_MAP_KEY_LEAST), i, -1};
+                rivals[count++] = (rival){s.key[i], i, -1};
             }
         }
         qsort(rivals, count, sizeof *rivals, by_order);
@@ -91,6 +106,7 @@ TEST(compete_as_sorted)
         }
         t3r_map_cut cut = t3r_map_compete(&s.map, &s.view, &s.settings, most);
         assert_int_equal(cut.added, added);
+        assert_int_equal(count_retained(&s, &cut), added);
         assert_int_equal(cut.kept, stay - added);
         t3r_map_thin(&s.map, &cut);
         assert_int_equal(s.map.count, stay - added);
