@@ -8,6 +8,13 @@
 
 #define DEFAULT(name, kind, low, high, usual, ...) .name = (usual),
 
+/* Not inlined, as gcc 12 for Cortex-M55 would place a short branch around it that does not reach. */
+static __attribute__((noinline)) t3r_config default_config(uint32_t width, uint32_t height, uint32_t views,
+                                                           uint32_t gaussians)
+{
+    return (t3r_config){T3R_SETTINGS(DEFAULT)};
+}
+
 t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_bytes, uint32_t width, uint32_t height,
                                  uint32_t views, uint32_t gaussians)
 {
@@ -18,7 +25,7 @@ t3r_status t3r_default_config_as(uint64_t digest, void *config, size_t config_by
         memset(config, 0, config_bytes); /* the caller's, of any size */
         return T3R_ERR_INTERFACE;
     }
-    *(t3r_config *)config = (t3r_config){T3R_SETTINGS(DEFAULT)};
+    *(t3r_config *)config = default_config(width, height, views, gaussians);
     return T3R_OK;
 }
 
