@@ -26,8 +26,9 @@ void t3r_map_density_find(const t3r_map_density *density);
  * the spacing. */
 void t3r_map_density_fit(const t3r_map_density *density);
 
-/* Raises the keys of the keyframe's points, to T3R_MAP_KEY_LEAST at least: the map's Gaussians have the thresholds up to
- * four times their density. The plane becomes the least keys, 0 where there is no density. Marks points as covered where no threshold is left. */
+/* Raises the keys of the keyframe's points, to T3R_MAP_KEY_LEAST at least: the map's Gaussians have the thresholds up
+ * to four times their density. The plane becomes the least keys, 0 where there is no density. Marks points as covered
+ * where no threshold is left. */
 void t3r_map_density_raise_keys(const t3r_map_density *density, const t3r_budget_settings *settings);
 
 /* Marks the points whose least key is above the threshold as covered. Returns the number of covered points. */

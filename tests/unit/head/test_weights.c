@@ -298,7 +298,7 @@ TEST(graphs_are_checked)
         const made_layer *layers;
         uint32_t count;
         const char *reason;
-    } graphs[] = {{unread, 2, "read by none"}, {behind, 3, "follows"},         {reading_points, 3, "source"},
+    } graphs[] = {{unread, 2, "read by none"}, {behind, 3, "follows"},        {reading_points, 3, "source"},
                   {skipping, 3, "source"},     {plane_last, 1, "last layer"}, {heavy, 3, "multiply-accumulates"}};
     for (size_t i = 0; i < sizeof graphs / sizeof *graphs; i++) {
         size_t bytes;
