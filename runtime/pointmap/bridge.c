@@ -10,7 +10,7 @@
 /* Columns to the right, of the pixel in the row above, on the column and both diagonals; the other way below. */
 static const int32_t upwards[SLANTED] = {0, -1, 1};
 
-/* What a pixel's neighbours need to find the ends of their holes. */
+/* Holds the neighbours by which a pixel finds the ends of its hole. */
 typedef struct reach {
     uint8_t ends;           /* 1: holes end here */
     uint8_t steps[SLANTED]; /* if not: from here to the first end above, 0 = none; on the way back below */

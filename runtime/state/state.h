@@ -53,7 +53,7 @@ typedef struct t3r_strips {
     uint32_t rows, depth_rows;
 } t3r_strips;
 
-/* What a stream's gate knows of the frames before. Any values are safe. */
+/* A stream's gate: its memory of earlier frames. Any values are safe. */
 typedef struct t3r_gate {
     int32_t refused_at_q20[3]; /* camera of the frame refused last, scene units */
     uint16_t detail_q8;        /* mean of the keyframes' figures; 0 = none yet */

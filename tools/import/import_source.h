@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What import reads a path as: one answer for all commands. */
+/* The kind of input at a path, as import reads it: one answer for all commands. */
 #ifndef TRIM3R_TOOLS_IMPORT_SOURCE_H
 #define TRIM3R_TOOLS_IMPORT_SOURCE_H
 
