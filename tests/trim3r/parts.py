@@ -26,6 +26,7 @@ LINES = {
     "chart": (["scores.csv", "-o", "out.html", "--svg", "out.svg"], ["out.html", "out.svg"]),
     "stress": (["room.mcap", "--rows", "noise", "--strengths", "1", "--captures", "0", "--html", "out.html"],
                ["out.html"]),
+    "trouble": (["room.mcap", "--with", "black", "--at", "1", "--for", "1", "-o", "out.mcap"], ["out.mcap"]),
     "replay": (["room.mcap"], []),
     "diff": (["scene.ply", "scene.ply"], []),
     "plan": ([*SIZE, "--gaussians", "9", "--svg", "out.svg"], ["out.svg"]),

@@ -25,6 +25,7 @@ keyframe_map_settings keyframe_map_defaults(void)
         .at_hand = LIVE_AT_HAND,
         .every = LIVE_EVERY,
         .half_life = config.half_life,
+        .gate = config.gate,
         .remember = config.remember,
         .refine = T3R_STREAM_REFINE,
         .threads = 1,
@@ -68,6 +69,7 @@ static int open_stream(keyframe_map *map, const keyframe_map_settings *s)
     options.config.width = s->width;
     options.config.height = s->height;
     options.config.half_life = s->half_life;
+    options.config.gate = s->gate;
     options.config.remember = s->remember;
     options.config.refine = s->refine;
     options.config.fit_passes = 0; /* exactly as many as set */

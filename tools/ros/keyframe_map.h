@@ -24,6 +24,7 @@ typedef struct keyframe_map_settings {
     uint32_t remember;   /* likewise [0] */
     uint32_t refine;     /* the passes of each keyframe [T3R_STREAM_REFINE] */
     uint32_t warm;       /* likewise [0] */
+    uint32_t gate;       /* likewise: 0 takes frames that cannot be trusted, too [1] */
     uint32_t threads;    /* 1..T3R_MAX_WORKERS [1] */
     double max_ms;       /* milliseconds that a keyframe may take; bits then differ from run to run; 0 = no limit [0] */
     uint32_t snapshot;   /* keyframes between two writes of scene and state; 0 = only by keyframe_map_save() [0] */

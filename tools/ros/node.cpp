@@ -55,6 +55,7 @@ keyframe_map_settings map_settings(const parameters &p)
     s.refine = count_from(p.refine, "refine");
     s.threads = count_from(p.threads, "threads");
     s.warm = p.warm ? 1 : 0;
+    s.gate = p.gate ? 1 : 0;
     s.head = p.head.c_str();
     s.max_ms = p.max_ms;
     s.snapshot = count_from(p.snapshot, "snapshot");

@@ -22,7 +22,7 @@ struct parameters {
     int width = 256, height = 256; // the working size
     int gaussians = 10000;         // most Gaussians in the map
     int at_hand = 4, every = 3, overlap = 0, half_life = 32, remember = 0, refine = T3R_STREAM_REFINE, threads = 1;
-    bool warm = false;
+    bool warm = false, gate = true;
     std::string head = "small";
     int queue = 8;
     double pair_ms = 20, patience_ms = 500;
@@ -51,6 +51,7 @@ template <class Visit> void visit_parameters(parameters &p, Visit visit)
     visit("refine", p.refine);
     visit("threads", p.threads);
     visit("warm", p.warm);
+    visit("gate", p.gate);
     visit("head", p.head);
     visit("queue", p.queue);
     visit("pair_ms", p.pair_ms);

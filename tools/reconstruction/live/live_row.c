@@ -231,7 +231,7 @@ char *live_row_help(char *text, size_t bytes)
 {
     size_t length = 0;
     for (int i = 0; i < FIELDS && length < bytes; i++) {
-        length += (size_t)snprintf(text + length, bytes - length, "  %-16s%s%s%s\n", fields[i].key, fields[i].unit,
+        length += (size_t)snprintf(text + length, bytes - length, "  %-20s%s%s%s\n", fields[i].key, fields[i].unit,
                                    fields[i].unit[0] != '\0' ? ": " : "", fields[i].meaning);
     }
     return text;

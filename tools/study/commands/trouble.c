@@ -243,5 +243,8 @@ int command_trouble(int argc, char **argv)
                          ? write_recording(&o, recording)
                          : cli_error(CLI_BAD_INPUT, "%s has no frame %" PRIu32, o.recording, o.first);
     t3r_recording_close(recording);
+    if (code == CLI_OK) {
+        printf("%s: %s from frame %" PRIu32 " on\n", o.output, o.what->name, o.first);
+    }
     return code;
 }
