@@ -266,8 +266,8 @@ static void solve_chunk(void *context, uint32_t index, uint32_t worker)
  * on. */
 static const uint16_t settled_q15[T3R_FITTED_MOST + 1] = {32768, 16384, 10923, 8192, 6554};
 
-/* Opacity and place settle, or a Gaussian that is seen again and again would drift off its surface. Shape settles half
- * as much. Where keyframes are remembered, all settles; else colour follows the newest ones. */
+/* Damps opacity and place, or a Gaussian that is seen again and again would drift off its surface. Damps shape half as
+ * much. Where keyframes are remembered, damps all; else colour follows the newest ones. */
 static t3r_correction settled(const t3r_correction *whole, uint32_t fitted, bool remembers)
 {
     const int32_t share_q15 = settled_q15[T3R_MIN(fitted, (uint32_t)T3R_FITTED_MOST)];

@@ -12,7 +12,7 @@
 #include "reconstruction/stage_times.h"
 #include "trim3r.h"
 
-/* What a frame lacks before it can be offered. */
+/* Names the part that a frame lacks, so that it cannot be offered. */
 typedef enum live_loss { LIVE_WHOLE, LIVE_UNREADABLE, LIVE_NO_POSE, LIVE_NO_INTRINSICS } live_loss;
 
 typedef struct live_row {
