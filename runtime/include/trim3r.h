@@ -381,6 +381,8 @@ typedef struct t3r_stream_report {
     /* 1 = a new piece of the map begins with this keyframe, because it and the frames refused before it contradict the
      * map; else 0. */
     uint32_t moved;
+    /* 1 = poses jumped before this keyframe, and the map with all keyframes has moved as far; else 0. */
+    uint32_t realigned;
     /* The share of the pixels that have a measured depth, and of those below level 16 and above level 239, 0..256, in
      * 1/256. */
     uint32_t depth_q8, dark_q8, bright_q8;
@@ -394,6 +396,8 @@ typedef struct t3r_stream_report {
     uint32_t likeness_q8;
     /* The number of Gaussians in the picture that the last keyframe saw, at most 4,096. */
     uint32_t recent;
+    /* The share of all Gaussians that the last keyframe saw, 0..256, in 1/256. */
+    uint32_t in_view_q8;
     /* The share of these that are behind something less than a quarter as far, or without a depth, 0..256, in 1/256. */
     uint32_t hidden_q8;
     /* The correlation of the hidden ones' colours with the frame's where it has no depth, as likeness_q8. */

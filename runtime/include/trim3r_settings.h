@@ -90,8 +90,8 @@
     X(exposure, toggle, 0, 1, 1, NONE, 0, BUILD, "exposure", "bring the colours of all views to their mean exposure")  \
     /* 1 = the poses of a build's views are corrected first, by a rotation and a shift of each camera, at most 1/16    \
      * radian and 1/16 scene unit an axis. A correction is discarded unless it makes the views differ by at least a    \
-     * 16th less. 0 = poses stay as given, which always holds with one view, with depth by stereo, with `warm` and     \
-     * in a stream. t3r_view_camera() returns them. */                                                                 \
+     * 16th less. 0 = poses stay as given, which always holds with one view, with depth by stereo and with `warm`.     \
+     * t3r_view_camera() returns them. In a stream poses stay, and the map may move after poses that jumped. */        \
     X(align, toggle, 0, 1, T3R_FEATURE_COMPARISON, COMPARISON, 1, BUILD, "align",                                      \
       "correct the poses of the views until they show the same surfaces in the same colours")                          \
     X(keep_analysis, toggle, 0, 1, 0, NONE, 0, FIELD, NULL,                                                            \

@@ -12,17 +12,28 @@
 #include "pointmap_work.h"
 
 #define COARSEST_SIDE 32u
-#define PAIR_LEAST 64u /* compared pixels; a pair with fewer is ignored */
-/* Expected error of a pose: 1/32 radian, and 1/32 of the median depth. */
-#define PRIOR_SHIFT 10
-#define DEVIATION_MOST_Q30 (1 << 26) /* 1/16 radian or scene unit */
-#define STILL_Q30 (1 << 17)          /* at level 0: a level ends after shorter steps */
-#define CLIPPED 32u                  /* levels: larger differences count as this much */
+#define PAIR_LEAST 64u      /* compared pixels; a pair with fewer is ignored */
+#define STILL_Q30 (1 << 17) /* at level 0: a level ends after shorter steps */
+#define CLIPPED 32u         /* levels: larger differences count as this much */
+
+/* How far a view may be from its first pose. */
+typedef struct freedom {
+    uint32_t prior_shift; /* twice -log2 of the expected error: radians, and median depths */
+    int32_t most_q30;     /* bound of a deviation: radians, and scene units */
+    uint32_t halves;      /* log2: the part of a step that is taken */
+} freedom;
+
+/* Poses that were given, of views that all move. */
+static const freedom all_given = {.prior_shift = 10, .most_q30 = 1 << 26, .halves = 1};
+/* A pose that was guessed, among views that stay. */
+static const freedom one_guessed = {.prior_shift = 8, .most_q30 = 1 << 28, .halves = 0};
 
 typedef struct alignment {
     t3r_runtime *rt;
     t3r_view *views;
     uint32_t count;
+    uint32_t first, end; /* the views that move */
+    freedom freedom;
     uint32_t stride[T3R_MAX_VIEWS]; /* stride of the compared pixels of a view, in columns and rows */
     uint32_t step, steps;           /* for progress: done and total */
     t3r_pointmap_work work;
@@ -127,7 +138,13 @@ static uint32_t coarsest_level(const t3r_view *view)
     return level;
 }
 
-/* Compares all views with all others: computes the sums of each view and the levels of each pair. */
+static bool moves(const alignment *a, uint32_t v)
+{
+    return v >= a->first && v < a->end;
+}
+
+/* Compares all views with all others, if one of both moves: computes the sums of each view and the levels of each pair.
+ */
 static t3r_status compare(alignment *a, difference *all)
 {
     uint32_t *bins = a->work.ratios[0];
@@ -139,7 +156,7 @@ static t3r_status compare(alignment *a, difference *all)
     *all = (difference){0};
     for (uint32_t from = 0; from < a->count; from++) {
         for (uint32_t to = 0; to < a->count; to++) {
-            if (from == to) {
+            if (from == to || !(moves(a, from) || moves(a, to))) {
                 continue;
             }
             memset(bins, 0, T3R_ALIGN_BINS * sizeof *bins);
@@ -161,14 +178,14 @@ static t3r_status compare(alignment *a, difference *all)
     return T3R_OK;
 }
 
-/* Takes half of one view's Gauss-Newton step, as both views of a pair move. The given pose counts as a measurement: a
- * deviation of the expected size costs as much as all differences do now. Returns the largest component of the whole
- * step. */
+/* Takes one view's Gauss-Newton step, or half of it if both views of a pair move. The first pose counts as a
+ * measurement: a deviation of the expected size costs as much as all differences do now. Returns the largest component
+ * of the whole step. */
 static int32_t step(alignment *a, uint32_t v)
 {
     t3r_align_sums *sums = &a->sums[v];
     const int64_t median_q20 = a->rt->median_depth_q20;
-    const int64_t of_turn = t3r_scale64(sums->squares_q8, PRIOR_SHIFT - 8);
+    const int64_t of_turn = t3r_scale64(sums->squares_q8, (int32_t)a->freedom.prior_shift - 8);
     const int64_t of_shift = (of_turn << 14) / ((median_q20 * median_q20) >> 26); /* at most 2^45 before */
     int64_t b_q4[T3R_ALIGN_UNKNOWNS];
     int32_t x_q30[T3R_ALIGN_UNKNOWNS], largest_q30 = 0;
@@ -181,21 +198,21 @@ static int32_t step(alignment *a, uint32_t v)
     t3r_align_solve(sums->products, b_q4, x_q30);
     for (uint32_t i = 0; i < T3R_ALIGN_UNKNOWNS; i++) {
         int32_t *deviation_q30 = &a->rt->deviation_q30[v][i];
-        *deviation_q30 =
-            t3r_clamp32(*deviation_q30 + t3r_round_shift32(x_q30[i], 1), -DEVIATION_MOST_Q30, DEVIATION_MOST_Q30);
+        *deviation_q30 = t3r_clamp32(*deviation_q30 + t3r_round_shift32(x_q30[i], a->freedom.halves),
+                                     -a->freedom.most_q30, a->freedom.most_q30);
         largest_q30 = T3R_MAX(largest_q30, t3r_abs32(x_q30[i]));
     }
     return largest_q30;
 }
 
-/* Takes a step of all views at once. Returns the largest component of any step. */
+/* Takes a step of all moving views at once. Returns the largest component of any step. */
 static int32_t step_all(alignment *a)
 {
     int32_t largest_q30 = 0;
-    for (uint32_t v = 0; v < a->count; v++) {
+    for (uint32_t v = a->first; v < a->end; v++) {
         largest_q30 = T3R_MAX(largest_q30, step(a, v));
     }
-    for (uint32_t v = 0; v < a->count; v++) {
+    for (uint32_t v = a->first; v < a->end; v++) {
         if (!place(a, v)) {
             place_as_given(a, v);
         }
@@ -235,18 +252,52 @@ static bool is_better(const difference *before, const difference *behind)
            16 * behind->levels * before->pixels <= 15 * before->levels * behind->pixels && before->levels > 0;
 }
 
+/* Begins with the views `first` to `end` as those that move. */
+static void begin(alignment *a, t3r_runtime *rt, t3r_view *views, uint32_t first, uint32_t end)
+{
+    *a = (alignment){
+        .rt = rt,
+        .views = views,
+        .count = rt->views,
+        .first = first,
+        .end = end,
+        .work = t3r_pointmap_work_of(rt),
+    };
+    for (uint32_t v = 0; v < a->count; v++) {
+        a->stride[v] = stride_of(&views[v], a->count);
+    }
+}
+
+static t3r_status align_levels(alignment *a)
+{
+    const uint32_t coarsest = coarsest_level(&a->views[0]);
+    t3r_status status = T3R_OK;
+    for (uint32_t level = coarsest + 1; level-- > 0 && status == T3R_OK;) {
+        a->step = 1 + (coarsest - level) * T3R_ALIGN_ROUNDS; /* a level may have ended early */
+        status = align_level(a, level);
+    }
+    return status;
+}
+
+t3r_status t3r_align_view(t3r_runtime *rt, t3r_view *views, uint32_t v)
+{
+    alignment a;
+    begin(&a, rt, views, v, v + 1);
+    a.freedom = one_guessed;
+    a.steps = T3R_ALIGN_STEPS;
+    return align_levels(&a);
+}
+
 t3r_status t3r_align_views(t3r_runtime *rt, t3r_view *views, uint32_t steps)
 {
-    const uint32_t coarsest = coarsest_level(&views[0]);
-    alignment a = {.rt = rt, .views = views, .count = rt->views, .steps = steps, .work = t3r_pointmap_work_of(rt)};
+    alignment a;
     difference before, behind;
-    for (uint32_t v = 0; v < a.count; v++) {
-        a.stride[v] = stride_of(&views[v], a.count);
-    }
+    begin(&a, rt, views, 0, rt->views);
+    a.freedom = all_given;
+    a.steps = steps;
     t3r_status status = measure(&a, &before);
-    for (uint32_t level = coarsest + 1; level-- > 0 && status == T3R_OK && before.pixels > 0;) {
-        a.step = 1 + (coarsest - level) * T3R_ALIGN_ROUNDS; /* a level may have ended early */
-        status = align_level(&a, level);
+    if (status == T3R_OK && before.pixels > 0) {
+        status = align_levels(&a);
     }
     if (status == T3R_OK) {
         a.step = T3R_ALIGN_STEPS - 1;

@@ -14,6 +14,12 @@ t3r_status t3r_align_views(t3r_runtime *rt, t3r_view *views, uint32_t steps)
     return T3R_OK;
 }
 
+t3r_status t3r_align_view(t3r_runtime *rt, t3r_view *views, uint32_t v)
+{
+    (void)rt, (void)views, (void)v;
+    return T3R_OK;
+}
+
 void t3r_bridge_lend(const t3r_view *views, uint32_t count, uint32_t v, int32_t exponent, const t3r_pointmap_work *work)
 {
     (void)views, (void)count, (void)v, (void)exponent, (void)work;

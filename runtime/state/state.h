@@ -55,10 +55,11 @@ typedef struct t3r_strips {
 
 /* A stream's gate: its memory of earlier frames. Any values are safe. */
 typedef struct t3r_gate {
-    int32_t refused_at_q20[3]; /* camera of the frame refused last, scene units */
-    uint16_t detail_q8;        /* mean of the keyframes' figures; 0 = none yet */
-    uint8_t refused;           /* frames in a row, for reasons that may last */
-    uint8_t unused;
+    t3r_placement contradicts_from; /* camera of the first frame of those that contradicted the map last */
+    int32_t refused_at_q20[3];      /* camera of the frame refused last, scene units */
+    uint16_t detail_q8;             /* mean of the keyframes' figures; 0 = none yet */
+    uint8_t refused;                /* frames in a row, for reasons that may last */
+    uint8_t refusal;                /* the reason of the last frame */
 } t3r_gate;
 
 struct t3r_runtime {

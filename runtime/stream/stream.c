@@ -18,6 +18,7 @@
 #include "image/develop.h"
 #include "pointmap/exposure.h"
 #include "pointmap/pointmap.h"
+#include "realign.h"
 #include "refine/refine.h"
 #include "remember.h"
 #include "stage_hash.h"
@@ -241,9 +242,15 @@ static __attribute__((noinline)) t3r_status judge(t3r_runtime *rt, uint32_t slot
     if (!rt->config.gate) {
         return t3r_is_reliable_anywhere(&view) ? T3R_OK : T3R_ERR_NO_DEPTH;
     }
+    const t3r_gate before = rt->gate;
     t3r_gate_measure(rt, &view, report);
-    report->refusal = t3r_gate_decide(rt, &view, report);
-    return T3R_OK;
+    report->refusal = t3r_gate_decide(rt, &view, &rt->camera[slot], report);
+    const t3r_status status = report->moved != 0 && rt->config.align != 0 && rt->config.views > 1 ? t3r_realign(rt, slot, report) : T3R_OK;
+    report->moved = report->moved != 0 && report->realigned == 0 && t3r_gate_contradicts(report);
+    if (status != T3R_OK) {
+        rt->gate = before;
+    }
+    return status;
 }
 
 static void count_map(const t3r_runtime *rt, t3r_stream_report *report)

@@ -87,7 +87,8 @@ static uint32_t correlation_q8(const likeness *l)
 typedef struct comparison {
     uint32_t agreeing, contradicted; /* Gaussians on the frame's surface; that it sees through */
     uint32_t levelled;               /* well exposed ones of them */
-    uint32_t recent, hidden;         /* seen by the last keyframe; of these behind something near, or without a depth */
+    uint32_t seen_last, recent;      /* seen by the last keyframe; of these in the picture */
+    uint32_t hidden;                 /* of these behind something near, or without a depth */
     likeness shown, covered;         /* colours of the agreeing ones, and of the hidden ones */
 } comparison;
 
@@ -119,6 +120,7 @@ static void compare_gaussian(const t3r_pointmap *frame, const t3r_gaussian *g, c
     const t3r_view *view = frame->view;
     const bool recent = record->idle == 0;
     t3r_projected_pixel at;
+    all->seen_last += recent;
     if (!t3r_project_to_pixel(view, g->position_q20, &at)) {
         return;
     }
@@ -154,6 +156,7 @@ static void compare_with_map(const t3r_runtime *rt, const t3r_view *view, t3r_st
     report->contradicted_q8 = share_q8(all.contradicted, report->compared);
     report->likeness_q8 = correlation_q8(&all.shown);
     report->recent = all.recent;
+    report->in_view_q8 = share_q8(all.recent, all.seen_last);
     report->hidden_q8 = share_q8(all.hidden, all.recent);
     report->hidden_likeness_q8 = correlation_q8(&all.covered);
     report->exposure_q8 = median_q8(bins, all.levelled);
@@ -177,6 +180,7 @@ void t3r_gate_measure(const t3r_runtime *rt, const t3r_view *view, t3r_stream_re
 #define GAUSSIANS_LEAST 32u    /* fewer say nothing */
 #define HIDDEN_Q8 160u         /* 5/8 of what the last keyframe saw */
 #define HIDDEN_LIKENESS_Q8 80u /* 5/16 */
+#define IN_VIEW_Q8 128u        /* half of it */
 #define DISAGREEMENT_Q8 168u   /* good poses: at most 147; 0.7 m off: at least 180 */
 #define EXPOSURE_MOST_Q8 256   /* an octave either way, as far as gains reach */
 
@@ -190,18 +194,44 @@ static const uint8_t patience[T3R_REFUSAL_COUNT] = {
     [T3R_REFUSAL_CONTRADICTS] = 4,
 };
 
+static uint32_t disagreement_q8(const t3r_stream_report *f)
+{
+    return 2 * f->contradicted_q8 + 256 - f->likeness_q8;
+}
+
+static bool is_comparable(const t3r_stream_report *f)
+{
+    return f->compared >= GAUSSIANS_LEAST;
+}
+
+bool t3r_gate_contradicts(const t3r_stream_report *f)
+{
+    return is_comparable(f) && disagreement_q8(f) >= DISAGREEMENT_Q8;
+}
+
+/* Whether the frame should show most of what the last keyframe saw, but shows hardly any of it. */
+static bool misses(const t3r_stream_report *f)
+{
+    return f->recent >= GAUSSIANS_LEAST && f->in_view_q8 >= IN_VIEW_Q8 && 8 * f->compared < f->recent;
+}
+
+bool t3r_gate_agrees(const t3r_stream_report *f, const t3r_stream_report *before)
+{
+    return is_comparable(f) && !misses(f) && disagreement_q8(f) < DISAGREEMENT_Q8 &&
+           (misses(before) || 4 * disagreement_q8(f) <= 3 * disagreement_q8(before));
+}
+
 static t3r_refusal fault_of(const t3r_runtime *rt, const t3r_stream_report *f)
 {
-    const bool comparable = f->compared >= GAUSSIANS_LEAST;
     return f->depth_q8 < LEAST_DEPTH_Q8 ? T3R_REFUSAL_NO_DEPTH
            : f->dark_q8 > UNLIT_Q8      ? T3R_REFUSAL_DARK
            : f->bright_q8 > UNLIT_Q8    ? T3R_REFUSAL_BRIGHT
            : f->recent >= GAUSSIANS_LEAST && f->hidden_q8 >= HIDDEN_Q8 && f->hidden_likeness_q8 < HIDDEN_LIKENESS_Q8
                ? T3R_REFUSAL_COVERED
-           : comparable && 2 * f->contradicted_q8 + 256 - f->likeness_q8 >= DISAGREEMENT_Q8 ? T3R_REFUSAL_CONTRADICTS
-           : comparable && t3r_abs32(f->exposure_q8) > EXPOSURE_MOST_Q8                     ? T3R_REFUSAL_EXPOSURE
-           : 8 * f->detail_q8 < 3u * rt->gate.detail_q8                                     ? T3R_REFUSAL_BLURRED
-                                                                                            : T3R_REFUSAL_NONE;
+           : t3r_gate_contradicts(f) || misses(f)                             ? T3R_REFUSAL_CONTRADICTS
+           : is_comparable(f) && t3r_abs32(f->exposure_q8) > EXPOSURE_MOST_Q8 ? T3R_REFUSAL_EXPOSURE
+           : 8 * f->detail_q8 < 3u * rt->gate.detail_q8                       ? T3R_REFUSAL_BLURRED
+                                                                              : T3R_REFUSAL_NONE;
 }
 
 /* Whether the camera is near the frame refused last: frames of a new piece follow one path, wrong poses do not. */
@@ -215,7 +245,7 @@ static bool follows_refused(const t3r_runtime *rt, const t3r_view *view)
     return near;
 }
 
-t3r_refusal t3r_gate_decide(t3r_runtime *rt, const t3r_view *view, t3r_stream_report *report)
+t3r_refusal t3r_gate_decide(t3r_runtime *rt, const t3r_view *view, const t3r_camera *camera, t3r_stream_report *report)
 {
     t3r_gate *gate = &rt->gate;
     const t3r_refusal fault = fault_of(rt, report);
@@ -224,6 +254,10 @@ t3r_refusal t3r_gate_decide(t3r_runtime *rt, const t3r_view *view, t3r_stream_re
     }
     const bool waited = patience[fault] > 0 && gate->refused >= patience[fault];
     report->moved = waited && fault == T3R_REFUSAL_CONTRADICTS;
+    if (fault == T3R_REFUSAL_CONTRADICTS && gate->refusal != T3R_REFUSAL_CONTRADICTS) {
+        t3r_note_placement(&gate->contradicts_from, camera);
+    }
+    gate->refusal = (uint8_t)fault;
     if (fault != T3R_REFUSAL_NONE && !waited) {
         gate->refused = (uint8_t)T3R_MIN(gate->refused + (patience[fault] > 0), UINT8_MAX);
         memcpy(gate->refused_at_q20, view->pose.position_q20, sizeof gate->refused_at_q20);

@@ -9,6 +9,7 @@
 #include "state/state.h"
 
 #define FINER_Q8 256        /* log2: a keyframe with pixels this much narrower on the surface replaces the Gaussian */
+#define ALIKE_Q7 (72 << 7)  /* levels, of the three channels together */
 #define LOST_Q10 4096       /* log2: a Gaussian that has faded so far and is hidden leaves */
 #define WIDEN_STEP_Q10 64   /* log2 of density: smaller changes wait until they add up */
 #define SCALE_MOST_Q10 4096 /* log2: bound of one step of the width */
@@ -26,23 +27,39 @@ int32_t t3r_grain_q8(const t3r_view *view, int32_t z_q20)
     return t3r_round_shift32(log_z - log_f, 8);
 }
 
+bool t3r_map_is_alike(const t3r_gaussian *g, const t3r_view *view, size_t pixel)
+{
+    int32_t off_q7 = 0;
+    for (int c = 0; c < 3; c++) {
+        off_q7 += t3r_abs32(g->colour_q7[c] - view->colour[c][pixel] * 128);
+    }
+    return off_q7 <= ALIKE_Q7;
+}
+
 typedef enum look { UNSEEN, HIDDEN, SEEN_AFAR, SEEN, CONTRADICTED, COARSE } look;
 
 static look look_at(const t3r_gaussian *g, const t3r_map_record *record, const t3r_pointmap *keyframe)
 {
     const t3r_view *view = keyframe->view;
     t3r_projected_pixel projected;
-    if (!t3r_project_to_pixel(view, g->position_q20, &projected) || !t3r_is_measured(view->validity[projected.pixel])) {
+    if (!t3r_project_to_pixel(view, g->position_q20, &projected)) {
         return UNSEEN;
+    }
+    /* a Gaussian of an earlier piece has no place that can be trusted: it may be neither hidden nor unseen, and where
+     * it is on the surface it must have the surface's colour */
+    const bool earlier = record->fitted == T3R_EARLIER_PIECE;
+    if (!t3r_is_measured(view->validity[projected.pixel])) {
+        return earlier ? CONTRADICTED : UNSEEN;
     }
     int32_t there = t3r_depth_q20(keyframe->scale, view->depth[projected.pixel]);
     if (t3r_is_one_surface(there, projected.z_q20, 16)) {
         int32_t wider_q8 = t3r_grain_q8(view, projected.z_q20) - record->grain_q8;
-        return wider_q8 < -FINER_Q8 ? COARSE : wider_q8 <= T3R_AFAR_Q8 ? SEEN : SEEN_AFAR;
+        return earlier && !t3r_map_is_alike(g, view, projected.pixel) ? CONTRADICTED
+               : wider_q8 < -FINER_Q8                                 ? COARSE
+               : wider_q8 <= T3R_AFAR_Q8                              ? SEEN
+                                                                      : SEEN_AFAR;
     }
-    /* a Gaussian of an earlier piece has no place that can be trusted: it may not hide either */
-    const bool leaves = record->fitted == T3R_EARLIER_PIECE || t3r_seen_through(keyframe, &projected, false);
-    return leaves ? CONTRADICTED : HIDDEN;
+    return earlier || t3r_seen_through(keyframe, &projected, false) ? CONTRADICTED : HIDDEN;
 }
 
 static void move_to(t3r_map *map, uint32_t from, uint32_t to)
@@ -231,14 +248,13 @@ void t3r_map_thin(t3r_map *map, const t3r_map_cut *cut)
     map->count = kept;
 }
 
-static bool in_range(const int32_t position_q20[3])
+static bool in_range(const int64_t position_q20[3])
 {
+    bool inside = true;
     for (int i = 0; i < 3; i++) {
-        if (position_q20[i] <= -T3R_POSITION_MOST_Q20 || position_q20[i] >= T3R_POSITION_MOST_Q20) {
-            return false;
-        }
+        inside = inside && t3r_abs64(position_q20[i]) < T3R_POSITION_MOST_Q20;
     }
-    return true;
+    return inside;
 }
 
 uint32_t t3r_map_append(t3r_map *map, uint32_t count, const t3r_pointmap *keyframe, const t3r_budget_settings *settings,
@@ -251,7 +267,8 @@ uint32_t t3r_map_append(t3r_map *map, uint32_t count, const t3r_pointmap *keyfra
         while (!t3r_retained(view, pixel)) {
             pixel++; /* the head made one Gaussian for each of these, in this order */
         }
-        if (!in_range(map->gaussians[before + i].position_q20)) {
+        const int32_t *p_q20 = map->gaussians[before + i].position_q20;
+        if (!in_range((const int64_t[3]){p_q20[0], p_q20[1], p_q20[2]})) {
             continue;
         }
         map->gaussians[map->count] = map->gaussians[before + i];
@@ -272,20 +289,23 @@ void t3r_map_begin_piece(t3r_map *map)
     }
 }
 
+void t3r_map_place(t3r_map *map, uint32_t i, const int64_t position_q20[3], uint32_t *kept)
+{
+    if (in_range(position_q20)) {
+        for (int k = 0; k < 3; k++) {
+            map->gaussians[i].position_q20[k] = (int32_t)position_q20[k];
+        }
+        move_to(map, i, (*kept)++);
+    }
+}
+
 void t3r_map_move(t3r_map *map, const int64_t by_q20[3])
 {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < map->count; i++) {
-        int32_t *position_q20 = map->gaussians[i].position_q20;
-        bool stays = true;
-        for (int k = 0; k < 3; k++) {
-            int64_t moved = position_q20[k] + by_q20[k];
-            stays = stays && t3r_abs64(moved) < T3R_POSITION_MOST_Q20;
-            position_q20[k] = (int32_t)t3r_clamp64(moved, -T3R_POSITION_MOST_Q20, T3R_POSITION_MOST_Q20);
-        }
-        if (stays) {
-            move_to(map, i, kept++);
-        }
+        const int32_t *p_q20 = map->gaussians[i].position_q20;
+        t3r_map_place(map, i, (const int64_t[3]){p_q20[0] + by_q20[0], p_q20[1] + by_q20[1], p_q20[2] + by_q20[2]},
+                      &kept);
     }
     map->count = kept;
 }

@@ -3,6 +3,7 @@
 #ifndef T3R_STREAM_MAP_H
 #define T3R_STREAM_MAP_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "budget/budget.h"
@@ -30,6 +31,9 @@ t3r_map t3r_map_of(const t3r_runtime *rt);
 
 /* Returns log2 of a pixel's width z / (fx + fy) on a surface at z, Q8. */
 int32_t t3r_grain_q8(const t3r_view *view, int32_t z_q20);
+
+/* Whether a Gaussian has the colour of the pixel, within 24 levels a channel in the mean. */
+bool t3r_map_is_alike(const t3r_gaussian *g, const t3r_view *view, size_t pixel);
 
 /* Updates every Gaussian from a keyframe: removes those that it sees through or sees far finer, and fades those that
  * it does not see to half the density in `half_life` keyframes (0: never, else up to 1,024). `keyframes`: number of
@@ -66,9 +70,13 @@ void t3r_map_thin(t3r_map *map, const t3r_map_cut *cut);
 uint32_t t3r_map_append(t3r_map *map, uint32_t count, const t3r_pointmap *keyframe, const t3r_budget_settings *settings,
                         const t3r_cluster *clusters);
 
-/* Makes all Gaussians those of an earlier piece: a later keyframe that measures their pixel and does not see them
- * removes them. */
+/* Makes all Gaussians those of an earlier piece: a later keyframe in whose picture they are removes them, unless it
+ * sees them in their colours. */
 void t3r_map_begin_piece(t3r_map *map);
+
+/* Moves Gaussian i to a position and to number *kept, and counts it; drops it if the position is out of the frame's
+ * range. */
+void t3r_map_place(t3r_map *map, uint32_t i, const int64_t position_q20[3], uint32_t *kept);
 
 /* Moves all positions; Gaussians that leave the frame's range are removed. */
 void t3r_map_move(t3r_map *map, const int64_t by_q20[3]);

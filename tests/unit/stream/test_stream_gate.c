@@ -16,7 +16,7 @@ static uint8_t rgb[PIXELS * 3];
 static uint16_t depth[PIXELS];
 static t3r_camera camera;
 
-static t3r_runtime *begin(uint32_t gate)
+static t3r_runtime *begin_with(uint32_t gate, uint32_t align)
 {
     t3r_config config = t3r_default_config(W, H, LIVE, CAP);
     config.stream = 1;
@@ -24,6 +24,7 @@ static t3r_runtime *begin(uint32_t gate)
     config.fit_passes = 0;
     config.remember = 2;
     config.gate = gate;
+    config.align = align;
     t3r_runtime *rt;
     t3r_plan_info plan;
     assert_int_equal(t3r_plan(&config, &plan), T3R_OK);
@@ -31,6 +32,11 @@ static t3r_runtime *begin(uint32_t gate)
     arena_bytes = plan.bytes;
     assert_int_equal(t3r_init(&rt, arena, plan.bytes, &config), T3R_OK);
     return rt;
+}
+
+static t3r_runtime *begin(uint32_t gate)
+{
+    return begin_with(gate, 1);
 }
 
 static void look(uint32_t frame)
@@ -215,28 +221,91 @@ TEST(without_a_gate)
     }
 }
 
-/* A jump that lasts begins a new piece: what the new frames cover and do not show leaves the map. */
+enum { REFUSED = 4 }; /* frames that contradict the map before one is taken */
+
+/* Takes frames that contradict the map until one is taken. */
+static void take_contradicting(t3r_runtime *rt, void (*apply)(void), t3r_stream_report *report)
+{
+    for (uint32_t i = 0; i <= REFUSED; i++) {
+        look((FIRST + i) * STRIDE);
+        apply();
+        assert_int_equal(take(rt, report), T3R_OK);
+        assert_int_equal(report->refusal, i < REFUSED ? T3R_REFUSAL_CONTRADICTS : T3R_REFUSAL_NONE);
+    }
+}
+
+static void walk_on(t3r_runtime *rt, void (*apply)(void))
+{
+    for (uint32_t i = REFUSED + 1; i < REFUSED + 6; i++) {
+        t3r_stream_report report;
+        look((FIRST + i) * STRIDE);
+        apply();
+        assert_int_equal(take(rt, &report), T3R_OK);
+        assert_int_equal(report.refusal, T3R_REFUSAL_NONE);
+        assert_int_equal(report.moved + report.realigned, 0);
+    }
+}
+
+static uint8_t drawn[2][PIXELS * 3];
+
+static void draw(t3r_runtime *rt, uint8_t *picture)
+{
+    const t3r_target target = {.width = W, .height = H, .rgb = picture, .rgb_stride_bytes = W * 3};
+    assert_int_equal(t3r_render(rt, &camera, &target), T3R_OK);
+}
+
+/* After poses that jump, the map moves with them: it looks from the new poses as it did from the old ones. */
+TEST(a_lasting_jump_moves_the_map)
+{
+    t3r_runtime *rt = begin(1);
+    walk(rt, 0, FIRST);
+    look((FIRST - 1) * STRIDE);
+    draw(rt, drawn[0]);
+    t3r_stream_report report;
+    take_contradicting(rt, jump, &report);
+    assert_true(report.moved == 0 && report.realigned == 1 && report.removed < CAP / 50);
+    assert_true(rt->remembered > 0);
+    look((FIRST - 1) * STRIDE);
+    jump();
+    draw(rt, drawn[1]);
+    uint64_t squares = 0;
+    for (uint32_t i = 0; i < sizeof drawn[0]; i++) {
+        const int32_t off = drawn[0][i] - drawn[1][i];
+        squares += (uint64_t)(off * off);
+    }
+    assert_true(squares < 65 * sizeof drawn[0]); /* 30 dB */
+    walk_on(rt, jump);
+}
+
+/* Without alignment a new piece begins: what the new frames cover and do
+ * not show leaves the map. */
 TEST(a_lasting_jump_begins_a_new_piece)
 {
-    enum { REFUSED = 4 };
+    t3r_runtime *rt = begin_with(1, 0);
+    walk(rt, 0, FIRST);
+    t3r_stream_report report;
+    take_contradicting(rt, jump, &report);
+    assert_true(report.moved == 1 && report.realigned == 0);
+    assert_true(report.removed > CAP / 4 && rt->remembered == 0);
+    walk_on(rt, jump);
+}
+
+/* A room of the same shape that has none of the colours. */
+static void inverted(void)
+{
+    for (uint32_t i = 0; i < sizeof rgb; i++) {
+        rgb[i] = (uint8_t)(255 - rgb[i]);
+    }
+}
+
+TEST(another_place_begins_a_new_piece)
+{
     t3r_runtime *rt = begin(1);
     walk(rt, 0, FIRST);
     t3r_stream_report report;
-    for (uint32_t i = 0; i <= REFUSED; i++) {
-        look((FIRST + i) * STRIDE);
-        jump();
-        assert_int_equal(take(rt, &report), T3R_OK);
-        assert_int_equal(report.refusal, i < REFUSED ? T3R_REFUSAL_CONTRADICTS : T3R_REFUSAL_NONE);
-        assert_int_equal(report.moved, i == REFUSED);
-    }
-    assert_true(report.removed > CAP / 4 && rt->remembered == 0);
-    for (uint32_t i = REFUSED + 1; i < REFUSED + 6; i++) {
-        look((FIRST + i) * STRIDE);
-        jump();
-        assert_int_equal(take(rt, &report), T3R_OK);
-        assert_int_equal(report.refusal, T3R_REFUSAL_NONE);
-        assert_int_equal(report.moved, 0);
-    }
+    take_contradicting(rt, inverted, &report);
+    assert_true(report.moved == 1 && report.realigned == 0);
+    walk_on(rt, inverted);
 }
 
 /* Poses that jump about are no path. */
