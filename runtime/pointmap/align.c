@@ -252,19 +252,13 @@ static bool is_better(const difference *before, const difference *behind)
            16 * behind->levels * before->pixels <= 15 * before->levels * behind->pixels && before->levels > 0;
 }
 
-/* Begins with the views `first` to `end` as those that move. */
-static void begin(alignment *a, t3r_runtime *rt, t3r_view *views, uint32_t first, uint32_t end)
+/* Prepares what follows from the runtime and its views. */
+static void prepare(alignment *a)
 {
-    *a = (alignment){
-        .rt = rt,
-        .views = views,
-        .count = rt->views,
-        .first = first,
-        .end = end,
-        .work = t3r_pointmap_work_of(rt),
-    };
+    a->count = a->rt->views;
+    a->work = t3r_pointmap_work_of(a->rt);
     for (uint32_t v = 0; v < a->count; v++) {
-        a->stride[v] = stride_of(&views[v], a->count);
+        a->stride[v] = stride_of(&a->views[v], a->count);
     }
 }
 
@@ -281,20 +275,17 @@ static t3r_status align_levels(alignment *a)
 
 t3r_status t3r_align_view(t3r_runtime *rt, t3r_view *views, uint32_t v)
 {
-    alignment a;
-    begin(&a, rt, views, v, v + 1);
-    a.freedom = one_guessed;
-    a.steps = T3R_ALIGN_STEPS;
+    alignment a = {
+        .rt = rt, .views = views, .first = v, .end = v + 1, .freedom = one_guessed, .steps = T3R_ALIGN_STEPS};
+    prepare(&a);
     return align_levels(&a);
 }
 
 t3r_status t3r_align_views(t3r_runtime *rt, t3r_view *views, uint32_t steps)
 {
-    alignment a;
+    alignment a = {.rt = rt, .views = views, .end = rt->views, .freedom = all_given, .steps = steps};
     difference before, behind;
-    begin(&a, rt, views, 0, rt->views);
-    a.freedom = all_given;
-    a.steps = steps;
+    prepare(&a);
     t3r_status status = measure(&a, &before);
     if (status == T3R_OK && before.pixels > 0) {
         status = align_levels(&a);

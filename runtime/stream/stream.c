@@ -245,7 +245,8 @@ static __attribute__((noinline)) t3r_status judge(t3r_runtime *rt, uint32_t slot
     const t3r_gate before = rt->gate;
     t3r_gate_measure(rt, &view, report);
     report->refusal = t3r_gate_decide(rt, &view, &rt->camera[slot], report);
-    const t3r_status status = report->moved != 0 && rt->config.align != 0 && rt->config.views > 1 ? t3r_realign(rt, slot, report) : T3R_OK;
+    const t3r_status status =
+        report->moved != 0 && rt->config.align != 0 && rt->config.views > 1 ? t3r_realign(rt, slot, report) : T3R_OK;
     report->moved = report->moved != 0 && report->realigned == 0 && t3r_gate_contradicts(report);
     if (status != T3R_OK) {
         rt->gate = before;
