@@ -122,6 +122,7 @@ T3R_STATIC_ASSERT_(offsetof(struct t3r_unpacked_, number) % T3R_ALIGNOF_(uint64_
     X(t3r_stream_report, shown)                                                                                        \
     X(t3r_stream_report, refusal)                                                                                      \
     X(t3r_stream_report, moved)                                                                                        \
+    X(t3r_stream_report, realigned)                                                                                    \
     X(t3r_stream_report, depth_q8)                                                                                     \
     X(t3r_stream_report, dark_q8)                                                                                      \
     X(t3r_stream_report, bright_q8)                                                                                    \
@@ -130,6 +131,7 @@ T3R_STATIC_ASSERT_(offsetof(struct t3r_unpacked_, number) % T3R_ALIGNOF_(uint64_
     X(t3r_stream_report, contradicted_q8)                                                                              \
     X(t3r_stream_report, likeness_q8)                                                                                  \
     X(t3r_stream_report, recent)                                                                                       \
+    X(t3r_stream_report, in_view_q8)                                                                                   \
     X(t3r_stream_report, hidden_q8)                                                                                    \
     X(t3r_stream_report, hidden_likeness_q8)                                                                           \
     X(t3r_stream_report, exposure_q8)
