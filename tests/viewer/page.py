@@ -34,9 +34,13 @@ def drawn(page, action):
     return page.value(PICTURE)
 
 
+SIMD128 = 1 << 16  # T3R_CPU_SIMD128
+
+
 def opened(page, path):
     page.open(path)
     page.wait("document.body.dataset.drawn !== undefined && document.body.dataset.gaussians !== undefined")
+    check(page.value("document.body.dataset.cpu") == str(SIMD128), "the page draws with vectors")
 
 
 def slide(page, value):

@@ -190,12 +190,21 @@ EXPORT(start) int32_t module_start(void *arena, uint32_t bytes)
     const t3r_hooks hooks = {.progress = report_progress, .stage_hash = keep_hash};
     t3r_status status = t3r_init(&module.runtime, arena, bytes, &module.config);
     if (status == T3R_OK) {
+        status = t3r_set_cpu(module.runtime, t3r_cpu_found());
+    }
+    if (status == T3R_OK) {
         status = t3r_set_hooks(module.runtime, &hooks);
     }
     if (status == T3R_OK && module.weight_bytes > 0) {
         status = t3r_bind_head(module.runtime, module.weights, module.weight_bytes);
     }
     return status;
+}
+
+/* Returns the features that the inner loops use, T3R_CPU_... */
+EXPORT(cpu) uint32_t module_cpu(void)
+{
+    return t3r_get_cpu(module.runtime);
 }
 
 static t3r_gaussian gaussian_at(uint32_t index)

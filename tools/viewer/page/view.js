@@ -357,7 +357,8 @@ canvas.onkeydown = (event) => {
 /* ---- the start --------------------------------------------------------------------------------------------------------------------- */
 
 const load = () => ask("load", { frames: data.frames.filter((f) => f.recorded).map((f) => cameraOf(f, data.width)) });
-done.open = () => {
+done.open = ({ cpu }) => {
+  document.body.dataset.cpu = cpu; /* for tests: T3R_CPU_... of the inner loops */
   if (data.scene) load();
   else build();
 };

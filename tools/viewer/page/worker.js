@@ -49,7 +49,7 @@ async function open({ wasm, bundle, width, height, most }) {
   need(runtime.start(arena, bytes), "start");
   const pixels = Math.max(most.width * most.height, width * height);
   opened = { width, height, arena: bytes, rgb: place(pixels * 3), depth: place(pixels * 4), alpha: place(pixels * 2) };
-  return { arena: bytes };
+  return { arena: bytes, cpu: runtime.cpu() };
 }
 
 const hex = (hash) => BigInt.asUintN(64, hash).toString(16).padStart(16, "0");
