@@ -27,7 +27,7 @@ STAGES = "Object.fromEntries([...document.querySelectorAll('#stages tbody tr')].
 
 def drawn(page, action):
     """Returns the picture after an action that draws."""
-    page.wait("!busy")
+    page.wait("isStill()")
     before = page.value("Number(document.body.dataset.drawn ?? 0)")
     action()
     page.wait(f"Number(document.body.dataset.drawn ?? 0) > {before}")
@@ -61,7 +61,7 @@ def budget(page, room):
         native = json.loads(run(TRIM3R, "replay", room, "--context", "0,2", "--gaussians", count, "--json").stdout)["stages"]
         for stage, digits in page.value(STAGES).items():
             check(native[stage] == digits, f"{share} %, {stage}: {digits} in the page, {native[stage]} natively")
-        page.wait("!busy && !waiting.draw")
+        page.wait("isStill()")
         seen.add(page.value(PICTURE))
     check(len(seen) == 4, "every budget is another picture")
     check("dB" in page.value(STATUS), f"scores are told: {page.value(STATUS)}")
@@ -140,7 +140,7 @@ def harmonics(page, room, folder):
         file.write(b"".join(struct.pack(f"<{len(row)}f", *row) for row in rows))
     run(TRIM3R, "view", scene, room, "--context", "0,2", "-o", f"{folder}/harmonics.html")
     opened(page, f"{folder}/harmonics.html")
-    page.wait("!busy && !waiting.draw")
+    page.wait("isStill()")
     shown = float(re.search(r"frame 1 ([0-9.]+) dB", page.value(STATUS))[1])
     row = json.loads(run(TRIM3R, "eval", room, "--context", "0,2", "--target", "1", "--scene", scene, "--json").stdout)["rows"][0]
     check(abs(shown - row["psnr_all"]) <= 0.005, f"harmonics: {shown} dB in the page, {row['psnr_all']} dB by eval")
@@ -152,6 +152,7 @@ with tempfile.TemporaryDirectory() as scratch:
     page = browser.Page(program, timeout=120)
     try:
         opened(page, f"{scratch}/both.html")
+        page.wait("document.getElementById('bits').dataset.same !== undefined && isStill()")
         check(page.value("document.getElementById('bits').dataset.same") == "true", "the page has the native hash")
         accessible(page)
         shows(page)

@@ -56,7 +56,7 @@ static char *json_of(const viewer_page *page)
     json_add_integer(root, "views", page->data.config.views);
     json_add_integer(root, "valid", page->valid_points);
     json_add_integer(root, "gaussians", page->gaussians);
-    cJSON_AddBoolToObject(root, "scene", page->data.scene != NULL);
+    cJSON_AddBoolToObject(root, "file", page->is_file);
     if (page->hashed) {
         json_add_hash(root, "hash", page->hash);
     } else {

@@ -20,6 +20,7 @@ typedef struct viewer_page {
     uint32_t viewpoint_count;
     uint32_t valid_points; /* of the context views; 0 = the page cannot build */
     uint32_t gaussians;    /* the initial budget */
+    bool is_file;          /* the scene is that of a file; else the one that the page builds first */
     bool hashed;           /* `hash` is the hash of that build here */
     uint64_t hash;
     bool follows; /* the page asks its server for a growing map: follow.h */

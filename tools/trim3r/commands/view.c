@@ -271,7 +271,12 @@ static int show(const view_options *o, const scene_file *scene, reconstruction *
 {
     char title[256];
     viewpoints v = {.count = 0};
-    viewer_page page = {.title = title, .names = v.names, .viewpoints = v.frames, .follows = o->follow != NULL};
+    scene_file built;
+    viewer_page page = {.title = title,
+                        .names = v.names,
+                        .viewpoints = v.frames,
+                        .follows = o->follow != NULL,
+                        .is_file = o->scene != NULL};
     snprintf(title, sizeof title, "%s%s%s", last_part(o->inputs[0]), o->inputs[1] != NULL ? " and " : "",
              o->inputs[1] != NULL ? last_part(o->inputs[1]) : "");
     int code = CLI_OK;
@@ -284,11 +289,10 @@ static int show(const view_options *o, const scene_file *scene, reconstruction *
     page.viewpoint_count = v.count;
     t3r_config *config = &page.data.config;
     const uint32_t points = config->width * config->height * config->views;
-    config->max_gaussians = points > 0 ? points : 1;
-    if (o->scene != NULL) {
-        page.data.scene = scene;
-        config->max_gaussians = scene->count > config->max_gaussians ? scene->count : config->max_gaussians;
-    }
+    built = (scene_file){
+        .frame = r->scene.frame, .gaussians = (t3r_gaussian *)r->scene.gaussians, .count = r->scene.count};
+    page.data.scene = o->scene != NULL ? scene : &built;
+    config->max_gaussians = points > page.data.scene->count ? points : page.data.scene->count;
     if (code == CLI_OK) {
         code = o->output != NULL ? write_file(o, &page) : serve(o, &page);
     }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 "use strict";
-/* The runtime in a thread of its own. It answers the page's requests in order. */
+/* A runtime in a thread of its own, which builds scenes or only draws them. It answers the page's requests in order. */
 let runtime, opened;
 
 const ALIGN = 64, PAGE = 65536;
@@ -37,49 +37,61 @@ function need(status, what) {
   if (status !== 0) throw new Error(`${what}: status ${status}`);
 }
 
-async function open({ wasm, bundle, width, height, most }) {
+async function open({ wasm, bundle, width, height, most, builds }) {
   const { instance } = await WebAssembly.instantiate(wasm, { page });
   runtime = instance.exports;
   end = runtime.__heap_base.value;
   const at = place(bundle.byteLength);
   new Uint8Array(runtime.memory.buffer).set(new Uint8Array(bundle), at);
-  const bytes = runtime.open(at, bundle.byteLength, most.width, most.height);
+  const w = Math.max(most.width, width), h = Math.max(most.height, height); /* scores are of recorded frames */
+  const bytes = runtime.open(at, bundle.byteLength, w, h, builds ? 1 : 0);
   if (bytes === 0) throw new Error("the runtime refuses the data of this page");
   const arena = place(bytes);
   need(runtime.start(arena, bytes), "start");
-  const pixels = Math.max(most.width * most.height, width * height);
-  opened = { width, height, arena: bytes, rgb: place(pixels * 3), depth: place(pixels * 4), alpha: place(pixels * 2) };
+  opened = { width, height, rgb: place(w * h * 3), depth: place(w * h * 4), alpha: place(w * h * 2), carried: null };
   return { arena: bytes, cpu: runtime.cpu() };
 }
 
 const hex = (hash) => BigInt.asUintN(64, hash).toString(16).padStart(16, "0");
 
-function built() {
-  const stages = [];
-  for (let stage = 0; stage < STAGES; stage++) {
-    const hash = BigInt.asUintN(64, runtime.hash(stage));
-    if (hash !== 0n) stages.push({ stage, ms: times[stage], hash: hex(hash) });
-  }
-  return { gaussians: runtime.gaussians(), valid: runtime.valid_points(), exponent: runtime.exponent(), stages,
-           hash: hex(runtime.hash(STAGES)) };
+/* Memory for a scene that is carried in or out. */
+function carried(bytes) {
+  if (!opened.carried || opened.carried.bytes < bytes) opened.carried = { at: place(bytes), bytes };
+  return opened.carried.at;
 }
 
-function build({ gaussians, frames }) {
+const described = () => ({ gaussians: runtime.gaussians(), valid: runtime.valid_points(), exponent: runtime.exponent() });
+
+function build({ gaussians }) {
   times = new Float64Array(STAGES);
   begun = performance.now();
   building = true;
   const status = runtime.build(gaussians);
   building = false;
   need(status, "build");
-  const result = built();
-  return { ...result, psnr: frames.map(psnr) };
+  const stages = [];
+  for (let stage = 0; stage < STAGES; stage++) {
+    const hash = BigInt.asUintN(64, runtime.hash(stage));
+    if (hash !== 0n) stages.push({ stage, ms: times[stage], hash: hex(hash) });
+  }
+  const bytes = runtime.carried_bytes(runtime.gaussians()), at = carried(bytes);
+  runtime.give(at);
+  return { ...described(), stages, hash: hex(runtime.hash(STAGES)), scene: bytesAt(at, bytes).slice() };
 }
 
-function load({ frames }) {
+function load() {
   need(runtime.load(), "the scene");
-  return { gaussians: runtime.gaussians(), valid: 0, exponent: runtime.exponent(), stages: [], hash: null,
-           psnr: frames.map(psnr) };
+  return described();
 }
+
+function take({ scene }) {
+  const at = carried(scene.length);
+  bytesAt(at, scene.length).set(scene);
+  need(runtime.take(at), "the scene");
+  return described();
+}
+
+const score = ({ frames }) => ({ psnr: frames.map(psnr) });
 
 const fixed = (value, bits) => Math.round(value * 2 ** bits);
 const fixed64 = (value) => BigInt(Math.round(value * 4294967296));
@@ -185,19 +197,21 @@ const painters = {
 };
 const OF_FRAME = ["frame", "error", "mask", "clusters", "texture"];
 
-function draw({ camera, width, height, show, frame }) {
+function draw({ camera, width, height, show, frame, coarse }) {
   const flat = OF_FRAME.includes(show);
   const w = flat ? opened.width : width, h = flat ? opened.height : height;
   const ms = flat && show !== "error" ? 0 : render(camera, w, h);
   const pixels = paint(w * h, painters[show](w * h, frame));
-  return { pixels, width: w, height: h, ms, show, frame };
+  const hash = ms > 0 && !coarse ? hex(runtime.picture_hash(opened.rgb, w, h)) : null;
+  return { pixels, width: w, height: h, ms, show, coarse, hash };
 }
 
-const answers = { open, build, load, draw };
+const answers = { open, build, load, take, score, draw };
 onmessage = async ({ data }) => {
   try {
     const result = await answers[data.kind](data);
-    postMessage({ ...result, kind: data.kind, id: data.id }, result.pixels ? [result.pixels.buffer] : []);
+    const moved = [result.pixels, result.scene].filter(Boolean).map((array) => array.buffer);
+    postMessage({ ...result, kind: data.kind, id: data.id }, moved);
   } catch (error) {
     postMessage({ kind: "failed", id: data.id, text: error.message });
   }
