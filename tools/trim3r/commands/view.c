@@ -172,11 +172,11 @@ static int prepare_recording(const view_options *o, reconstruction *r, viewpoint
     return code;
 }
 
-static void prepare_scene(const scene_file *scene, viewpoints *v, viewer_page *page)
+static int prepare_scene(const scene_file *scene, viewpoints *v, viewer_page *page)
 {
     enum { WIDTH = 640, HEIGHT = 480 };
     page->data.config = t3r_default_config(WIDTH, HEIGHT, 0, 1);
-    viewpoints_add_before(v, scene, WIDTH, HEIGHT);
+    return viewpoints_add_before(v, scene, WIDTH, HEIGHT);
 }
 
 /* ---- output ---------------------------------------------------------------------------------------------------- */
@@ -283,7 +283,7 @@ static int show(const view_options *o, const scene_file *scene, reconstruction *
     if (o->recording != NULL) {
         code = prepare_recording(o, r, &v, &page);
     } else {
-        prepare_scene(scene, &v, &page);
+        code = prepare_scene(scene, &v, &page);
         page.gaussians = scene->count;
     }
     page.viewpoint_count = v.count;

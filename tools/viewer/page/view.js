@@ -152,7 +152,7 @@ const most = sized(Math.min(Math.max(screen.width, innerWidth) * density(), Math
 ({ width: canvas.width, height: canvas.height } = most);
 
 /* While the camera moves, pictures are as coarse as their pace demands. Once it rests, one is drawn whole. */
-const PACE_MS = 28, REST_MS = 150, COARSEST = .2;
+const PACE_MS = 28, REST_MS = 150, COARSEST = .3;
 let coarseness = .5, resting = 0;
 
 function keepPace(took) {

@@ -182,6 +182,6 @@ int packed_ply_parse(const ply_header *header, const uint8_t *bytes, size_t coun
         return -1;
     }
     const scene_rows rows = {
-        .count = vertices, .degree = file.degree, .mip = header->mip, .read = read_row, .user = &file};
+        .count = vertices, .degree = file.degree, .mip = header->mip, .up = header->up, .read = read_row, .user = &file};
     return sink->take(sink->user, &rows, error, error_bytes);
 }
