@@ -11,8 +11,9 @@
 
 /* Embedded by the build: page/view.html with marks for the others, such as <!--style-->. The module is empty if there
  * was no compiler for it. */
-extern const char viewer_html[], viewer_css[], viewer_js[], viewer_follow_js[], viewer_worker_js[], viewer_wasm[];
-extern const unsigned viewer_wasm_bytes;
+extern const char viewer_html[], viewer_css[], viewer_js[], viewer_follow_js[], viewer_worker_js[], viewer_wasm[],
+    viewer_threads_wasm[];
+extern const unsigned viewer_wasm_bytes, viewer_threads_wasm_bytes;
 
 bool viewer_page_is_built(void)
 {
@@ -57,6 +58,7 @@ static char *json_of(const viewer_page *page)
     json_add_integer(root, "valid", page->valid_points);
     json_add_integer(root, "gaussians", page->gaussians);
     cJSON_AddBoolToObject(root, "file", page->is_file);
+    cJSON_AddBoolToObject(root, "served", page->is_served);
     if (page->hashed) {
         json_add_hash(root, "hash", page->hash);
     } else {
@@ -88,7 +90,7 @@ static void write_json(FILE *out, const char *text)
 }
 
 typedef struct parts {
-    bool follows;
+    bool follows, is_served;
     const char *json;
     const uint8_t *bundle;
     size_t bundle_bytes;
@@ -100,6 +102,8 @@ static void write_part(FILE *out, const char *mark, const parts *p)
         fputs(viewer_css, out);
     } else if (strncmp(mark, "<!--data-->", 11) == 0) {
         write_json(out, p->json);
+    } else if (strncmp(mark, "<!--wasm-->", 11) == 0 && p->is_served) {
+        markup_base64(out, (const uint8_t *)viewer_threads_wasm, viewer_threads_wasm_bytes);
     } else if (strncmp(mark, "<!--wasm-->", 11) == 0) {
         markup_base64(out, (const uint8_t *)viewer_wasm, viewer_wasm_bytes);
     } else if (strncmp(mark, "<!--bundle-->", 13) == 0) {
@@ -117,7 +121,7 @@ static void write_part(FILE *out, const char *mark, const parts *p)
 
 int viewer_page_write(const viewer_page *page, FILE *out)
 {
-    parts p = {.follows = page->follows};
+    parts p = {.follows = page->follows, .is_served = page->is_served};
     char *json = json_of(page);
     uint8_t *bytes = bundle_bytes(&page->data, &p.bundle_bytes);
     p.json = json;

@@ -23,6 +23,7 @@ typedef struct viewer_page {
     bool is_file;          /* the scene is that of a file; else the one that the page builds first */
     bool hashed;           /* `hash` is the hash of that build here */
     uint64_t hash;
+    bool is_served; /* it has threads, which a page in a file may not have */
     bool follows; /* the page asks its server for a growing map: follow.h */
 } viewer_page;
 

@@ -275,6 +275,7 @@ static int show(const view_options *o, const scene_file *scene, reconstruction *
     viewer_page page = {.title = title,
                         .names = v.names,
                         .viewpoints = v.frames,
+                        .is_served = o->output == NULL,
                         .follows = o->follow != NULL,
                         .is_file = o->scene != NULL};
     snprintf(title, sizeof title, "%s%s%s", last_part(o->inputs[0]), o->inputs[1] != NULL ? " and " : "",

@@ -19,6 +19,15 @@
 IMPORT(progress) extern int32_t page_progress(int32_t stage, uint32_t done, uint32_t total);
 IMPORT(stage_ends) extern void page_stage_ends(int32_t stage);
 
+typedef void task(void *context, uint32_t index, uint32_t worker);
+IMPORT(parallel_for) extern void page_parallel_for(uint32_t count, task *work, void *context);
+
+/* Runs one task of page_parallel_for(), in any thread. */
+EXPORT(run) void module_run(task *work, void *context, uint32_t index, uint32_t worker)
+{
+    work(context, index, worker);
+}
+
 /* ---- reading the bundle ------------------------------------------------------------------------------------------ */
 
 typedef struct frame_data {
@@ -171,12 +180,21 @@ static void keep_hash(void *user, t3r_stage stage, uint64_t hash)
     page_stage_ends(stage);
 }
 
+static void share(void *user, uint32_t count, task *work, void *context)
+{
+    (void)user;
+    page_parallel_for(count, work, context);
+}
+
+static const t3r_hooks building = {.progress = report_progress, .stage_hash = keep_hash, .parallel_for = share};
+static const t3r_hooks drawing = {.parallel_for = share};
+
 /* Opens the bundle at this address, aligned to 16, which must stay in the module's memory; targets are at most of this
- * size. builds: 1 = it builds scenes, 0 = it only draws, in a smaller arena. Returns the bytes of the arena that it
- * needs; 0 = the bundle is damaged or its configuration refused. */
+ * size. builds: 1 = it builds scenes, 0 = it only draws, in a smaller arena. workers: threads that page_parallel_for()
+ * has. Returns the bytes of the arena that it needs; 0 = the bundle is damaged or its configuration refused. */
 EXPORT(open)
 uint32_t module_open(const uint8_t *bundle, uint32_t bytes, uint32_t render_width, uint32_t render_height,
-                     uint32_t builds)
+                     uint32_t builds, uint32_t workers)
 {
     reading in = {.start = bundle, .count = bytes};
     t3r_plan_info plan;
@@ -187,6 +205,7 @@ uint32_t module_open(const uint8_t *bundle, uint32_t bytes, uint32_t render_widt
         module.config.views = 0;
         module.weight_bytes = 0;
     }
+    module.config.workers = workers;
     module.config.render_width = render_width;
     module.config.render_height = render_height;
     return t3r_plan(&module.config, &plan) == T3R_OK ? (uint32_t)plan.bytes : 0;
@@ -198,6 +217,9 @@ EXPORT(start) int32_t module_start(void *arena, uint32_t bytes)
     t3r_status status = t3r_init(&module.runtime, arena, bytes, &module.config);
     if (status == T3R_OK) {
         status = t3r_set_cpu(module.runtime, t3r_cpu_found());
+    }
+    if (status == T3R_OK) {
+        status = t3r_set_hooks(module.runtime, &drawing);
     }
     if (status == T3R_OK && module.weight_bytes > 0) {
         status = t3r_bind_head(module.runtime, module.weights, module.weight_bytes);
@@ -286,20 +308,19 @@ static t3r_status add_views(void)
  * t3r_status. */
 EXPORT(build) int32_t module_build(uint32_t gaussians)
 {
-    const t3r_hooks hooks = {.progress = report_progress, .stage_hash = keep_hash};
     const t3r_request request = {.gaussians = gaussians};
     module.loaded = false;
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
         module.hashed[stage] = 0;
     }
-    t3r_status status = t3r_set_hooks(module.runtime, &hooks);
+    t3r_status status = t3r_set_hooks(module.runtime, &building);
     if (status == T3R_OK && module.runtime->analysed) {
         status = t3r_rebuild(module.runtime, &request, &module.scene);
     } else if (status == T3R_OK) {
         status = add_views();
         status = status == T3R_OK ? t3r_reconstruct(module.runtime, &request, &module.scene) : status;
     }
-    (void)t3r_set_hooks(module.runtime, NULL);
+    (void)t3r_set_hooks(module.runtime, &drawing);
     return status;
 }
 

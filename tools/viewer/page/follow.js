@@ -12,7 +12,7 @@ async function loadMap(version) {
   if (!answer.ok) return;
   feed.version = version;
   const bundle = await answer.arrayBuffer();
-  drawer.ask("open", { wasm: files.wasm, bundle, width: data.width, height: data.height, most, builds: false });
+  drawer.open(bundle);
   load();
 }
 

@@ -106,7 +106,12 @@ class Runtime {
     this.worker = new Worker(source);
     this.worker.onmessage = ({ data: answer }) => this.#answer(answer);
     this.worker.onerror = (event) => say(event.message || "the runtime does not start", true);
-    this.ask("open", { wasm: files.wasm, bundle: files.bundle, width: data.width, height: data.height, most, builds });
+    this.builds = builds;
+    this.open(files.bundle);
+  }
+
+  open(bundle) {
+    this.ask("open", { wasm: files.wasm, bundle, width: data.width, height: data.height, most, builds: this.builds, isShared: data.served });
   }
 
   get still() {
@@ -404,7 +409,7 @@ canvas.onkeydown = (event) => {
 /* ---- the start --------------------------------------------------------------------------------------------------------------------- */
 
 const load = () => drawer.ask("load", {});
-done.open = ({ cpu }) => { document.body.dataset.cpu = cpu; }; /* for tests: T3R_CPU_... of the inner loops */
+done.open = ({ cpu, threads }) => Object.assign(document.body.dataset, { cpu, threads }); /* for tests */
 document.title = `${data.title} - trim3r view`;
 $("title").textContent = data.title;
 $("budget").hidden = data.valid === 0;

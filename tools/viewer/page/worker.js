@@ -16,6 +16,56 @@ function place(bytes) {
   return at;
 }
 
+/* Threads that share the module's memory, where the page may have them. Each claims tasks by their number; `control`
+ * holds what they do. A number from DONE on belongs to no work. */
+const GENERATION = 0, TASK = 1, CONTEXT = 2, COUNT = 3, NEXT = 4, ACTIVE = 5, WORDS = 6;
+const DONE = 1 << 30, MOST_THREADS = 8, STACK_BYTES = 65536;
+const SHARED_PAGES = { initial: 256, maximum: 32768 }; /* as the module is linked */
+let control, helpers = [];
+
+function work(worker) {
+  for (;;) {
+    const index = Atomics.add(control, NEXT, 1);
+    if (index >= Atomics.load(control, COUNT)) return;
+    runtime.run(control[TASK], control[CONTEXT], index, worker);
+  }
+}
+
+function parallelFor(count, task, context) {
+  control.set([task, context], TASK);
+  Atomics.store(control, COUNT, count);
+  Atomics.store(control, NEXT, 0);
+  Atomics.add(control, GENERATION, 1);
+  Atomics.notify(control, GENERATION);
+  work(0);
+  for (let active; (active = Atomics.load(control, ACTIVE)) > 0;) Atomics.wait(control, ACTIVE, active);
+  Atomics.store(control, NEXT, DONE);
+}
+
+/* Runs tasks for ever. */
+async function help({ module, memory, shared, stack, worker }) {
+  control = shared;
+  runtime = (await WebAssembly.instantiate(module, { page, env: { memory } })).exports;
+  runtime.__stack_pointer.value = stack;
+  for (let seen = Atomics.load(control, GENERATION);; seen = Atomics.load(control, GENERATION)) {
+    Atomics.wait(control, GENERATION, seen);
+    Atomics.add(control, ACTIVE, 1);
+    work(worker);
+    if (Atomics.sub(control, ACTIVE, 1) === 1) Atomics.notify(control, ACTIVE);
+  }
+}
+
+function startHelpers(module, memory, threads) {
+  helpers.forEach((helper) => helper.terminate());
+  control = new Int32Array(new SharedArrayBuffer(4 * WORDS));
+  control[NEXT] = DONE;
+  helpers = Array.from({ length: threads - 1 }, (_, i) => {
+    const helper = new Worker(self.location.href);
+    helper.postMessage({ kind: "help", module, memory, shared: control, stack: place(STACK_BYTES) + STACK_BYTES, worker: i + 1 });
+    return helper;
+  });
+}
+
 let begun = 0, times = new Float64Array(STAGES), building = false, lastTold = 0;
 const page = {
   progress(stage, done, total) {
@@ -31,25 +81,29 @@ const page = {
     times[stage] += now - begun;
     begun = now;
   },
+  parallel_for: parallelFor,
 };
 
 function need(status, what) {
   if (status !== 0) throw new Error(`${what}: status ${status}`);
 }
 
-async function open({ wasm, bundle, width, height, most, builds }) {
-  const { instance } = await WebAssembly.instantiate(wasm, { page });
-  runtime = instance.exports;
+async function open({ wasm, bundle, width, height, most, builds, isShared }) {
+  const memory = isShared ? new WebAssembly.Memory({ ...SHARED_PAGES, shared: true }) : null;
+  const threads = isShared && self.crossOriginIsolated ? Math.min(navigator.hardwareConcurrency, MOST_THREADS) : 1;
+  const { instance, module } = await WebAssembly.instantiate(wasm, { page, env: { memory } });
+  runtime = { memory, ...instance.exports };
   end = runtime.__heap_base.value;
   const at = place(bundle.byteLength);
   new Uint8Array(runtime.memory.buffer).set(new Uint8Array(bundle), at);
   const w = Math.max(most.width, width), h = Math.max(most.height, height); /* scores are of recorded frames */
-  const bytes = runtime.open(at, bundle.byteLength, w, h, builds ? 1 : 0);
+  const bytes = runtime.open(at, bundle.byteLength, w, h, builds ? 1 : 0, threads);
   if (bytes === 0) throw new Error("the runtime refuses the data of this page");
   const arena = place(bytes);
   need(runtime.start(arena, bytes), "start");
   opened = { width, height, rgb: place(w * h * 3), depth: place(w * h * 4), alpha: place(w * h * 2), carried: null };
-  return { arena: bytes, cpu: runtime.cpu() };
+  if (threads > 1) startHelpers(module, memory, threads);
+  return { cpu: runtime.cpu(), threads };
 }
 
 const hex = (hash) => BigInt.asUintN(64, hash).toString(16).padStart(16, "0");
@@ -206,7 +260,7 @@ function draw({ camera, width, height, show, frame, coarse }) {
   return { pixels, width: w, height: h, ms, show, coarse, hash };
 }
 
-const answers = { open, build, load, take, score, draw };
+const answers = { open, build, load, take, score, draw, help };
 onmessage = async ({ data }) => {
   try {
     const result = await answers[data.kind](data);
