@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""page.py TRIM3R [FOLDER]: the viewer in a headless Chromium: its hash is the native one, the slider rebuilds, every
-overlay differs, mouse and keyboard move the camera, a phone; no errors, no requests. With FOLDER, screenshots go
-there."""
+"""page.py TRIM3R [FOLDER]: the viewer in a headless Chromium: its hashes are the native ones, in one thread and in
+several, the slider rebuilds, every overlay differs, mouse and keyboard move the camera, windows of all sizes; no errors,
+no requests. With FOLDER, screenshots go there."""
+import contextlib
 import json
 import re
 import struct
+import subprocess
 import sys
 import tempfile
 
@@ -119,6 +121,66 @@ def accessible(page):
     page.scheme("light")
 
 
+def same_pictures(page, scene, room):
+    """A picture at rest has the hash of `trim3r render`; one that moves is smaller."""
+    page.value("document.querySelector('main').style.gridTemplateColumns = '320px 20rem'")
+    page.value("goTo(0)")
+    page.wait("isStill() && document.getElementById('picture').width === 320")
+    native = json.loads(run(TRIM3R, "render", scene, room, "--view", "0", "--size", "320x240", "--json", "-o", f"{room}.png").stdout)["hash"]
+    told = page.value("document.getElementById('drawn').textContent")
+    check(re.fullmatch(f"320 x 240 in [0-9]+ ms, hash {native}\\.", told), f"a picture: {told}, natively {native}")
+    page.value("globalThis.coarse = 0, coarseness = .5, done.draw = ((draw) => (a) => { coarse = a.coarse ? a.width : coarse; draw(a); })(done.draw)")
+    page.value("turn(.1, 0), moved()")
+    page.wait("isStill()")
+    check(page.value("coarse") == 160 and page.value("document.getElementById('picture').width") == 320, "coarse, then whole")
+
+
+def fits(page, looks_as):
+    """The picture and the lines below it are in the window, without scrolling."""
+    for width, height in ((1280, 800), (2560, 1440)):
+        page.size(width, height)
+        page.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        low = page.value("document.getElementById('drawn').getBoundingClientRect().bottom")
+        wide = page.value("document.documentElement.scrollWidth")
+        check(low <= height and wide <= width, f"{width}x{height}: down to {low}, {wide} wide")
+        page.wait("isStill()")
+        browser.look(page, looks, f"{looks_as}-{width}")
+    page.size(1200, 1000)
+
+
+@contextlib.contextmanager
+def served(*inputs):
+    with subprocess.Popen([TRIM3R, "view", *inputs, "--json"], stdout=subprocess.PIPE, text=True) as server:
+        try:
+            yield json.loads(server.stdout.readline())["address"]
+        finally:
+            server.terminate()
+
+
+def in_threads(page, room):
+    """A served page may have threads; their bits are the native ones."""
+    with served(room, "--context", "0,2") as address:
+        opened(page, address)
+        check(page.value("crossOriginIsolated"), "a served page is isolated")
+        check(page.value("Number(document.body.dataset.threads) === Math.min(navigator.hardwareConcurrency, 8)"), "as many threads as processors")
+        page.wait("document.getElementById('bits').dataset.same !== undefined && isStill()")
+        check(page.value("document.getElementById('bits').dataset.same") == "true", "the same bits in threads")
+
+
+def narrower_than_the_recording(page, folder):
+    """A recording of another shape than the window and wider than it: its scores are there all the same."""
+    wide, scene = f"{folder}/wide.mcap", f"{folder}/wide.ply"
+    run(TRIM3R, "room", "--size", "480x480", "-o", wide)
+    run(TRIM3R, "build", wide, "--context", "0,2", "--keep", "1", "--refine", "0", "-o", scene)
+    run(TRIM3R, "view", scene, wide, "--context", "0,2", "--refine", "0", "-o", f"{folder}/wide.html")
+    page.size(390, 844, True)
+    opened(page, f"{folder}/wide.html")
+    page.wait("isStill()")
+    check("dB" in page.value(STATUS), f"on a phone: {page.value(STATUS)}")
+    browser.look(page, looks, "view-390")
+    fits(page, "view")
+
+
 def on_a_phone(page):
     page.size(390, 844, True)
     check(page.value("document.documentElement.scrollWidth") <= 390, "nothing is wider than a phone")
@@ -162,6 +224,7 @@ with tempfile.TemporaryDirectory() as scratch:
         opened(page, f"{scratch}/page.html")
         check(page.value("document.getElementById('budget').hidden"), "a scene alone has no budget to choose")
         check("Gaussians" in page.value(STATUS), f"it is drawn: {page.value(STATUS)}")
+        check(page.value("document.body.dataset.threads") == "1", "a page in a file has one thread")
         browser.look(page, looks, "view-scene")
         run(TRIM3R, "view", scene, recording, "--context", "0,2", "-o", f"{scratch}/pair.html")
         opened(page, f"{scratch}/pair.html")
@@ -171,9 +234,12 @@ with tempfile.TemporaryDirectory() as scratch:
         page.click("input[name=source][value=file]")
         page.wait("document.body.dataset.hash === ''")
         check(page.value("document.body.dataset.gaussians") == of_file, "from the file, built here, and back")
+        same_pictures(page, scene, recording)
         harmonics(page, recording, scratch)
-        check(page.logged == [], f"nothing on the console: {page.logged}")
+        narrower_than_the_recording(page, scratch)
         check(all(url.startswith(("file:", "blob:", "data:")) for url in page.requested), f"requests: {page.requested}")
+        in_threads(page, recording)
+        check(page.logged == [], f"nothing on the console: {page.logged}")
     finally:
         page.close()
 done()
