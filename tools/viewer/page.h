@@ -24,7 +24,7 @@ typedef struct viewer_page {
     bool hashed;           /* `hash` is the hash of that build here */
     uint64_t hash;
     bool is_served; /* it has threads, which a page in a file may not have */
-    bool follows; /* the page asks its server for a growing map: follow.h */
+    bool follows;   /* the page asks its server for a growing map: follow.h */
 } viewer_page;
 
 /* Whether this program contains the module, which needs clang and wasm-ld at build time. */

@@ -44,8 +44,8 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Finds the middle and half the size of the scene along an axis, in scene units: of the range without a twentieth of the
- * Gaussians at each end, widened by a quarter. */
+/* Finds the middle and half the size of the scene along an axis, in scene units: of the range without a twentieth of
+ * the Gaussians at each end, widened by a quarter. */
 static void find_range(const scene_file *scene, const double axis[3], double *values, double *middle, double *half)
 {
     for (uint32_t i = 0; i < scene->count; i++) {
@@ -79,8 +79,7 @@ int viewpoints_add_before(viewpoints *v, const scene_file *scene, uint32_t width
         for (int i = 0; i < 3; i++) { /* the inverse of the turn */
             at += upright.matrix[3 * i + axis] * middle[i];
         }
-        lens.camera.position_q32[axis] =
-            scene->frame.origin_q32[axis] + llround(ldexp(at, scene->frame.exponent + 32));
+        lens.camera.position_q32[axis] = scene->frame.origin_q32[axis] + llround(ldexp(at, scene->frame.exponent + 32));
     }
     for (int i = 0; i < 4; i++) {
         const double turned = i == 0 ? upright.rotation[0] : -upright.rotation[i];

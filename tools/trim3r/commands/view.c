@@ -290,8 +290,8 @@ static int show(const view_options *o, const scene_file *scene, reconstruction *
     page.viewpoint_count = v.count;
     t3r_config *config = &page.data.config;
     const uint32_t points = config->width * config->height * config->views;
-    built = (scene_file){
-        .frame = r->scene.frame, .gaussians = (t3r_gaussian *)r->scene.gaussians, .count = r->scene.count};
+    built =
+        (scene_file){.frame = r->scene.frame, .gaussians = (t3r_gaussian *)r->scene.gaussians, .count = r->scene.count};
     page.data.scene = o->scene != NULL ? scene : &built;
     config->max_gaussians = points > page.data.scene->count ? points : page.data.scene->count;
     if (code == CLI_OK) {
