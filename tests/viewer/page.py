@@ -23,6 +23,13 @@ if program is None:
 
 PICTURE = """(() => { const c = document.getElementById('picture'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
     let h = 2166136261; for (let i = 0; i < d.length; i++) h = Math.imul(h ^ d[i], 16777619); return h >>> 0; })()"""
+FIRST = """(async () => { const image = new Image(), c = document.createElement('canvas');
+    image.src = document.getElementById('picture').style.backgroundImage.slice(5, -2);
+    await image.decode();
+    [c.width, c.height] = [image.width, image.height];
+    c.getContext('2d').drawImage(image, 0, 0);
+    const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+    let h = 2166136261; for (let i = 0; i < d.length; i++) h = Math.imul(h ^ d[i], 16777619); return h >>> 0; })()"""
 STATUS = "document.getElementById('status').textContent"
 STAGES = "Object.fromEntries([...document.querySelectorAll('#stages tbody tr')].map((r) => [r.cells[0].textContent, r.cells[2].textContent]))"
 
@@ -121,11 +128,18 @@ def accessible(page):
     page.scheme("light")
 
 
-def same_pictures(page, scene, room):
-    """A picture at rest has the hash of `trim3r render`; one that moves is smaller."""
-    page.value("document.querySelector('main').style.gridTemplateColumns = '320px 20rem'")
+def at_width(page, width):
+    page.value(f"document.querySelector('main').style.gridTemplateColumns = '{width}px 20rem'")
     page.value("goTo(0)")
-    page.wait("isStill() && document.getElementById('picture').width === 320")
+    page.wait(f"isStill() && document.getElementById('picture').width === {width}")
+
+
+def same_pictures(page, scene, room):
+    """The picture that the file holds is the one that the page draws. A picture at rest has the hash of `trim3r render`;
+    one that moves is smaller."""
+    at_width(page, 64)
+    check(page.value(FIRST) == page.value(PICTURE), "the first picture is the page's own")
+    at_width(page, 320)
     native = json.loads(run(TRIM3R, "render", scene, room, "--view", "0", "--size", "320x240", "--json", "-o", f"{room}.png").stdout)["hash"]
     told = page.value("document.getElementById('drawn').textContent")
     check(re.fullmatch(f"320 x 240 in [0-9]+ ms, hash {native}\\.", told), f"a picture: {told}, natively {native}")

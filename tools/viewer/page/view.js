@@ -148,7 +148,6 @@ const canvas = $("picture"), context = canvas.getContext("2d", { willReadFrequen
 const chosen = (name) => document.querySelector(`input[name=${name}]:checked`).value;
 const motion = () => chosen("motion");
 const ratio = data.width / data.height;
-document.documentElement.style.setProperty("--ratio", ratio);
 
 const MOST_PIXELS = 2e6, LEAST_WIDTH = 64;
 const density = () => Math.min(devicePixelRatio, 2);
