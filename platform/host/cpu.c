@@ -25,27 +25,9 @@ enum { FEATURES = sizeof features / sizeof features[0] };
 
 uint32_t t3r_cpu_features(void)
 {
-    uint32_t found = 0;
-#if defined(__x86_64__) && defined(__GNUC__)
-    /* these query cpuid, and xgetbv for the registers that the system saves */
-    if (__builtin_cpu_supports("sse4.1")) {
-        found |= T3R_CPU_SSE41;
-    }
-    if (__builtin_cpu_supports("avx2")) {
-        found |= T3R_CPU_AVX2;
-    }
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
-        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
-        found |= T3R_CPU_AVX512;
-        found |= __builtin_cpu_supports("avx512vnni") ? T3R_CPU_VNNI : 0;
-    }
-#elif defined(__aarch64__)
-    found |= T3R_CPU_NEON; /* part of the architecture */
-#if defined(__linux__)
+    uint32_t found = t3r_cpu_found();
+#if defined(__aarch64__) && defined(__linux__)
     found |= (getauxval(AT_HWCAP) & HWCAP_ASIMDDP) != 0 ? T3R_CPU_DOTPROD : 0;
-#endif
-#elif defined(__wasm_simd128__)
-    found |= T3R_CPU_SIMD128; /* an engine without it does not load this module */
 #endif
     return found;
 }

@@ -88,6 +88,20 @@ t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features)
     return T3R_OK;
 }
 
+uint32_t t3r_cpu_found(void)
+{
+#ifdef __ARM_FEATURE_DOTPROD
+    return t3r_kernels_features();
+#else
+    return t3r_kernels_features() & ~T3R_CPU_DOTPROD; /* of which only the operating system knows */
+#endif
+}
+
+uint32_t t3r_get_cpu(const t3r_runtime *rt)
+{
+    return rt != NULL ? rt->kernels.features : 0;
+}
+
 t3r_status t3r_attach_as(uint64_t digest, t3r_runtime **rt, void *arena, size_t arena_bytes)
 {
     T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);

@@ -526,6 +526,14 @@ t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
  * operating system says so. */
 t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features);
 
+/* Returns the features that the library finds by itself, for t3r_set_cpu(): on x86-64 those of the processor and its
+ * operating system, elsewhere those for which the library is compiled. Only T3R_CPU_DOTPROD may be missing: on 64-bit
+ * Arm the operating system reports it. */
+uint32_t t3r_cpu_found(void);
+
+/* Returns the features that the inner loops use, as t3r_set_cpu() took them; 0 = plain C, or NULL. */
+uint32_t t3r_get_cpu(const t3r_runtime *rt);
+
 /* Binds the weights of the head T3R_HEAD_LEARNED, a whole .t3w file in memory aligned to 16 (NULL: none). Only the
  * pointer is kept: the file is read in place, and must stay unchanged while it is bound. Bind after t3r_init() and
  * again after t3r_attach(). The analysis does not depend on the head, so another head may be bound to a kept analysis.

@@ -15,6 +15,7 @@ void t3r_kernels_choose(t3r_kernels *table, uint32_t cpu)
     (void)cpu;
     T3R_VARIANTS(CHOOSE)
     table->strip_bytes = T3R_STRIP_BYTES(cpu);
+    table->features = cpu;
 }
 
 uint32_t t3r_kernels_features(void)

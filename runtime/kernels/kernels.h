@@ -96,6 +96,8 @@ typedef struct t3r_kernels {
 
     /* Bytes of an activation in convolve_packed's strips: 2 = int16, 1 = a byte of activation + 128. */
     uint32_t strip_bytes;
+    /* T3R_CPU_... features that the table was filled for. */
+    uint32_t features;
 } t3r_kernels;
 
 /* Plain C: the definition of all entries except packed layers. */

@@ -4,6 +4,30 @@
 #include "trim3r.h"
 #include "unit/unit.h"
 
+/* Returns what the compiler's own library finds. */
+static uint32_t found_by_the_compiler(void)
+{
+#if defined(__x86_64__)
+    const bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                            __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                            __builtin_cpu_supports("avx512vl");
+    return (__builtin_cpu_supports("sse4.1") ? T3R_CPU_SSE41 : 0) |
+           (__builtin_cpu_supports("avx2") ? T3R_CPU_AVX2 : 0) | (has_avx512 ? T3R_CPU_AVX512 : 0) |
+           (__builtin_cpu_supports("avx512vnni") ? T3R_CPU_VNNI : 0);
+#elif defined(__aarch64__)
+    return T3R_CPU_NEON | (t3r_cpu_features() & T3R_CPU_DOTPROD);
+#else
+    return 0;
+#endif
+}
+
+TEST(features_are_found)
+{
+    assert_int_equal(t3r_cpu_features(), found_by_the_compiler());
+    assert_int_equal(t3r_cpu_found() & ~t3r_cpu_features(), 0);
+    assert_int_equal(t3r_cpu_features() & ~t3r_cpu_found() & ~T3R_CPU_DOTPROD, 0);
+}
+
 TEST(masks_are_read)
 {
     static const struct {

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """structure.py [LIBRARY...]: the picture of the house holds. Every area includes only what stands below it, and no two
-source files of a library call each other, be it through others. No folder is a heap.
+source files of a library call each other, be it through others. No folder is a heap. Who opens a runtime chooses its
+inner loops.
 
 MAY is the whole picture: what each area may include. An area that is not in it is a finding, so a new one is entered
 here with its arrows.
@@ -65,6 +66,7 @@ tool("python", "room", "scene", base=PLATFORM | {"quant"})
 tool("examples", base=PLATFORM | {"quant"})
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
+OPENS = re.compile(r"\bt3r_(init|attach)\([^)]") # a call, not its name in a comment
 SYMBOL = re.compile(r"^.*\[([^\]]+)\]: (\S+) (\w)")
 
 
@@ -117,6 +119,12 @@ def check_includes(root):
             if target is not None and area_of(target) not in MAY[area] | {area}:
                 findings.append(f"{path} includes {target}: {area} may not use {area_of(target)}")
     return findings
+
+
+def check_kernels(root):
+    """Returns sources that open a runtime and leave its inner loops in plain C."""
+    return [f"{path}: opens a runtime without t3r_set_cpu()" for path in sources(root)
+            if path.parts[0] != "runtime" and OPENS.search(text := (root / path).read_text()) and "t3r_set_cpu(" not in text]
 
 
 def circles(arrows):
@@ -190,6 +198,7 @@ def planted_findings():
         proof.must_find(findings, offence, "house")
     if len(findings) != 5:
         proof.broken("the planted house has five offences, no more", findings)
+    proof.must_find(check_kernels(house), "tools/cli/plain.c: opens a runtime", "house")
     proof.must_find(check_picture({"a": {"b"}, "b": {"c"}, "c": {"a"}}), "a, b, c", "a picture of three")
     proof.must_find(check_picture({"tools/trim3r": {"tools/study/rivals"}}), "of the product", "an arrow to the study")
     proof.must_find(check_rooms([pathlib.Path("heap", f"{i}.c") for i in range(MOST_SOURCES + 1)]), "heap: 31", "a heap")
@@ -204,8 +213,8 @@ def main():
     planted_findings()
     libraries = sys.argv[1:]
     tests = (path for path in (proof.ROOT / "tests").rglob("*") if path.suffix in (".c", ".h", ".py"))
-    proof.verdict("no area includes what stands above it; no two files of a library call each other; no folder is a heap",
-                  check_picture(MAY) + check_includes(proof.ROOT) + check_calls(libraries) +
+    proof.verdict("no area includes what stands above it; no two files of a library call each other; no folder is a heap; no embedder "
+                  "runs plain C", check_picture(MAY) + check_includes(proof.ROOT) + check_calls(libraries) + check_kernels(proof.ROOT) +
                   check_rooms([*sources(proof.ROOT), *tests]))
 
 

@@ -35,6 +35,7 @@ def check_build(recording, folder, path):
     with small(head="small") as made:
         made.add_view(recording[0])
         made.add_view(recording[2])
+        check(made.cpu == json.loads(program("doctor", "--json"))["cpu_used"], f"the processor: {made.cpu}")
         check(made.valid_points == built["valid_points"], f"{made.valid_points} points")
         scene = made.build(400)
         check(trim3r.run_hash(made.stage_hashes) == built["hash"], "the hash of the build")

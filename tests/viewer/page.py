@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""page.py TRIM3R [FOLDER]: the viewer in a headless Chromium: its hash is the native one, the slider rebuilds, every
-overlay differs, mouse and keyboard move the camera, a phone; no errors, no requests. With FOLDER, screenshots go
-there."""
+"""page.py TRIM3R [FOLDER]: the viewer in a headless Chromium: its hashes are the native ones, in one thread and in
+several, the slider rebuilds, every overlay differs, mouse and keyboard move the camera, windows of all sizes; no errors,
+no requests. With FOLDER, screenshots go there."""
+import contextlib
 import json
 import re
 import struct
+import subprocess
 import sys
 import tempfile
 
@@ -21,22 +23,33 @@ if program is None:
 
 PICTURE = """(() => { const c = document.getElementById('picture'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
     let h = 2166136261; for (let i = 0; i < d.length; i++) h = Math.imul(h ^ d[i], 16777619); return h >>> 0; })()"""
+FIRST = """(async () => { const image = new Image(), c = document.createElement('canvas');
+    image.src = document.getElementById('picture').style.backgroundImage.slice(5, -2);
+    await image.decode();
+    [c.width, c.height] = [image.width, image.height];
+    c.getContext('2d').drawImage(image, 0, 0);
+    const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+    let h = 2166136261; for (let i = 0; i < d.length; i++) h = Math.imul(h ^ d[i], 16777619); return h >>> 0; })()"""
 STATUS = "document.getElementById('status').textContent"
 STAGES = "Object.fromEntries([...document.querySelectorAll('#stages tbody tr')].map((r) => [r.cells[0].textContent, r.cells[2].textContent]))"
 
 
 def drawn(page, action):
     """Returns the picture after an action that draws."""
-    page.wait("!busy")
+    page.wait("isStill()")
     before = page.value("Number(document.body.dataset.drawn ?? 0)")
     action()
     page.wait(f"Number(document.body.dataset.drawn ?? 0) > {before}")
     return page.value(PICTURE)
 
 
+SIMD128 = 1 << 16  # T3R_CPU_SIMD128
+
+
 def opened(page, path):
     page.open(path)
     page.wait("document.body.dataset.drawn !== undefined && document.body.dataset.gaussians !== undefined")
+    check(page.value("document.body.dataset.cpu") == str(SIMD128), "the page draws with vectors")
 
 
 def slide(page, value):
@@ -57,7 +70,7 @@ def budget(page, room):
         native = json.loads(run(TRIM3R, "replay", room, "--context", "0,2", "--gaussians", count, "--json").stdout)["stages"]
         for stage, digits in page.value(STAGES).items():
             check(native[stage] == digits, f"{share} %, {stage}: {digits} in the page, {native[stage]} natively")
-        page.wait("!busy && !waiting.draw")
+        page.wait("isStill()")
         seen.add(page.value(PICTURE))
     check(len(seen) == 4, "every budget is another picture")
     check("dB" in page.value(STATUS), f"scores are told: {page.value(STATUS)}")
@@ -115,6 +128,73 @@ def accessible(page):
     page.scheme("light")
 
 
+def at_width(page, width):
+    page.value(f"document.querySelector('main').style.gridTemplateColumns = '{width}px 20rem'")
+    page.value("goTo(0)")
+    page.wait(f"isStill() && document.getElementById('picture').width === {width}")
+
+
+def same_pictures(page, scene, room):
+    """The picture that the file holds is the one that the page draws. A picture at rest has the hash of `trim3r render`;
+    one that moves is smaller."""
+    at_width(page, 64)
+    check(page.value(FIRST) == page.value(PICTURE), "the first picture is the page's own")
+    at_width(page, 320)
+    native = json.loads(run(TRIM3R, "render", scene, room, "--view", "0", "--size", "320x240", "--json", "-o", f"{room}.png").stdout)["hash"]
+    told = page.value("document.getElementById('drawn').textContent")
+    check(re.fullmatch(f"320 x 240 in [0-9]+ ms, hash {native}\\.", told), f"a picture: {told}, natively {native}")
+    page.value("globalThis.coarse = 0, coarseness = .5, done.draw = ((draw) => (a) => { coarse = a.coarse ? a.width : coarse; draw(a); })(done.draw)")
+    page.value("turn(.1, 0), moved()")
+    page.wait("isStill()")
+    check(page.value("coarse") == 160 and page.value("document.getElementById('picture').width") == 320, "coarse, then whole")
+
+
+def fits(page, looks_as):
+    """The picture and the lines below it are in the window, without scrolling."""
+    for width, height in ((1280, 800), (2560, 1440)):
+        page.size(width, height)
+        page.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        low = page.value("document.getElementById('drawn').getBoundingClientRect().bottom")
+        wide = page.value("document.documentElement.scrollWidth")
+        check(low <= height and wide <= width, f"{width}x{height}: down to {low}, {wide} wide")
+        page.wait("isStill()")
+        browser.look(page, looks, f"{looks_as}-{width}")
+    page.size(1200, 1000)
+
+
+@contextlib.contextmanager
+def served(*inputs):
+    with subprocess.Popen([TRIM3R, "view", *inputs, "--json"], stdout=subprocess.PIPE, text=True) as server:
+        try:
+            yield json.loads(server.stdout.readline())["address"]
+        finally:
+            server.terminate()
+
+
+def in_threads(page, room):
+    """A served page may have threads; their bits are the native ones."""
+    with served(room, "--context", "0,2") as address:
+        opened(page, address)
+        check(page.value("crossOriginIsolated"), "a served page is isolated")
+        check(page.value("Number(document.body.dataset.threads) === Math.min(navigator.hardwareConcurrency, 8)"), "as many threads as processors")
+        page.wait("document.getElementById('bits').dataset.same !== undefined && isStill()")
+        check(page.value("document.getElementById('bits').dataset.same") == "true", "the same bits in threads")
+
+
+def narrower_than_the_recording(page, folder):
+    """A recording of another shape than the window and wider than it: its scores are there all the same."""
+    wide, scene = f"{folder}/wide.mcap", f"{folder}/wide.ply"
+    run(TRIM3R, "room", "--size", "480x480", "-o", wide)
+    run(TRIM3R, "build", wide, "--context", "0,2", "--keep", "1", "--refine", "0", "-o", scene)
+    run(TRIM3R, "view", scene, wide, "--context", "0,2", "--refine", "0", "-o", f"{folder}/wide.html")
+    page.size(390, 844, True)
+    opened(page, f"{folder}/wide.html")
+    page.wait("isStill()")
+    check("dB" in page.value(STATUS), f"on a phone: {page.value(STATUS)}")
+    browser.look(page, looks, "view-390")
+    fits(page, "view")
+
+
 def on_a_phone(page):
     page.size(390, 844, True)
     check(page.value("document.documentElement.scrollWidth") <= 390, "nothing is wider than a phone")
@@ -136,7 +216,7 @@ def harmonics(page, room, folder):
         file.write(b"".join(struct.pack(f"<{len(row)}f", *row) for row in rows))
     run(TRIM3R, "view", scene, room, "--context", "0,2", "-o", f"{folder}/harmonics.html")
     opened(page, f"{folder}/harmonics.html")
-    page.wait("!busy && !waiting.draw")
+    page.wait("isStill()")
     shown = float(re.search(r"frame 1 ([0-9.]+) dB", page.value(STATUS))[1])
     row = json.loads(run(TRIM3R, "eval", room, "--context", "0,2", "--target", "1", "--scene", scene, "--json").stdout)["rows"][0]
     check(abs(shown - row["psnr_all"]) <= 0.005, f"harmonics: {shown} dB in the page, {row['psnr_all']} dB by eval")
@@ -148,6 +228,7 @@ with tempfile.TemporaryDirectory() as scratch:
     page = browser.Page(program, timeout=120)
     try:
         opened(page, f"{scratch}/both.html")
+        page.wait("document.getElementById('bits').dataset.same !== undefined && isStill()")
         check(page.value("document.getElementById('bits').dataset.same") == "true", "the page has the native hash")
         accessible(page)
         shows(page)
@@ -157,6 +238,7 @@ with tempfile.TemporaryDirectory() as scratch:
         opened(page, f"{scratch}/page.html")
         check(page.value("document.getElementById('budget').hidden"), "a scene alone has no budget to choose")
         check("Gaussians" in page.value(STATUS), f"it is drawn: {page.value(STATUS)}")
+        check(page.value("document.body.dataset.threads") == "1", "a page in a file has one thread")
         browser.look(page, looks, "view-scene")
         run(TRIM3R, "view", scene, recording, "--context", "0,2", "-o", f"{scratch}/pair.html")
         opened(page, f"{scratch}/pair.html")
@@ -166,9 +248,12 @@ with tempfile.TemporaryDirectory() as scratch:
         page.click("input[name=source][value=file]")
         page.wait("document.body.dataset.hash === ''")
         check(page.value("document.body.dataset.gaussians") == of_file, "from the file, built here, and back")
+        same_pictures(page, scene, recording)
         harmonics(page, recording, scratch)
-        check(page.logged == [], f"nothing on the console: {page.logged}")
+        narrower_than_the_recording(page, scratch)
         check(all(url.startswith(("file:", "blob:", "data:")) for url in page.requested), f"requests: {page.requested}")
+        in_threads(page, recording)
+        check(page.logged == [], f"nothing on the console: {page.logged}")
     finally:
         page.close()
 done()

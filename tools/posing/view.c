@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "host/cpu.h"
 #include "host/reason.h"
 
 #define EDGE 0.05 /* depths around a feature that differ by more of the nearest one are of two surfaces */
@@ -44,6 +45,7 @@ static int develop(const t3r_frame *frame, const t3r_camera *camera, developed *
         return t3r_reason(error, error_bytes, "out of memory");
     }
     status = t3r_init(&runtime, arena, plan.min_bytes, &config);
+    status = status == T3R_OK ? t3r_set_cpu(runtime, t3r_cpu_features()) : status;
     if (status == T3R_OK) {
         status = t3r_develop(runtime, frame, &identified, out->rgb, out->depth, &out->camera);
     }

@@ -6,6 +6,7 @@
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
+#include "host/cpu.h"
 #include "reconstruction/reconstruction_error.h"
 
 int developed_capture(const t3r_capture_frame *frame, const char *path, uint32_t index, uint32_t width, uint32_t height,
@@ -22,6 +23,7 @@ int developed_capture(const t3r_capture_frame *frame, const char *path, uint32_t
                                 : cli_error(CLI_BAD_INPUT, "out of memory");
     }
     status = t3r_init(&runtime, arena, plan.min_bytes, &config);
+    status = status == T3R_OK ? t3r_set_cpu(runtime, t3r_cpu_features()) : status;
     if (status == T3R_OK) {
         status = t3r_develop(runtime, &frame->frame, &frame->camera, rgb, depth, camera);
     }

@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "scene/scene_turn.h"
 #include "trim3r.h"
 
 #define SCENE_FILE_SUFFIXES_BYTES 96
@@ -27,6 +28,7 @@ typedef struct scene_file {
     uint32_t degree;        /* of its harmonics, 0..3 */
     int16_t *harmonics_q12; /* heap; NULL: degree 0. In the layout of t3r_harmonics_colour(), Gaussian by Gaussian */
     bool mip;               /* opacities are those of mip-splatting; see seen_gaussian.h */
+    scene_up up;            /* as a comment of the file names it, for the first view */
     scene_remarks remarks;
 } scene_file;
 

@@ -82,6 +82,7 @@ scene_rows scene_rows_of(const scene_file *scene)
                         .frame = scene->frame,
                         .degree = scene->degree,
                         .mip = scene->mip,
+                        .up = scene->up,
                         .read = read_gaussian,
                         .user = (void *)(uintptr_t)scene}; /* only read */
 }

@@ -30,6 +30,7 @@ typedef struct scene_rows {
     t3r_scene_frame frame;
     uint32_t degree;    /* of the rows' harmonics, 0..3 */
     scene_axes axes;    /* of the file */
+    scene_up up;        /* as a comment of the file names it */
     bool mip;           /* opacities are those of mip-splatting (SPZ's "antialiased") */
     const char *remark; /* what of the file is not read; NULL: nothing */
     /* Reads row `index`, any number of times. Returns 0, or -1 with the reason in error[]. */

@@ -82,8 +82,7 @@ static void put_gaussian(FILE *out, const t3r_gaussian *g)
 
 static void put_all(FILE *out, const bundle *b)
 {
-    static const scene_file none = {0};
-    const scene_file *scene = b->scene != NULL ? b->scene : &none;
+    const scene_file *scene = b->scene;
     const size_t pixels = (size_t)b->config.width * b->config.height;
     put_u32(out, BUNDLE_MAGIC);
     put_config(out, &b->config);

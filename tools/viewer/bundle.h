@@ -23,7 +23,7 @@ typedef struct bundle {
     size_t weight_bytes;
     const bundle_frame *frames;
     uint32_t frame_count;
-    const scene_file *scene; /* NULL = the page builds its own */
+    const scene_file *scene;
 } bundle;
 
 /* Returns the bytes, on the heap; NULL when memory is out or they exceed 1 GiB. */

@@ -6,7 +6,7 @@
  *   u32    words of the configuration, and as many u32: the fields of t3r_config in their order
  *   u32    context views, and frames: the context views come first
  *   u32    bytes of the head's weights; 0 = a head without weights
- *   u32    Gaussians of a scene from a file; 0 = none
+ *   u32    Gaussians of the scene
  *   i32    the exponent of that scene's frame, then 3 x i64: its origin
  *   u32    the degree of its harmonics, and 1 if its opacities are those of mip-splatting
  *   frames BUNDLE_FRAME_BYTES each: i32 fx, fy, cx, cy (Q16); 3 x i64 position (Q32); 4 x i32 rotation (Q30); u64 unit

@@ -8,11 +8,13 @@
 
 #include "cli/tables/json_output.h"
 #include "cli/text/markup.h"
+#include "viewer/first_picture.h"
 
 /* Embedded by the build: page/view.html with marks for the others, such as <!--style-->. The module is empty if there
  * was no compiler for it. */
-extern const char viewer_html[], viewer_css[], viewer_js[], viewer_follow_js[], viewer_worker_js[], viewer_wasm[];
-extern const unsigned viewer_wasm_bytes;
+extern const char viewer_html[], viewer_css[], viewer_js[], viewer_follow_js[], viewer_worker_js[], viewer_wasm[],
+    viewer_threads_wasm[];
+extern const unsigned viewer_wasm_bytes, viewer_threads_wasm_bytes;
 
 bool viewer_page_is_built(void)
 {
@@ -56,7 +58,8 @@ static char *json_of(const viewer_page *page)
     json_add_integer(root, "views", page->data.config.views);
     json_add_integer(root, "valid", page->valid_points);
     json_add_integer(root, "gaussians", page->gaussians);
-    cJSON_AddBoolToObject(root, "scene", page->data.scene != NULL);
+    cJSON_AddBoolToObject(root, "file", page->is_file);
+    cJSON_AddBoolToObject(root, "served", page->is_served);
     if (page->hashed) {
         json_add_hash(root, "hash", page->hash);
     } else {
@@ -88,10 +91,11 @@ static void write_json(FILE *out, const char *text)
 }
 
 typedef struct parts {
-    bool follows;
+    bool follows, is_served;
     const char *json;
-    const uint8_t *bundle;
-    size_t bundle_bytes;
+    const uint8_t *bundle, *picture;
+    size_t bundle_bytes, picture_bytes;
+    double ratio; /* width / height */
 } parts;
 
 static void write_part(FILE *out, const char *mark, const parts *p)
@@ -100,10 +104,16 @@ static void write_part(FILE *out, const char *mark, const parts *p)
         fputs(viewer_css, out);
     } else if (strncmp(mark, "<!--data-->", 11) == 0) {
         write_json(out, p->json);
+    } else if (strncmp(mark, "<!--wasm-->", 11) == 0 && p->is_served) {
+        markup_base64(out, (const uint8_t *)viewer_threads_wasm, viewer_threads_wasm_bytes);
     } else if (strncmp(mark, "<!--wasm-->", 11) == 0) {
         markup_base64(out, (const uint8_t *)viewer_wasm, viewer_wasm_bytes);
     } else if (strncmp(mark, "<!--bundle-->", 13) == 0) {
         markup_base64(out, p->bundle, p->bundle_bytes);
+    } else if (strncmp(mark, "<!--ratio-->", 12) == 0) {
+        fprintf(out, "%.6f", p->ratio);
+    } else if (strncmp(mark, "<!--picture-->", 14) == 0) {
+        markup_base64(out, p->picture, p->picture_bytes);
     } else if (strncmp(mark, "<!--worker-->", 13) == 0) {
         fputs(viewer_worker_js, out);
     } else if (strncmp(mark, "<!--script-->", 13) == 0) {
@@ -117,11 +127,14 @@ static void write_part(FILE *out, const char *mark, const parts *p)
 
 int viewer_page_write(const viewer_page *page, FILE *out)
 {
-    parts p = {.follows = page->follows};
+    parts p = {.follows = page->follows, .is_served = page->is_served};
     char *json = json_of(page);
     uint8_t *bytes = bundle_bytes(&page->data, &p.bundle_bytes);
+    uint8_t *picture = first_picture_png(&page->data, &page->viewpoints[0].camera, &p.picture_bytes);
     p.json = json;
     p.bundle = bytes;
+    p.picture = picture;
+    p.ratio = (double)page->data.config.width / page->data.config.height;
     const int code = json != NULL && bytes != NULL ? 0 : -1;
     const char *rest = viewer_html;
     while (code == 0 && *rest != '\0') {
@@ -136,6 +149,7 @@ int viewer_page_write(const viewer_page *page, FILE *out)
         rest = end + 3;
     }
     free(bytes);
+    free(picture);
     cJSON_free(json);
     return code;
 }

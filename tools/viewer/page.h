@@ -20,9 +20,11 @@ typedef struct viewer_page {
     uint32_t viewpoint_count;
     uint32_t valid_points; /* of the context views; 0 = the page cannot build */
     uint32_t gaussians;    /* the initial budget */
+    bool is_file;          /* the scene is that of a file; else the one that the page builds first */
     bool hashed;           /* `hash` is the hash of that build here */
     uint64_t hash;
-    bool follows; /* the page asks its server for a growing map: follow.h */
+    bool is_served; /* it has threads, which a page in a file may not have */
+    bool follows;   /* the page asks its server for a growing map: follow.h */
 } viewer_page;
 
 /* Whether this program contains the module, which needs clang and wasm-ld at build time. */

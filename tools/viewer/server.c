@@ -21,7 +21,7 @@
 enum {
     HTTP_PORT = 80,
     REQUEST_BYTES = 8192,
-    HEAD_BYTES = 256,
+    HEAD_BYTES = 512,
     CLIENTS_MOST = 16,
     ASK_SECONDS = 5,    /* for a whole request */
     ANSWER_SECONDS = 60 /* for a whole answer */
@@ -89,6 +89,8 @@ static void begin_answer(client *c, const char *status, server_answer answer, bo
     c->head_bytes = (size_t)snprintf(c->head, sizeof c->head,
                                      "HTTP/1.1 %s\r\nContent-Type: %s\r\nContent-Length: %zu\r\n"
                                      "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n"
+                                     "Cross-Origin-Opener-Policy: same-origin\r\n" /* for threads */
+                                     "Cross-Origin-Embedder-Policy: require-corp\r\n"
                                      "Connection: close\r\n\r\n",
                                      status, answer.type != NULL ? answer.type : "text/plain", answer.bytes);
     c->answer = answer;

@@ -21,8 +21,9 @@ typedef struct viewpoints {
 int viewpoints_add(viewpoints *v, const t3r_recording *recording, const char *path, uint32_t index, uint32_t width,
                    uint32_t height, bool with_depth);
 
-/* Adds a viewpoint from which most of the scene is visible, along the world's z with y down. */
-void viewpoints_add_before(viewpoints *v, const scene_file *scene, uint32_t width, uint32_t height);
+/* Adds a viewpoint in front of the scene that frames it, with up as the file names it, else -y. Returns an exit status
+ * of cli.h after a message. */
+int viewpoints_add_before(viewpoints *v, const scene_file *scene, uint32_t width, uint32_t height);
 
 void viewpoints_free(viewpoints *v);
 

@@ -101,6 +101,7 @@ TEST(features_of_other_processors)
         const bool is_taken = (feature & there) != 0;
 #endif
         assert_int_equal(t3r_set_cpu(rt, feature), is_taken ? T3R_OK : T3R_ERR_ARGUMENT);
+        assert_int_equal(t3r_get_cpu(rt), is_taken ? feature : before.features);
         if (!is_taken) {
             assert_memory_equal(&rt->kernels, &before, sizeof before);
             assert_int_equal(t3r_set_cpu(rt, there | feature), T3R_ERR_ARGUMENT);
@@ -108,7 +109,9 @@ TEST(features_of_other_processors)
     }
     assert_int_equal(t3r_set_cpu(rt, there), T3R_OK);
     assert_int_equal(t3r_set_cpu(rt, UINT32_MAX), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_get_cpu(rt), there);
     assert_int_equal(t3r_set_cpu(rt, 0), T3R_OK);
+    assert_int_equal(t3r_get_cpu(rt), 0);
 }
 
 TEST(missing_pointers)
@@ -125,6 +128,7 @@ TEST(missing_pointers)
     assert_int_equal(t3r_plan_bytes(&config, NULL, &bytes), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_plan_bytes(&config, &bytes, NULL), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_set_cpu(NULL, 0), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_get_cpu(NULL), 0);
     assert_int_equal(t3r_head_crc(NULL), 0);
     assert_int_equal(t3r_cluster_count(NULL), 0);
     assert_int_equal(t3r_cluster_batch_count(NULL), 0);

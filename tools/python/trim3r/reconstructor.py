@@ -23,6 +23,8 @@ from .picture import Picture, put_planes, target_of
 from .request import Importance, request_of
 from .scene import GAUSSIAN, Scene
 
+CPU_BYTES = 128
+
 
 class Reconstructor:
     """A runtime and its arena, which is all the memory that it uses.
@@ -322,6 +324,14 @@ class Reconstructor:
         """16 hexadecimal digits for each stage that ran since the last build(), by its name; of one that ran several
         times, the last."""
         return dict(self._hooks.hashes)
+
+    @property
+    def cpu(self) -> str:
+        """Names of the processor's features that the inner loops use, such as "sse4.1 avx2"; "none" for plain C."""
+        text = ffi.new("char[]", CPU_BYTES)
+        with self._at_work() as runtime:
+            lib.t3r_cpu_describe(lib.t3r_get_cpu(runtime), text, CPU_BYTES)
+        return text_of(text)
 
     @property
     def closed(self) -> bool:

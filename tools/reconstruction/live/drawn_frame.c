@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
+#include "host/cpu.h"
 #include "pictures/metrics.h"
 #include "reconstruction/reconstruction_error.h"
 
@@ -31,6 +32,7 @@ int drawn_frame_open(drawn_frame *d, uint32_t width, uint32_t height)
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
     status = t3r_init(&d->runtime, d->arena, plan.min_bytes, &config);
+    status = status == T3R_OK ? t3r_set_cpu(d->runtime, t3r_cpu_features()) : status;
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, "image stage", &config, plan.min_bytes);
 }
 

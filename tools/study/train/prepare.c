@@ -125,6 +125,7 @@ static t3r_status open_runtime(preparation *p, const t3r_config *config)
         return T3R_ERR_ARENA;
     }
     status = t3r_init(&p->rt, p->arena, bytes, config);
+    status = status == T3R_OK ? t3r_set_cpu(p->rt, t3r_cpu_found()) : status;
     return status == T3R_OK && config->head == T3R_HEAD_LEARNED
                ? t3r_bind_head(p->rt, t3r_head_small, t3r_head_small_bytes)
                : status;

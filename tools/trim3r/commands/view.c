@@ -172,11 +172,11 @@ static int prepare_recording(const view_options *o, reconstruction *r, viewpoint
     return code;
 }
 
-static void prepare_scene(const scene_file *scene, viewpoints *v, viewer_page *page)
+static int prepare_scene(const scene_file *scene, viewpoints *v, viewer_page *page)
 {
     enum { WIDTH = 640, HEIGHT = 480 };
     page->data.config = t3r_default_config(WIDTH, HEIGHT, 0, 1);
-    viewpoints_add_before(v, scene, WIDTH, HEIGHT);
+    return viewpoints_add_before(v, scene, WIDTH, HEIGHT);
 }
 
 /* ---- output ---------------------------------------------------------------------------------------------------- */
@@ -271,24 +271,29 @@ static int show(const view_options *o, const scene_file *scene, reconstruction *
 {
     char title[256];
     viewpoints v = {.count = 0};
-    viewer_page page = {.title = title, .names = v.names, .viewpoints = v.frames, .follows = o->follow != NULL};
+    scene_file built;
+    viewer_page page = {.title = title,
+                        .names = v.names,
+                        .viewpoints = v.frames,
+                        .is_served = o->output == NULL,
+                        .follows = o->follow != NULL,
+                        .is_file = o->scene != NULL};
     snprintf(title, sizeof title, "%s%s%s", last_part(o->inputs[0]), o->inputs[1] != NULL ? " and " : "",
              o->inputs[1] != NULL ? last_part(o->inputs[1]) : "");
     int code = CLI_OK;
     if (o->recording != NULL) {
         code = prepare_recording(o, r, &v, &page);
     } else {
-        prepare_scene(scene, &v, &page);
+        code = prepare_scene(scene, &v, &page);
         page.gaussians = scene->count;
     }
     page.viewpoint_count = v.count;
     t3r_config *config = &page.data.config;
     const uint32_t points = config->width * config->height * config->views;
-    config->max_gaussians = points > 0 ? points : 1;
-    if (o->scene != NULL) {
-        page.data.scene = scene;
-        config->max_gaussians = scene->count > config->max_gaussians ? scene->count : config->max_gaussians;
-    }
+    built =
+        (scene_file){.frame = r->scene.frame, .gaussians = (t3r_gaussian *)r->scene.gaussians, .count = r->scene.count};
+    page.data.scene = o->scene != NULL ? scene : &built;
+    config->max_gaussians = points > page.data.scene->count ? points : page.data.scene->count;
     if (code == CLI_OK) {
         code = o->output != NULL ? write_file(o, &page) : serve(o, &page);
     }

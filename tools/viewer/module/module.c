@@ -7,6 +7,7 @@
 
 #include "bundle_layout.h"
 #include "core/hash.h"
+#include "core/memory.h"
 #include "scene/seen_gaussian.h"
 #include "state/state.h"
 #include "state/views.h"
@@ -17,6 +18,15 @@
 
 IMPORT(progress) extern int32_t page_progress(int32_t stage, uint32_t done, uint32_t total);
 IMPORT(stage_ends) extern void page_stage_ends(int32_t stage);
+
+typedef void task(void *context, uint32_t index, uint32_t worker);
+IMPORT(parallel_for) extern void page_parallel_for(uint32_t count, task *work, void *context);
+
+/* Runs one task of page_parallel_for(), in any thread. */
+EXPORT(run) void module_run(task *work, void *context, uint32_t index, uint32_t worker)
+{
+    work(context, index, worker);
+}
 
 /* ---- reading the bundle ------------------------------------------------------------------------------------------ */
 
@@ -170,15 +180,32 @@ static void keep_hash(void *user, t3r_stage stage, uint64_t hash)
     page_stage_ends(stage);
 }
 
+static void share(void *user, uint32_t count, task *work, void *context)
+{
+    (void)user;
+    page_parallel_for(count, work, context);
+}
+
+static const t3r_hooks building = {.progress = report_progress, .stage_hash = keep_hash, .parallel_for = share};
+static const t3r_hooks drawing = {.parallel_for = share};
+
 /* Opens the bundle at this address, aligned to 16, which must stay in the module's memory; targets are at most of this
- * size. Returns the bytes of the arena that it needs; 0 = the bundle is damaged or its configuration refused. */
-EXPORT(open) uint32_t module_open(const uint8_t *bundle, uint32_t bytes, uint32_t render_width, uint32_t render_height)
+ * size. builds: 1 = it builds scenes, 0 = it only draws, in a smaller arena. workers: threads that page_parallel_for()
+ * has. Returns the bytes of the arena that it needs; 0 = the bundle is damaged or its configuration refused. */
+EXPORT(open)
+uint32_t module_open(const uint8_t *bundle, uint32_t bytes, uint32_t render_width, uint32_t render_height,
+                     uint32_t builds, uint32_t workers)
 {
     reading in = {.start = bundle, .count = bytes};
     t3r_plan_info plan;
     if (!read_bundle(&in)) {
         return 0;
     }
+    if (builds == 0) {
+        module.config.views = 0;
+        module.weight_bytes = 0;
+    }
+    module.config.workers = workers;
     module.config.render_width = render_width;
     module.config.render_height = render_height;
     return t3r_plan(&module.config, &plan) == T3R_OK ? (uint32_t)plan.bytes : 0;
@@ -187,15 +214,23 @@ EXPORT(open) uint32_t module_open(const uint8_t *bundle, uint32_t bytes, uint32_
 /* Initialises the arena at this address, aligned to 64. Returns a t3r_status. */
 EXPORT(start) int32_t module_start(void *arena, uint32_t bytes)
 {
-    const t3r_hooks hooks = {.progress = report_progress, .stage_hash = keep_hash};
     t3r_status status = t3r_init(&module.runtime, arena, bytes, &module.config);
     if (status == T3R_OK) {
-        status = t3r_set_hooks(module.runtime, &hooks);
+        status = t3r_set_cpu(module.runtime, t3r_cpu_found());
+    }
+    if (status == T3R_OK) {
+        status = t3r_set_hooks(module.runtime, &drawing);
     }
     if (status == T3R_OK && module.weight_bytes > 0) {
         status = t3r_bind_head(module.runtime, module.weights, module.weight_bytes);
     }
     return status;
+}
+
+/* Returns the features that the inner loops use, T3R_CPU_... */
+EXPORT(cpu) uint32_t module_cpu(void)
+{
+    return t3r_get_cpu(module.runtime);
 }
 
 static t3r_gaussian gaussian_at(uint32_t index)
@@ -278,11 +313,51 @@ EXPORT(build) int32_t module_build(uint32_t gaussians)
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
         module.hashed[stage] = 0;
     }
-    if (module.runtime->analysed) {
-        return t3r_rebuild(module.runtime, &request, &module.scene);
+    t3r_status status = t3r_set_hooks(module.runtime, &building);
+    if (status == T3R_OK && module.runtime->analysed) {
+        status = t3r_rebuild(module.runtime, &request, &module.scene);
+    } else if (status == T3R_OK) {
+        status = add_views();
+        status = status == T3R_OK ? t3r_reconstruct(module.runtime, &request, &module.scene) : status;
     }
-    const t3r_status status = add_views();
-    return status == T3R_OK ? t3r_reconstruct(module.runtime, &request, &module.scene) : status;
+    (void)t3r_set_hooks(module.runtime, &drawing);
+    return status;
+}
+
+/* A scene on its way from the module that built it to one that draws it. */
+typedef struct carried {
+    t3r_scene_frame frame;
+    uint32_t count;
+    uint32_t valid_points;
+    t3r_gaussian gaussians[];
+} carried;
+
+/* Returns the bytes of a carried scene with this many Gaussians. */
+EXPORT(carried_bytes) uint32_t module_carried_bytes(uint32_t count)
+{
+    return (uint32_t)(sizeof(carried) + count * sizeof(t3r_gaussian));
+}
+
+/* Writes the scene that was built to an address aligned to 64. */
+EXPORT(give) void module_give(carried *out)
+{
+    out->frame = module.scene.frame;
+    out->count = module.scene.count;
+    out->valid_points = module.scene.valid_points;
+    memcpy(out->gaussians, module.scene.gaussians, module.scene.count * sizeof *out->gaussians);
+}
+
+/* Puts a carried scene into the arena. Returns a t3r_status. */
+EXPORT(take) int32_t module_take(const carried *in)
+{
+    module.loaded = false;
+    t3r_status status = t3r_scene_begin(module.runtime, &in->frame);
+    for (uint32_t i = 0; i < in->count && status == T3R_OK; i++) {
+        status = t3r_scene_append(module.runtime, &in->gaussians[i]);
+    }
+    status = status == T3R_OK ? t3r_get_scene(module.runtime, &module.scene) : status;
+    module.scene.valid_points = in->valid_points;
+    return status;
 }
 
 EXPORT(gaussians) uint32_t module_gaussians(void)
@@ -353,6 +428,12 @@ int32_t module_render(int32_t fx_q16, int32_t fy_q16, int32_t cx_q16, int32_t cy
         }
     }
     return t3r_render(module.runtime, &camera, &target);
+}
+
+/* Returns the hash of a picture's RGB, as `trim3r render --json` prints it. */
+EXPORT(picture_hash) uint64_t module_picture_hash(const uint8_t *rgb, uint32_t width, uint32_t height)
+{
+    return t3r_hash_bytes(T3R_HASH_START, rgb, (size_t)width * height * 3);
 }
 
 /* Returns the pixels of a frame in the bundle, 3 bytes each. */

@@ -12,7 +12,8 @@ async function loadMap(version) {
   if (!answer.ok) return;
   feed.version = version;
   const bundle = await answer.arrayBuffer();
-  ask("open", { wasm: bytesOf("wasm"), bundle, width: data.width, height: data.height, most });
+  drawer.open(bundle);
+  load();
 }
 
 /* The first line has the offset of the lines after it, 0 when the file began anew, and the version of the map's file. */
@@ -159,6 +160,6 @@ $("timeline").onpointerleave = () => { feed.shown = null; showRun(); };
 $("ride").onchange = () => { if ($("ride").checked) ride(); };
 for (const kind of ["pointerdown", "wheel", "keydown"]) canvas.addEventListener(kind, () => { $("ride").checked = false; });
 $("reset").addEventListener("click", () => { $("ride").checked = false; });
-$("trace").onchange = draw;
-onresize = showRun;
+$("trace").onchange = () => draw();
+addEventListener("resize", showRun);
 pollForever();

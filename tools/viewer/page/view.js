@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 "use strict";
-/* The page: camera, controls and texts. The worker does all computation. */
+/* The page: camera, controls and texts. Workers do all computation. */
 const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
-const bytesOf = (id) => Uint8Array.from(atob($(id).textContent), (c) => c.charCodeAt(0)).buffer;
+function bytesOf(id) {
+  const text = atob($(id).textContent), bytes = new Uint8Array(text.length);
+  for (let i = 0; i < bytes.length; i++) bytes[i] = text.charCodeAt(i);
+  return bytes.buffer;
+}
 const STAGES = data.stages;
 
 /* ---- vectors: a matrix has the world's axes as rows, and right, down and forward of the camera as columns ---------- */
@@ -88,58 +92,93 @@ const cameraOf = (frame, width) => {
            position: frame.position, rotation: frame.rotation };
 };
 
-/* ---- the worker: handles one request at a time; a newer request replaces a waiting one of its kind ------------------- */
+/* ---- the workers: one draws, another one builds. Each handles one request at a time; a newer request replaces a waiting
+ * one of its kind --------------------------------------------------------------------------------------------------- */
 
-const source = new Blob([$("worker").textContent], { type: "text/javascript" });
-const worker = new Worker(URL.createObjectURL(source));
-const waiting = {};
-let busy = false, number = 0;
+const ORDER = ["open", "load", "take", "build", "draw", "score"];
+const source = URL.createObjectURL(new Blob([$("worker").textContent], { type: "text/javascript" }));
 const done = {};
 
-function ask(kind, more) {
-  waiting[kind] = more;
-  next();
-}
+class Runtime {
+  constructor(builds) {
+    this.waiting = {};
+    this.busy = false;
+    this.worker = new Worker(source);
+    this.worker.onmessage = ({ data: answer }) => this.#answer(answer);
+    this.worker.onerror = (event) => say(event.message || "the runtime does not start", true);
+    this.builds = builds;
+    this.open(files.bundle);
+  }
 
-function next() {
-  const kind = ["open", "load", "build", "draw"].find((k) => waiting[k]);
-  if (busy || !kind) return;
-  const request = { kind, id: ++number, ...(kind === "draw" ? drawing() : waiting[kind]) };
-  delete waiting[kind];
-  busy = true;
-  worker.postMessage(request);
-}
+  open(bundle) {
+    this.ask("open", { wasm: files.wasm, bundle, width: data.width, height: data.height, most, builds: this.builds, isShared: data.served });
+  }
 
-worker.onmessage = ({ data: answer }) => {
-  if (answer.kind === "progress") return showProgress(answer);
-  busy = false;
-  if (answer.kind === "failed") say(answer.text, true);
-  else done[answer.kind](answer);
-  next();
-};
-worker.onerror = (event) => say(event.message || "the runtime does not start", true);
+  get still() {
+    return !this.busy && Object.keys(this.waiting).length === 0;
+  }
+
+  ask(kind, more) {
+    this.waiting[kind] = more;
+    this.#next();
+  }
+
+  #next() {
+    const kind = ORDER.find((k) => this.waiting[k]);
+    if (this.busy || !kind) return;
+    const request = { kind, ...(kind === "draw" ? drawing(this.waiting[kind]) : this.waiting[kind]) };
+    delete this.waiting[kind];
+    this.busy = true;
+    this.asked = performance.now();
+    this.worker.postMessage(request);
+  }
+
+  #answer(answer) {
+    if (answer.kind === "progress") return showProgress(answer);
+    this.busy = false;
+    if (answer.kind === "failed") say(answer.text, true);
+    else done[answer.kind]({ ...answer, took: performance.now() - this.asked });
+    this.#next();
+  }
+}
 
 /* ---- the picture ------------------------------------------------------------------------------------------------------ */
 
 const canvas = $("picture"), context = canvas.getContext("2d", { willReadFrequently: true });
 const chosen = (name) => document.querySelector(`input[name=${name}]:checked`).value;
 const motion = () => chosen("motion");
-const most = (() => {
-  const width = Math.min(960, Math.max(256, Math.round($("stage").clientWidth * Math.min(devicePixelRatio, 1.5))));
-  return { width, height: Math.round(width * data.height / data.width) };
-})();
-canvas.width = most.width;
-canvas.height = most.height;
+const ratio = data.width / data.height;
 
-function drawing() {
-  const show = chosen("show"), frame = camera.frame ?? 0;
-  const flat = document.querySelector(`#overlay input[value=${show}]`);
-  const from = flat ? cameraOf(data.frames[frame], data.width)
-                    : { ...cameraOf(lens, most.width), position: camera.position, rotation: quaternionOf(camera.axes) };
-  return { camera: from, width: most.width, height: most.height, show, frame };
+const MOST_PIXELS = 2e6, LEAST_WIDTH = 64;
+const density = () => Math.min(devicePixelRatio, 2);
+const sized = (width) => ({ width: Math.max(LEAST_WIDTH, Math.round(width)), height: Math.max(1, Math.round(Math.max(LEAST_WIDTH, width) / ratio)) });
+const most = sized(Math.min(Math.max(screen.width, innerWidth) * density(), Math.sqrt(MOST_PIXELS * ratio)));
+({ width: canvas.width, height: canvas.height } = most);
+
+/* While the camera moves, pictures are as coarse as their pace demands. Once it rests, one is drawn whole. */
+const PACE_MS = 28, REST_MS = 150, COARSEST = .3;
+let coarseness = .5, resting = 0;
+
+function keepPace(took) {
+  const step = Math.max(.75, Math.min(1.15, Math.sqrt(PACE_MS / took)));
+  coarseness = Math.max(COARSEST, Math.min(1, coarseness * step));
 }
 
-const draw = () => ask("draw", {});
+const OF_VIEW = ["mask", "clusters", "texture"]; /* planes that only the worker which builds has */
+const isStill = () => resting === 0 && drawer.still && (!builder || builder.still); /* for tests */
+
+function drawing({ coarse }) {
+  const show = chosen("show"), frame = camera.frame ?? 0;
+  const flat = document.querySelector(`#overlay input[value=${show}]`);
+  const { width, height } = sized(Math.min(most.width, canvas.clientWidth * density()) * (coarse ? coarseness : 1));
+  const from = flat ? cameraOf(data.frames[frame], data.width)
+                    : { ...cameraOf(lens, width), position: camera.position, rotation: quaternionOf(camera.axes) };
+  return { camera: from, width, height, show, frame, coarse };
+}
+
+function draw(coarse = false) {
+  (OF_VIEW.includes(chosen("show")) ? builder : drawer).ask("draw", { coarse });
+}
 
 function onFrame() {
   return document.querySelector("#overlay input:checked") !== null;
@@ -149,17 +188,23 @@ function onFrame() {
 function moved() {
   if (onFrame() && camera.frame === null) document.querySelector("input[name=show][value=picture]").checked = true;
   markFrames();
-  draw();
+  draw(true);
+  clearTimeout(resting);
+  resting = setTimeout(() => { resting = 0; draw(); }, REST_MS);
 }
 
-done.draw = ({ pixels, width, height, ms, show }) => {
+let pictures = 0;
+done.draw = ({ pixels, width, height, ms, show, coarse, hash, took }) => {
+  if (coarse) keepPace(took);
+  if (show !== chosen("show")) return; /* it was asked for before another choice */
   if (canvas.width !== width || canvas.height !== height) {
     canvas.width = width;
     canvas.height = height;
   }
   context.putImageData(new ImageData(pixels, width, height), 0, 0);
-  if (ms > 0) $("drawn").textContent = `Last picture, ${width} x ${height}: ${ms.toFixed(1)} ms.`;
-  document.body.dataset.drawn = number; /* for tests: number of the last request drawn */
+  if (coarse) $("drawn").textContent = `${width} x ${height} while it moves, ${Math.round(1000 / took)} pictures a second.`;
+  else $("drawn").textContent = hash ? `${width} x ${height} in ${ms.toFixed(0)} ms, hash ${hash}.` : "";
+  if (!coarse) document.body.dataset.drawn = ++pictures; /* for tests: pictures that are whole */
   const of = camera.frame === null ? "from a free viewpoint" : `from ${data.frames[camera.frame].name}`;
   canvas.setAttribute("aria-label", `${document.querySelector(`input[name=show][value=${show}]`).nextSibling.textContent}, ${of}`);
 };
@@ -188,10 +233,9 @@ function showBits(hash) {
   $("bits").dataset.same = same;
 }
 
-function showResult({ gaussians, valid, stages, hash, psnr }) {
+function showResult({ gaussians, valid, stages, hash }) {
   const share = valid > 0 ? ` of ${count(valid)} points (${(100 * gaussians / valid).toFixed(1)} %)` : "";
-  const scores = psnr.map((dB, i) => `${data.frames[i].name} ${dB.toFixed(2)} dB`).join(", ");
-  say(`${count(gaussians)} Gaussians${share}.${scores ? ` PSNR: ${scores}.` : ""}`);
+  say(`${count(gaussians)} Gaussians${share}.`);
   $("progress").hidden = true;
   $("stages").hidden = stages.length === 0;
   const rows = stages.map(({ stage, ms, hash: of }) => {
@@ -203,6 +247,12 @@ function showResult({ gaussians, valid, stages, hash, psnr }) {
   document.body.dataset.hash = hash ?? "";
   document.body.dataset.gaussians = gaussians;
 }
+
+done.score = ({ psnr }) => {
+  const scores = psnr.map((dB, i) => `${data.frames[i].name} ${dB.toFixed(2)} dB`).join(", ");
+  if (builder?.busy) return; /* its progress is shown */
+  say(`${$("status").textContent} PSNR: ${scores}.`);
+};
 
 /* ---- the budget ----------------------------------------------------------------------------------------------------------- */
 
@@ -220,41 +270,42 @@ function showBudget() {
 }
 
 function build() {
-  const built = document.querySelector("input[name=source][value=built]");
-  built.checked = true;
-  ask("build", { gaussians: wanted, frames: data.frames.filter((f) => f.recorded).map((f) => cameraOf(f, data.width)) });
+  document.querySelector("input[name=source][value=built]").checked = true;
+  builder ??= new Runtime(true);
+  builder.ask("build", { gaussians: wanted });
 }
 
-let first = true;
+let built = null;
 done.build = (answer) => {
-  if (first) {
-    showBits(answer.hash);
-    first = false;
-  }
-  settle(answer);
+  if (!built) showBits(answer.hash);
+  built = answer;
+  if (chosen("source") === "built") drawer.ask("take", { scene: answer.scene });
+  $("progress").hidden = true;
 };
-done.load = (answer) => settle(answer);
+done.take = () => settle(built);
+done.load = (answer) => settle({ ...answer, valid: data.file ? 0 : data.valid, stages: [], hash: null });
 
+const scored = data.frames.filter((f) => f.recorded).map((f) => cameraOf(f, data.width));
 let settled = false;
 function settle(answer) {
   sceneUnit = 2 ** answer.exponent;
-  if (!settled) {
-    settled = true;
-    if (camera.frame !== null) lookFrom(camera.frame);
-  }
+  if (!settled && camera.frame !== null) lookFrom(camera.frame);
   showResult(answer);
   showOverlays();
   draw();
+  if (scored.length > 0) drawer.ask("score", { frames: scored });
+  if (!settled && data.hash !== null) build(); /* to compare its bits with the native program's */
+  settled = true;
 }
 
 /* ---- controls --------------------------------------------------------------------------------------------------------------- */
 
 /* Offers the overlays of views that the scene was built from here: retained pixels, SuperClusters and texture. */
 function showOverlays() {
-  const built = data.valid > 0 && chosen("source") === "built";
+  const isBuilt = built !== null && chosen("source") === "built";
   $("overlay").hidden = !data.frames.some((f) => f.recorded);
   const view = camera.frame === null || camera.frame < data.views;
-  for (const label of document.querySelectorAll(".of-view")) label.hidden = !built || !view;
+  for (const label of document.querySelectorAll(".of-view")) label.hidden = !isBuilt || !view;
   const shown = document.querySelector("input[name=show]:checked");
   if (shown.closest("label").hidden) document.querySelector("input[name=show][value=picture]").checked = true;
 }
@@ -356,19 +407,20 @@ canvas.onkeydown = (event) => {
 
 /* ---- the start --------------------------------------------------------------------------------------------------------------------- */
 
-const load = () => ask("load", { frames: data.frames.filter((f) => f.recorded).map((f) => cameraOf(f, data.width)) });
-done.open = () => {
-  if (data.scene) load();
-  else build();
-};
+const load = () => drawer.ask("load", {});
+done.open = ({ cpu, threads }) => Object.assign(document.body.dataset, { cpu, threads }); /* for tests */
 document.title = `${data.title} - trim3r view`;
 $("title").textContent = data.title;
 $("budget").hidden = data.valid === 0;
-$("source").hidden = !(data.scene && data.valid > 0);
+$("source").hidden = !(data.file && data.valid > 0);
 if (data.valid > 0) {
   slider.value = sliderAt(100 * wanted / data.valid);
   showBudget();
 }
 lookFrom(0);
 markFrames();
-ask("open", { wasm: bytesOf("wasm"), bundle: bytesOf("bundle"), width: data.width, height: data.height, most });
+const files = { wasm: bytesOf("wasm"), bundle: bytesOf("bundle") };
+const drawer = new Runtime(false);
+let builder = null;
+load();
+addEventListener("resize", () => draw());

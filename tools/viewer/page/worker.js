@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 "use strict";
-/* The runtime in a thread of its own. It answers the page's requests in order. */
+/* A runtime in a thread of its own, which builds scenes or only draws them. It answers the page's requests in order. */
 let runtime, opened;
 
 const ALIGN = 64, PAGE = 65536;
@@ -14,6 +14,56 @@ function place(bytes) {
   const missing = end - runtime.memory.buffer.byteLength;
   if (missing > 0) runtime.memory.grow(Math.ceil(missing / PAGE));
   return at;
+}
+
+/* Threads that share the module's memory, where the page may have them. Each claims tasks by their number; `control`
+ * holds what they do. A number from DONE on belongs to no work. */
+const GENERATION = 0, TASK = 1, CONTEXT = 2, COUNT = 3, NEXT = 4, ACTIVE = 5, WORDS = 6;
+const DONE = 1 << 30, MOST_THREADS = 8, STACK_BYTES = 65536;
+const SHARED_PAGES = { initial: 256, maximum: 32768 }; /* as the module is linked */
+let control, helpers = [];
+
+function work(worker) {
+  for (;;) {
+    const index = Atomics.add(control, NEXT, 1);
+    if (index >= Atomics.load(control, COUNT)) return;
+    runtime.run(control[TASK], control[CONTEXT], index, worker);
+  }
+}
+
+function parallelFor(count, task, context) {
+  control.set([task, context], TASK);
+  Atomics.store(control, COUNT, count);
+  Atomics.store(control, NEXT, 0);
+  Atomics.add(control, GENERATION, 1);
+  Atomics.notify(control, GENERATION);
+  work(0);
+  for (let active; (active = Atomics.load(control, ACTIVE)) > 0;) Atomics.wait(control, ACTIVE, active);
+  Atomics.store(control, NEXT, DONE);
+}
+
+/* Runs tasks for ever. */
+async function help({ module, memory, shared, stack, worker }) {
+  control = shared;
+  runtime = (await WebAssembly.instantiate(module, { page, env: { memory } })).exports;
+  runtime.__stack_pointer.value = stack;
+  for (let seen = Atomics.load(control, GENERATION);; seen = Atomics.load(control, GENERATION)) {
+    Atomics.wait(control, GENERATION, seen);
+    Atomics.add(control, ACTIVE, 1);
+    work(worker);
+    if (Atomics.sub(control, ACTIVE, 1) === 1) Atomics.notify(control, ACTIVE);
+  }
+}
+
+function startHelpers(module, memory, threads) {
+  helpers.forEach((helper) => helper.terminate());
+  control = new Int32Array(new SharedArrayBuffer(4 * WORDS));
+  control[NEXT] = DONE;
+  helpers = Array.from({ length: threads - 1 }, (_, i) => {
+    const helper = new Worker(self.location.href);
+    helper.postMessage({ kind: "help", module, memory, shared: control, stack: place(STACK_BYTES) + STACK_BYTES, worker: i + 1 });
+    return helper;
+  });
 }
 
 let begun = 0, times = new Float64Array(STAGES), building = false, lastTold = 0;
@@ -31,55 +81,71 @@ const page = {
     times[stage] += now - begun;
     begun = now;
   },
+  parallel_for: parallelFor,
 };
 
 function need(status, what) {
   if (status !== 0) throw new Error(`${what}: status ${status}`);
 }
 
-async function open({ wasm, bundle, width, height, most }) {
-  const { instance } = await WebAssembly.instantiate(wasm, { page });
-  runtime = instance.exports;
+async function open({ wasm, bundle, width, height, most, builds, isShared }) {
+  const memory = isShared ? new WebAssembly.Memory({ ...SHARED_PAGES, shared: true }) : null;
+  const threads = isShared && self.crossOriginIsolated ? Math.min(navigator.hardwareConcurrency, MOST_THREADS) : 1;
+  const { instance, module } = await WebAssembly.instantiate(wasm, { page, env: { memory } });
+  runtime = { memory, ...instance.exports };
   end = runtime.__heap_base.value;
   const at = place(bundle.byteLength);
   new Uint8Array(runtime.memory.buffer).set(new Uint8Array(bundle), at);
-  const bytes = runtime.open(at, bundle.byteLength, most.width, most.height);
+  const w = Math.max(most.width, width), h = Math.max(most.height, height); /* scores are of recorded frames */
+  const bytes = runtime.open(at, bundle.byteLength, w, h, builds ? 1 : 0, threads);
   if (bytes === 0) throw new Error("the runtime refuses the data of this page");
   const arena = place(bytes);
   need(runtime.start(arena, bytes), "start");
-  const pixels = Math.max(most.width * most.height, width * height);
-  opened = { width, height, arena: bytes, rgb: place(pixels * 3), depth: place(pixels * 4), alpha: place(pixels * 2) };
-  return { arena: bytes };
+  opened = { width, height, rgb: place(w * h * 3), depth: place(w * h * 4), alpha: place(w * h * 2), carried: null };
+  if (threads > 1) startHelpers(module, memory, threads);
+  return { cpu: runtime.cpu(), threads };
 }
 
 const hex = (hash) => BigInt.asUintN(64, hash).toString(16).padStart(16, "0");
 
-function built() {
-  const stages = [];
-  for (let stage = 0; stage < STAGES; stage++) {
-    const hash = BigInt.asUintN(64, runtime.hash(stage));
-    if (hash !== 0n) stages.push({ stage, ms: times[stage], hash: hex(hash) });
-  }
-  return { gaussians: runtime.gaussians(), valid: runtime.valid_points(), exponent: runtime.exponent(), stages,
-           hash: hex(runtime.hash(STAGES)) };
+/* Memory for a scene that is carried in or out. */
+function carried(bytes) {
+  if (!opened.carried || opened.carried.bytes < bytes) opened.carried = { at: place(bytes), bytes };
+  return opened.carried.at;
 }
 
-function build({ gaussians, frames }) {
+const described = () => ({ gaussians: runtime.gaussians(), valid: runtime.valid_points(), exponent: runtime.exponent() });
+
+function build({ gaussians }) {
   times = new Float64Array(STAGES);
   begun = performance.now();
   building = true;
   const status = runtime.build(gaussians);
   building = false;
   need(status, "build");
-  const result = built();
-  return { ...result, psnr: frames.map(psnr) };
+  const stages = [];
+  for (let stage = 0; stage < STAGES; stage++) {
+    const hash = BigInt.asUintN(64, runtime.hash(stage));
+    if (hash !== 0n) stages.push({ stage, ms: times[stage], hash: hex(hash) });
+  }
+  const bytes = runtime.carried_bytes(runtime.gaussians()), at = carried(bytes);
+  runtime.give(at);
+  return { ...described(), stages, hash: hex(runtime.hash(STAGES)), scene: bytesAt(at, bytes).slice() };
 }
 
-function load({ frames }) {
+function load() {
   need(runtime.load(), "the scene");
-  return { gaussians: runtime.gaussians(), valid: 0, exponent: runtime.exponent(), stages: [], hash: null,
-           psnr: frames.map(psnr) };
+  return described();
 }
+
+function take({ scene }) {
+  const at = carried(scene.length);
+  bytesAt(at, scene.length).set(scene);
+  need(runtime.take(at), "the scene");
+  return described();
+}
+
+const score = ({ frames }) => ({ psnr: frames.map(psnr) });
 
 const fixed = (value, bits) => Math.round(value * 2 ** bits);
 const fixed64 = (value) => BigInt(Math.round(value * 4294967296));
@@ -185,19 +251,21 @@ const painters = {
 };
 const OF_FRAME = ["frame", "error", "mask", "clusters", "texture"];
 
-function draw({ camera, width, height, show, frame }) {
+function draw({ camera, width, height, show, frame, coarse }) {
   const flat = OF_FRAME.includes(show);
   const w = flat ? opened.width : width, h = flat ? opened.height : height;
   const ms = flat && show !== "error" ? 0 : render(camera, w, h);
   const pixels = paint(w * h, painters[show](w * h, frame));
-  return { pixels, width: w, height: h, ms, show, frame };
+  const hash = ms > 0 && !coarse ? hex(runtime.picture_hash(opened.rgb, w, h)) : null;
+  return { pixels, width: w, height: h, ms, show, coarse, hash };
 }
 
-const answers = { open, build, load, draw };
+const answers = { open, build, load, take, score, draw, help };
 onmessage = async ({ data }) => {
   try {
     const result = await answers[data.kind](data);
-    postMessage({ ...result, kind: data.kind, id: data.id }, result.pixels ? [result.pixels.buffer] : []);
+    const moved = [result.pixels, result.scene].filter(Boolean).map((array) => array.buffer);
+    postMessage({ ...result, kind: data.kind, id: data.id }, moved);
   } catch (error) {
     postMessage({ kind: "failed", id: data.id, text: error.message });
   }

@@ -16,13 +16,13 @@
 #define T3R_C_LANES 1
 #endif
 
-/* GCC vectorizes a loop over an array if it does not unroll it first. Clang unrolls it, or leaves lanes in memory, but
- * vectorizes a vector type. */
+/* GCC vectorizes a loop over an array if it does not unroll it first. Clang vectorizes loops over a vector type if it
+ * unrolls them; for WebAssembly it does so only when asked, and else keeps each lane in memory. */
 #if defined(__clang__) && T3R_C_LANES > 1
 #define T3R_LANES_ARE_VECTOR
 typedef uint16_t t3r_lanes_row __attribute__((vector_size(2 * T3R_C_LANES)));
 typedef uint32_t t3r_lanes_wide __attribute__((vector_size(4 * T3R_C_LANES)));
-#define T3R_EACH_LANE for (int32_t i = 0; i < T3R_C_LANES; i++)
+#define T3R_EACH_LANE _Pragma("clang loop unroll(full)") for (int32_t i = 0; i < T3R_C_LANES; i++)
 #else
 typedef uint16_t t3r_lanes_row[T3R_C_LANES];
 #define T3R_EACH_LANE _Pragma("GCC unroll 1") for (int32_t i = 0; i < T3R_C_LANES; i++)

@@ -78,6 +78,20 @@ static void read_render_mode(const char *line, ply_header *h)
     }
 }
 
+/* Reads the end of Polycam's comment on the axis that points up. */
+static void read_up(const char *line, ply_header *h)
+{
+    static const struct {
+        const char *end;
+        scene_up up;
+    } ends[] = {{" with X-axis up", SCENE_UP_X}, {" with Y-axis up", SCENE_UP_Y}, {" with Z-axis up", SCENE_UP_Z}};
+    const size_t length = strlen(line);
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+        const size_t end = strlen(ends[i].end);
+        h->up = length > end && strcmp(line + length - end, ends[i].end) == 0 ? ends[i].up : h->up;
+    }
+}
+
 static void read_comment(const char *line, ply_header *h)
 {
     int local, end = 0;
@@ -94,6 +108,7 @@ static void read_comment(const char *line, ply_header *h)
         h->local = local != 0;
     } else {
         read_render_mode(line, h);
+        read_up(line, h);
     }
 }
 

@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "scene/scene_turn.h"
 #include "trim3r.h"
 
 #define PLY_ELEMENTS_MOST 16u
@@ -42,6 +43,7 @@ typedef struct ply_header {
     bool has_exponent, has_origin, local;
     t3r_scene_frame frame; /* as given in comments */
     bool mip;              /* a comment says "SplatRenderMode: mip" or "antialiased 1" */
+    scene_up up;           /* a comment ends in "with Y-axis up" */
 } ply_header;
 
 /* Each returns 0, or -1 with "byte: what" in error[]. */

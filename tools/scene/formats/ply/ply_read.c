@@ -191,6 +191,7 @@ static int parse_vertices(const ply_header *header, const uint8_t *bytes, size_t
                        .frame = header->frame,
                        .degree = vertices.degree,
                        .mip = header->mip,
+                       .up = header->up,
                        .remark = vertices.remark,
                        .read = read_vertex,
                        .user = &vertices};
