@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#define T3R_FITTED_MOST 4
+#define T3R_FITTED_MOST 15
 #define T3R_EARLIER_PIECE 255 /* instead of `fitted`: of an earlier piece of the map, not seen since */
 
 /* One record for each Gaussian of the map, in the map's order. Any values are safe. */

@@ -262,16 +262,14 @@ static void solve_chunk(void *context, uint32_t index, uint32_t worker)
     job->kernels->solve(job->slice.sums + begin, count, corrections + begin);
 }
 
-/* Step share, Q15: 1 / (1 + n) after n keyframes saw the Gaussian, so that the next one doesn't undo what they agreed
- * on. */
-static const uint16_t settled_q15[T3R_FITTED_MOST + 1] = {32768, 16384, 10923, 8192, 6554};
-
-/* Damps opacity and place, or a Gaussian that is seen again and again would drift off its surface. Damps shape half as
- * much. Where keyframes are remembered, damps all; else colour follows the newest ones. */
+/* Damps opacity and place to a share of 1 / (1 + n) after n keyframes saw the Gaussian, so that the next one doesn't
+ * undo what they agreed on, and a Gaussian that is seen again and again doesn't drift off its surface. Damps shape half
+ * as much, and from the fourth keyframe on to three times that share: undamped, widths would shrink for ever. Where
+ * keyframes are remembered, damps all alike; else colour follows the newest ones. */
 static t3r_correction settled(const t3r_correction *whole, uint32_t fitted, bool remembers)
 {
-    const int32_t share_q15 = settled_q15[T3R_MIN(fitted, (uint32_t)T3R_FITTED_MOST)];
-    const int32_t shape_q15 = remembers ? share_q15 : (share_q15 + (1 << 15)) / 2;
+    const int32_t share_q15 = (1 << 15) / (1 + T3R_MIN((int32_t)fitted, T3R_FITTED_MOST));
+    const int32_t shape_q15 = remembers ? share_q15 : T3R_MIN((share_q15 + (1 << 15)) / 2, 3 * share_q15);
     t3r_correction c = *whole;
     for (int i = 0; i < 3 && remembers; i++) {
         c.colour_q7[i] = (int16_t)t3r_round_shift32(c.colour_q7[i] * share_q15, 15);

@@ -20,9 +20,10 @@
 #define STEP_MOST_Q10 256
 
 /* Gaussians leave whose threshold is this much, log2, above what one Gaussian a pixel leaves, and those of less opacity
- * than 1/32. */
+ * than 1/32 after four keyframes. */
 #define EXCESS_Q10 512
 #define FAINT_Q15 1024
+#define FITTED_LEAST 4
 
 /* --- discs -------------------------------------------------------------------------------------------------------- */
 
@@ -175,7 +176,7 @@ static uint32_t mean_density_q16(const t3r_map_density *density, const disc *d)
 /* Whether several keyframes have fitted it and made it faint. */
 static bool is_faint(const t3r_gaussian *g, const t3r_map_record *record)
 {
-    return record->fitted == T3R_FITTED_MOST && g->opacity_q15 < FAINT_Q15;
+    return record->fitted >= FITTED_LEAST && g->opacity_q15 < FAINT_Q15;
 }
 
 /* Whether it is among those too many where Gaussians are denser than one a pixel. Its key holds its threshold, which is
