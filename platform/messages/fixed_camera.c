@@ -56,7 +56,7 @@ bool t3r_fixed_depth_unit(double unit, uint64_t *q40)
 
 const char *t3r_fixed_camera(const t3r_recorded_camera *in, t3r_camera *out)
 {
-    *out = (t3r_camera){.distortion = in->distortion};
+    *out = (t3r_camera){.width = in->width, .height = in->height, .distortion = in->distortion};
     if (!t3r_fixed_focal(t3r_double_bits(in->fx), &out->fx_q16) ||
         !t3r_fixed_focal(t3r_double_bits(in->fy), &out->fy_q16)) {
         return T3R_LIMIT_TEXT("fl_x, fl_y: ", T3R_LIMIT_FOCAL_LEAST,

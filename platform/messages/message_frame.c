@@ -193,6 +193,8 @@ const char *t3r_message_intrinsics(const t3r_ros_camera_info *info, t3r_camera *
     if (!t3r_fixed_centre(info->k_f64[5], &camera->cy_q16)) {
         return "K[5] (cy)" CENTRE_RANGE;
     }
+    camera->width = info->width;
+    camera->height = info->height;
     return read_distortion(info, camera);
 }
 

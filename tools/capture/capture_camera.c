@@ -45,6 +45,8 @@ static bool fixed_in(double value, uint32_t fraction_bits, int64_t low, int64_t 
 const char *capture_camera_set_intrinsics(const t3r_recorded_camera *camera, t3r_camera *out)
 {
     static const int64_t focal = INT64_C(8) << 16, side = INT64_C(16384) << 16;
+    out->width = camera->width;
+    out->height = camera->height;
     if (!fixed_in(camera->fx, 16, focal, side, &out->fx_q16) || !fixed_in(camera->fy, 16, focal, side, &out->fy_q16)) {
         return "a focal length is outside [8, 16384)";
     }
