@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 #include "api/checks.h"
 #include "cli/cli.h"
@@ -162,6 +163,12 @@ static const char *check_first(const uint8_t *first, size_t count)
 /* Returns the bytes of a scene file; NULL with the reason in error[]. */
 static uint8_t *read_bytes(const char *path, size_t *count, char *error, size_t error_bytes)
 {
+    struct stat about;
+    if (stat(path, &about) == 0 && S_ISDIR(about.st_mode)) {
+        (void)t3r_reason(error, error_bytes,
+                         "%s: a folder, not a scene file (an unpacked .sog is read once its files are zipped)", path);
+        return NULL;
+    }
     const scene_format *named = format_of_path(path);
     const bool begins_with_anything = named != NULL && named->magic == NULL && named->parse != NULL;
     return t3r_file_bytes_checked(path, SIZE_MAX, begins_with_anything ? NULL : check_first, count, error, error_bytes);
