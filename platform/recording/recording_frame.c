@@ -120,12 +120,7 @@ static bool is_of_colour(const t3r_recording *recording)
  * hold what was captured. */
 static bool is_stretched(const reading *r, const t3r_frame *frame)
 {
-    if (r->recording->bits_epoch != 0 || !is_of_colour(r->recording)) {
-        return false;
-    }
-    const int64_t difference =
-        (int64_t)frame->depth_width * frame->height - (int64_t)frame->depth_height * frame->width;
-    return llabs(difference) > (frame->width > frame->height ? frame->width : frame->height);
+    return r->recording->bits_epoch == 0 && is_of_colour(r->recording) && t3r_message_is_stretched(frame);
 }
 
 /* Checks the sides of depth beside those of colour. */

@@ -236,15 +236,16 @@ static int redraw(void *user, const t3r_ros_camera_info *info, t3r_frame *frame,
         return t3r_reason(error, error_bytes, "%s", wrong);
     }
     lens_reduce(&bent, picture_reduction(info->width, info->height));
-    if (bag_straighten_colour(&bent, frame, &pictures->straight_colour, error, error_bytes) != 0) {
+    if (bag_straighten_colour(&bent, frame, pictures->colour.valid, &pictures->straight_colour, error, error_bytes) !=
+        0) {
         return -1;
     }
     return depth ? bag_straighten_depth(&bent, frame, &pictures->straight_depth, error, error_bytes) : 0;
 }
 
-int bag_pictures_hide(bag_pictures *pictures, t3r_frame *frame)
+int bag_pictures_hide(bag_pictures *pictures, t3r_frame *frame, bool straightened)
 {
-    const picture *colour = &pictures->colour;
+    const picture *colour = straightened ? &pictures->straight_colour : &pictures->colour;
     picture *p = &pictures->hidden;
     if (colour->valid == NULL || frame->depth == NULL) {
         return 0;

@@ -21,8 +21,9 @@ typedef struct bag_pictures {
  * recording is closed. */
 t3r_image_decoder bag_pictures_decoder(bag_pictures *pictures);
 /* Sets depth to 0, none, where the colour image of the frame that was read last is transparent. The frame's depth is of
- * colour's view and stays valid until the next call. Returns -1 without memory. */
-int bag_pictures_hide(bag_pictures *pictures, t3r_frame *frame);
+ * colour's view, redrawn with it if that was straightened, and stays valid until the next call. Returns -1 without
+ * memory. */
+int bag_pictures_hide(bag_pictures *pictures, t3r_frame *frame, bool straightened);
 void bag_pictures_free(bag_pictures *pictures);
 
 #endif

@@ -2,18 +2,27 @@
 #include "import/bags/bag_straight.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/little_endian.h"
 #include "host/reason.h"
 #include "import/bags/bag_size.h"
 #include "import/frames/straighten.h"
 
-int bag_straighten_colour(const lens *l, t3r_frame *frame, picture *out, char *error, size_t error_bytes)
+int bag_straighten_colour(const lens *l, t3r_frame *frame, const uint8_t *valid, picture *out, char *error,
+                          size_t error_bytes)
 {
+    const size_t pixels = (size_t)frame->width * frame->height;
     picture_free(out);
     const char *wrong = bag_size_colour(frame, out);
     if (wrong != NULL) {
         return t3r_reason(error, error_bytes, "%s", wrong);
+    }
+    if (valid != NULL && (out->valid = malloc(pixels)) == NULL) {
+        return t3r_reason(error, error_bytes, "out of memory");
+    }
+    if (valid != NULL) {
+        memcpy(out->valid, valid, pixels);
     }
     if (straighten(l, out, error, error_bytes) != 0) {
         return -1;

@@ -39,7 +39,7 @@ static int make(void *user, uint32_t index, t3r_capture_frame *frame, char *erro
     made_frames *made = user;
     const estimation *e = made->estimated;
     int status = bag_frames_make(made->frames, index, frame, error, error_bytes);
-    if (status == 0 && bag_pictures_hide(made->pictures, &frame->frame) != 0) {
+    if (status == 0 && bag_pictures_hide(made->pictures, &frame->frame, frame->straightened) != 0) {
         status = t3r_reason(error, error_bytes, "out of memory");
     }
     if (status == 0) {
