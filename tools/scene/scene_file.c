@@ -17,6 +17,7 @@
 #include "host/file_bytes.h"
 #include "host/reason.h"
 #include "scene/chosen_rows.h"
+#include "scene/scene_cuts.h"
 #include "scene/scene_extent.h"
 #include "scene/scene_format.h"
 
@@ -235,8 +236,6 @@ int scene_file_read(const char *path, int flags, scene_file *out, char *error, s
  * 2^-11 of one. */
 #define FAR_FROM_ORIGIN 0x1p13
 
-#define HALF_A_LEVEL (0.5 / 255) /* less is the rounding of a colour */
-
 /* Returns a frame for rows without one: its origin is a whole number of units. */
 static t3r_scene_frame frame_of(const scene_rows *rows, const scene_extent *extent)
 {
@@ -296,51 +295,22 @@ static void warn_of_origin(const char *path, const scene_format *format, const s
                     format->holds_origin ? "the file says" : "this format has no place for");
 }
 
-/* Whether a bound changes the number by more than `most`. */
-static bool is_cut(scene_bounds bounds, double value, double most)
-{
-    return (bounds.least != 0 || bounds.most != 0) && (value < bounds.least - most || value > bounds.most + most);
-}
-
-/* Whether the bounds of the format change a width of the Gaussian by more than 1/16 of its largest one. */
-static bool is_reshaped(scene_bounds bounds, const scene_row *row)
-{
-    const double most = exp(fmax(row->log_scale[0], fmax(row->log_scale[1], row->log_scale[2]))) / 16;
-    const scene_bounds widths = {exp(bounds.least), exp(bounds.most)};
-    bool is = false;
-    for (int axis = 0; axis < 3 && (bounds.least != 0 || bounds.most != 0); axis++) {
-        is = is || is_cut(widths, exp(row->log_scale[axis]), most);
-    }
-    return is;
-}
-
 /* Warns of colours and widths that the format has no numbers for, and cuts off. */
-static void warn_of_cuts(const char *path, const scene_format *format, const scene_source *source)
+static void warn_of_cuts(const char *path, const scene_format *format, const scene_source *source,
+                         const scene_extent *extent)
 {
-    const scene_bounds colour = format->colour, scale = format->log_scale;
-    const bool has_bounds = colour.least != 0 || colour.most != 0 || scale.least != 0 || scale.most != 0;
-    uint32_t colours = 0, shapes = 0;
-    for (uint32_t i = 0; i < source->rows->count && has_bounds; i++) {
-        scene_row row;
-        scene_source_row(source, i, &row);
-        bool cut = false;
-        for (int channel = 0; channel < 3; channel++) {
-            cut = cut || is_cut(colour, scene_row_colour(&row, channel), HALF_A_LEVEL);
-        }
-        colours += cut;
-        shapes += is_reshaped(scale, &row);
-    }
-    if (colours > 0) {
+    const scene_cuts cuts = scene_cuts_of(format, source, extent);
+    if (cuts.colours > 0) {
         (void)cli_error(CLI_OK,
                         "warning: %s: %" PRIu32 " Gaussians have colours outside %.3g to %.3g, where this format cuts "
                         "them off",
-                        path, colours, colour.least, colour.most);
+                        path, cuts.colours, format->colour.least, format->colour.most);
     }
-    if (shapes > 0) {
+    if (cuts.widths > 0) {
         (void)cli_error(CLI_OK,
                         "warning: %s: %" PRIu32 " Gaussians have widths outside %.3g to %.3g units, where this format "
                         "cuts them off",
-                        path, shapes, exp(scale.least), exp(scale.most));
+                        path, cuts.widths, exp(format->log_scale.least), exp(format->log_scale.most));
     }
 }
 
@@ -370,7 +340,7 @@ static int write_all(const char *path, const scene_rows *rows, const scene_exten
         (void)cli_error(CLI_OK, "warning: %s: harmonics of up to %.3g are cut off at %.3g, the most of this format",
                         path, extent->harmonics, format->harmonics);
     }
-    warn_of_cuts(path, format, &source);
+    warn_of_cuts(path, format, &source, extent);
     if (rows->mip && !format->holds_mip) {
         warn_of_text(path,
                      "this format has no place for the mark of mip-splatting (antialiased): viewers will draw the "
@@ -445,7 +415,8 @@ int scene_file_write(const char *path, const t3r_scene *scene, int flags, const 
     const scene_file made = {
         .frame = scene->frame, .gaussians = (t3r_gaussian *)(uintptr_t)scene->gaussians, .count = scene->count};
     const scene_rows rows = scene_rows_of(&made);
-    const scene_extent extent = {.typical = ldexp(1, scene->frame.exponent)};
+    const scene_bounds any = {-INFINITY, INFINITY};
+    const scene_extent extent = {.typical = ldexp(1, scene->frame.exponent), .colour = any, .log_scale = any};
     char reason[256] = "";
     if (check_scene(scene, &rows, reason, sizeof reason) != 0) {
         return t3r_reason(error, error_bytes, "%s: %s", path, reason);

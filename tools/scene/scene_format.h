@@ -9,11 +9,6 @@
 #include "scene/scene_file.h"
 #include "scene/scene_rows.h"
 
-/* The least and the largest number that a format holds; both 0: any. */
-typedef struct scene_bounds {
-    double least, most;
-} scene_bounds;
-
 typedef struct scene_format {
     const char *suffix;     /* suffix of its files: ".ply" */
     const char *magic;      /* first bytes of its files; NULL: any, or the same as another row's */
@@ -21,8 +16,8 @@ typedef struct scene_format {
     scene_axes axes;        /* of written files; the reader knows its own */
     uint32_t degree;        /* highest degree of harmonics that is written, 0..3 */
     double harmonics;       /* the largest coefficient above degree 0 that is written; 0: any */
-    scene_bounds colour;    /* of the colours of degree 0 that are written (scene_row_colour()) */
-    scene_bounds log_scale; /* of the scales that are written */
+    scene_bounds colour;    /* of colours of degree 0 that are written (scene_row_colour()); both 0: any */
+    scene_bounds log_scale; /* of scales that are written; both 0: any */
     bool holds_origin;      /* a file can say where its origin is in the world */
     bool holds_mip;         /* a file can say that its opacities are those of mip-splatting */
     bool shares_bits;       /* the farthest Gaussian decides how exactly the others' positions are written */
