@@ -84,3 +84,9 @@ const char *t3r_fixed_camera(const t3r_recorded_camera *in, t3r_camera *out)
     }
     return NULL;
 }
+
+bool t3r_fixed_centre_is_within(const t3r_camera *camera, uint32_t width, uint32_t height)
+{
+    const int64_t x_q16 = (int64_t)camera->cx_q16 + 0x8000, y_q16 = (int64_t)camera->cy_q16 + 0x8000;
+    return x_q16 >= 0 && y_q16 >= 0 && x_q16 <= (int64_t)width << 16 && y_q16 <= (int64_t)height << 16;
+}

@@ -565,6 +565,20 @@ def large_pictures():
     check(np.abs(k - [[2000, 0, 149.5], [0, 2000, 3.5], [0, 0, 1]]).max() < 1e-3, f"cropped: {k}")
 
 
+def intrinsics_for_another_size():
+    """--intrinsics state no size: they are for the first frame's, and their principal point lies in it."""
+    bag = Bag()
+    for i, side in enumerate((1, 2, 1)):
+        ns = (i + 1) * SECOND
+        bag.put("/pose", ros.POSE, ns, ros.pose(ns, "map", (i, 0, 0)))
+        bag.put("/cam/image", ros.IMAGE, ns, ros.image(ns, "cam", "rgb8", np.full((side * ros.HEIGHT, side * ros.WIDTH, 3), 9, np.uint8)))
+    report = imported(bag, "--intrinsics", "30,30,15.5,11.5")
+    check(report["frames"] == 2 and "64x48 pixels, but --intrinsics are of the first frame's size, 32x24" in report["left_out"][0], f"{report}")
+    for outside in ("30,30,32,11.5", "30,30,15.5,-1"):
+        check("principal point of --intrinsics is outside its 32x24 pixels" in imported("bag.mcap", "--intrinsics", outside, status=1), outside)
+    check(imported("bag.mcap", "--intrinsics", "30,30,31.5,-0.5")["frames"] == 2, "in the corner")
+
+
 def encoding_is_stored(name):
     return name in ("rgb8", "bgr8", "mono8", "yuv422_yuy2", "nv12")
 
@@ -574,6 +588,6 @@ with tempfile.TemporaryDirectory() as work:
     for case in (depth_is_chosen_by_name_and_type, poses_are_not_goals, colour_is_chosen_by_votes, intrinsics_are_of_the_same_frame,
                  channels_of_a_topic_are_one_stream, clocks_that_begin_again, bad_poses_are_left_out, bad_images_are_left_out,
                  jpegs_without_their_end, triplets_follow_the_frames, rectified_images_have_the_lens_of_p, depth_of_another_aspect_needs_its_own_lens, encodings, transparent_pixels_are_none, images_that_exif_turns, depth_units, other_files,
-                 folders_of_rosbag2, bad_files_of_a_folder, packed_files, lenses_that_no_recording_holds, large_pictures):
+                 folders_of_rosbag2, bad_files_of_a_folder, packed_files, lenses_that_no_recording_holds, large_pictures, intrinsics_for_another_size):
         case()
     done()

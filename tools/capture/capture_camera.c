@@ -54,6 +54,9 @@ const char *capture_camera_set_intrinsics(const t3r_recorded_camera *camera, t3r
         !fixed_in(camera->cy, 16, -side + 1, side, &out->cy_q16)) {
         return "the principal point is outside (-16384, 16384)";
     }
+    if (!t3r_fixed_centre_is_within(out, out->width, out->height)) {
+        return "the principal point is outside the picture";
+    }
     bool zero = true;
     int count = camera->distortion == T3R_DISTORTION_NONE ? 0 : camera->distortion == T3R_DISTORTION_FISHEYE ? 4 : 5;
     memset(out->distortion_q24, 0, sizeof out->distortion_q24);

@@ -31,14 +31,37 @@ typedef struct made_frames {
     bag_frames *frames;
     const estimation *estimated;
     bag_size size;
+    bool given;     /* the intrinsics are those of the command line */
+    uint32_t of[2]; /* width and height that they are for: those of the first frame; 0: none yet */
 } made_frames;
+
+/* Checks the frame's size against intrinsics that state none. */
+static int check_given(made_frames *made, const t3r_capture_frame *frame, char *error, size_t error_bytes)
+{
+    const uint32_t width = frame->frame.width, height = frame->frame.height;
+    if (made->of[0] == 0) {
+        made->of[0] = width;
+        made->of[1] = height;
+    }
+    if (made->of[0] != width || made->of[1] != height) {
+        return t3r_reason(error, error_bytes, "%ux%u pixels, but --intrinsics are of the first frame's size, %ux%u",
+                          width, height, made->of[0], made->of[1]);
+    }
+    return t3r_fixed_centre_is_within(&frame->camera, width, height)
+               ? 0
+               : t3r_reason(error, error_bytes, "the principal point of --intrinsics is outside its %ux%u pixels",
+                            width, height);
+}
 
 /* Makes the frame to write, with its estimated pose if poses were estimated. */
 static int make(void *user, uint32_t index, t3r_capture_frame *frame, char *error, size_t error_bytes)
 {
     made_frames *made = user;
     const estimation *e = made->estimated;
-    int status = bag_frames_make(made->frames, index, frame, error, error_bytes);
+    int status = made->given ? check_given(made, frame, error, error_bytes) : 0;
+    if (status == 0) {
+        status = bag_frames_make(made->frames, index, frame, error, error_bytes);
+    }
     if (status == 0 && bag_pictures_hide(made->pictures, &frame->frame, frame->straightened) != 0) {
         status = t3r_reason(error, error_bytes, "out of memory");
     }
@@ -337,7 +360,8 @@ static int import_opened(const recording_import_request *r, t3r_recording *recor
     if (code == CLI_OK && r->poses != POSES_GIVEN) {
         code = estimate_all(recording, r, &losses, &estimated);
     }
-    made_frames makes = {pictures, &frames, &estimated, {.width = r->width, .height = r->height}};
+    made_frames makes = {pictures, &frames, &estimated, {.width = r->width, .height = r->height}, r->intrinsics != NULL,
+                         {0}};
     code = code == CLI_OK ? write_new(r, recording, &makes, &losses, &totals) : code;
     bag_size_free(&makes.size);
     const report made = {recording, &frames, &totals, &losses, &estimated};
