@@ -136,6 +136,9 @@ const char *t3r_recording_note(const t3r_recording *recording);
 /* Returns the bits epoch of the recording; 0 = not written by trim3r. */
 uint32_t t3r_recording_bits_epoch(const t3r_recording *recording);
 
+/* Whether a topic's name says that its images are rectified: P of camera_info holds for them, and no distortion. */
+bool t3r_topic_is_rectified(const char *topic);
+
 /* The use of a stream. */
 typedef enum t3r_stream_use {
     T3R_USE_NONE,

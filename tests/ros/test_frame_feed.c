@@ -327,6 +327,37 @@ TEST(lenses_that_no_camera_holds_are_straightened)
     finish(&h);
 }
 
+/* Images of a rectified topic have the lens of P, without the distortion of the camera. */
+TEST(rectified_topics_have_the_lens_of_p)
+{
+    static const char *const names[] = {"/cam/image_raw", "/cam/image_rect_color", "/cam/image_rect"};
+    const double p[12] = {2 * SIDE, 0, 7.5, 0, 0, 2 * SIDE, 7.5, 0, 0, 0, 1, 0}, bent = 0.25;
+    for (int i = 0; i < 3; i++) {
+        heard h;
+        begin(&h, true, 8);
+        h.found = FRAME_FEED_FOUND;
+        frame_feed_colour_topic(h.feed, names[i]);
+        t3r_ros_camera_info info = good_info();
+        info.d_count = 5;
+        memcpy(&info.d_f64[0], &bent, sizeof bent);
+        if (i < 2) {
+            memcpy(info.p_f64, p, sizeof p);
+        }
+        frame_feed_camera_info(h.feed, &info, 0);
+        send(&h, FRAME_FEED_COLOUR, 100, 0);
+        send(&h, FRAME_FEED_DEPTH, 100, 0);
+        assert_int_equal(h.frames, i < 2);
+        if (i < 2) {
+            assert_int_equal(h.camera.distortion, i == 0 ? T3R_DISTORTION_RADTAN : T3R_DISTORTION_NONE);
+            assert_int_equal(h.camera.fx_q16, (i == 0 ? SIDE : 2 * SIDE) << 16);
+        } else {
+            assert_int_equal(h.topic, FRAME_FEED_CAMERA_INFO);
+            assert_string_equal(h.reason, "P is 0, but images of a rectified topic need it");
+        }
+        finish(&h);
+    }
+}
+
 TEST(depth_that_does_not_fit)
 {
     heard h;

@@ -40,7 +40,7 @@ struct frame_feed {
     stamped_pose poses[POSES_MOST]; /* oldest first */
     uint32_t pose_count;
     char world[FRAME_FEED_NAME_BYTES];
-    bool has_info;
+    bool has_info, rectified;
     t3r_ros_camera_info info; /* without its texts */
     char info_model[32], info_frame[FRAME_FEED_NAME_BYTES];
     int64_t last_ns[FRAME_FEED_TOPICS]; /* stamps; INT64_MIN: none yet */
@@ -318,18 +318,25 @@ static int take_intrinsics(frame_feed *feed, const image_slot *colour, t3r_frame
                           "width x height is %" PRIu32 "x%" PRIu32 ", that of the image %" PRIu32 "x%" PRIu32,
                           feed->info.width, feed->info.height, colour->image.width, colour->image.height);
     }
-    feed->info.distortion_model = t3r_text_of(feed->info_model);
-    const char *wrong = t3r_message_intrinsics(&feed->info, camera);
-    *straightened = wrong != NULL && t3r_message_is_bent(&feed->info);
-    if (!*straightened) {
+    t3r_ros_camera_info info = feed->info;
+    info.distortion_model = t3r_text_of(feed->info_model);
+    const char *wrong = feed->rectified ? t3r_message_rectify(&info) : NULL;
+    if (wrong != NULL) {
         return verdict(wrong, reason);
     }
-    const t3r_image_decoder decoder = bag_pictures_decoder(&feed->pictures);
-    t3r_ros_camera_info pinhole = feed->info;
+    wrong = t3r_message_intrinsics(&info, camera);
+    if (wrong == NULL || !t3r_message_is_bent(&info)) {
+        return verdict(wrong, reason);
+    }
+    t3r_ros_camera_info pinhole = info;
     pinhole.d_count = 0;
-    return decoder.straighten(decoder.user, &feed->info, frame, true, reason, FRAME_FEED_REASON_BYTES) == 0
-               ? verdict(t3r_message_intrinsics(&pinhole, camera), reason)
-               : -1;
+    wrong = t3r_message_intrinsics(&pinhole, camera); /* K may be what is wrong */
+    if (wrong != NULL) {
+        return verdict(wrong, reason);
+    }
+    *straightened = true;
+    const t3r_image_decoder decoder = bag_pictures_decoder(&feed->pictures);
+    return decoder.straighten(decoder.user, &info, frame, true, reason, FRAME_FEED_REASON_BYTES);
 }
 
 /* Sets depth to 0 where colour is transparent. */
@@ -483,6 +490,11 @@ static void take_decoded(frame_feed *feed, frame_feed_topic topic, const char *w
         feed->counts.refused += !depth;
         frame_feed_warn(feed, topic, wrong, now_ns);
     }
+}
+
+void frame_feed_colour_topic(frame_feed *feed, const char *name)
+{
+    feed->rectified = t3r_topic_is_rectified(name);
 }
 
 void frame_feed_image(frame_feed *feed, frame_feed_topic topic, const t3r_ros_image *image, void *owner, int64_t now_ns)
