@@ -69,7 +69,7 @@ static int decode_depth(bag_pictures *pictures, t3r_text format, const uint8_t *
     return 0;
 }
 
-/* Hands out the colour picture, with sides of at most T3R_MAX_SIDE. */
+/* Fills in *out from the colour picture, reduced to sides of at most T3R_MAX_SIDE. */
 static int finish_colour(bag_pictures *pictures, t3r_decoded_image *out, char *error, size_t error_bytes)
 {
     picture *p = &pictures->colour;
@@ -176,7 +176,7 @@ static const char *extent_error(const t3r_ros_image *image, uint32_t pixel_bytes
                : NULL;
 }
 
-/* Takes an image of a pixel format that the runtime reads, but larger. */
+/* Converts an image of a pixel format that the runtime reads, but larger, to RGB. */
 static int take_large(const t3r_ros_image *image, t3r_pixel_format format, picture *out, char *error,
                       size_t error_bytes)
 {
