@@ -56,7 +56,7 @@ bool t3r_fixed_depth_unit(double unit, uint64_t *q40)
 
 const char *t3r_fixed_camera(const t3r_recorded_camera *in, t3r_camera *out)
 {
-    *out = (t3r_camera){.distortion = in->distortion};
+    *out = (t3r_camera){.width = in->width, .height = in->height, .distortion = in->distortion};
     if (!t3r_fixed_focal(t3r_double_bits(in->fx), &out->fx_q16) ||
         !t3r_fixed_focal(t3r_double_bits(in->fy), &out->fy_q16)) {
         return T3R_LIMIT_TEXT("fl_x, fl_y: ", T3R_LIMIT_FOCAL_LEAST,
@@ -83,4 +83,10 @@ const char *t3r_fixed_camera(const t3r_recorded_camera *in, t3r_camera *out)
         }
     }
     return NULL;
+}
+
+bool t3r_fixed_centre_is_within(const t3r_camera *camera, uint32_t width, uint32_t height)
+{
+    const int64_t x_q16 = (int64_t)camera->cx_q16 + 0x8000, y_q16 = (int64_t)camera->cy_q16 + 0x8000;
+    return x_q16 >= 0 && y_q16 >= 0 && x_q16 <= (int64_t)width << 16 && y_q16 <= (int64_t)height << 16;
 }

@@ -33,4 +33,8 @@ bool t3r_fixed_depth_unit(double unit, uint64_t *q40);
  * supported". */
 const char *t3r_fixed_camera(const t3r_recorded_camera *in, t3r_camera *out);
 
+/* Whether the principal point lies in a picture of width x height. If nothing states the size that intrinsics are for,
+ * those of another size often fail this. */
+bool t3r_fixed_centre_is_within(const t3r_camera *camera, uint32_t width, uint32_t height);
+
 #endif

@@ -83,6 +83,13 @@ const char *t3r_message_depth(const t3r_ros_image *image, t3r_frame *frame)
     return NULL;
 }
 
+bool t3r_message_is_stretched(const t3r_frame *frame)
+{
+    const int64_t difference =
+        (int64_t)frame->depth_width * frame->height - (int64_t)frame->depth_height * frame->width;
+    return (difference < 0 ? -difference : difference) > (frame->width > frame->height ? frame->width : frame->height);
+}
+
 /* Converts metres, a float's bits, to steps of the unit: to Q40, then divided, both round-half-even. 0 = no
  * measurement: NaN, infinity, zero, behind the camera, or more than 65535 steps. */
 static uint16_t steps_of_metres(uint32_t bits, uint64_t unit_q40, uint32_t *beyond)
@@ -193,6 +200,8 @@ const char *t3r_message_intrinsics(const t3r_ros_camera_info *info, t3r_camera *
     if (!t3r_fixed_centre(info->k_f64[5], &camera->cy_q16)) {
         return "K[5] (cy)" CENTRE_RANGE;
     }
+    camera->width = info->width;
+    camera->height = info->height;
     return read_distortion(info, camera);
 }
 

@@ -20,6 +20,8 @@ bool t3r_message_is_z16(const t3r_ros_image *image);
 /* Fills in the depth plane, without its unit. frame->depth is NULL if the samples need conversion: use
  * t3r_message_to_z16() then, with rows of depth_stride_bytes. */
 const char *t3r_message_depth(const t3r_ros_image *image, t3r_frame *frame);
+/* Whether depth has another aspect than colour, by more than a pixel: it cannot show the same view. */
+bool t3r_message_is_stretched(const t3r_frame *frame);
 /* Converts the samples of such an image to steps of the unit, width x height x 2 bytes; `out` may be the start of the
  * samples. Returns how many lie beyond 65535 steps, which become 0. */
 uint32_t t3r_message_to_z16(const t3r_ros_image *image, uint64_t unit_q40, uint8_t *out);

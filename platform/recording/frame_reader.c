@@ -265,8 +265,6 @@ static int read_camera_info(t3r_frame_reader *reader, const uint8_t *bytes, size
         return fail(reader, wrong);
     }
     reader->camera = camera;
-    reader->camera_width = info.width;
-    reader->camera_height = info.height;
     reader->has_intrinsics = true;
     return 0;
 }
@@ -366,7 +364,7 @@ static int take_record(t3r_frame_reader *reader, const record *r, instant *now)
 static int finish(t3r_frame_reader *reader, const instant *now, t3r_capture_frame *frame)
 {
     if (reader->has_intrinsics &&
-        (reader->camera_width != now->frame.width || reader->camera_height != now->frame.height)) {
+        (reader->camera.width != now->frame.width || reader->camera.height != now->frame.height)) {
         return fail(reader, "the size in a CameraInfo is not the image's");
     }
     *frame = (t3r_capture_frame){

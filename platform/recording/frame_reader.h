@@ -47,7 +47,6 @@ typedef struct t3r_frame_reader {
     t3r_frame_reader_image colour_image, depth_image; /* of the current frame */
     t3r_pixel_format format;
     bool has_intrinsics;
-    uint32_t camera_width, camera_height;
     t3r_camera camera; /* intrinsics of the last message that had them */
     const char *error;
     uint8_t small[T3R_FRAME_READER_SMALL_BYTES];

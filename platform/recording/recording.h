@@ -73,15 +73,17 @@ t3r_recording *t3r_recording_open_chosen(const char *path, const t3r_recording_c
 /* A decoded sensor_msgs/CompressedImage: rows without gaps of RGB24 or GREY, or of Z16 in the recording's unit. */
 typedef struct t3r_decoded_image {
     uint32_t width, height;
-    t3r_pixel_format format; /* for colour */
-    const uint8_t *rows;     /* owned by the decoder; valid until it decodes the next image of that kind */
+    uint32_t whole_width, whole_height; /* of colour before it was reduced */
+    uint32_t reduction;                 /* squares of so many pixels along a side became one of colour */
+    t3r_pixel_format format;            /* for colour */
+    const uint8_t *rows;                /* owned by the decoder; valid until it decodes the next image of that kind */
 } t3r_decoded_image;
 /* Decodes `count` bytes in the format that the message names. Returns 0, or -1 with a reason. Without a decoder, frames
  * with such images are refused: a recording must replay the same everywhere, so import decodes them first. */
 typedef struct t3r_image_decoder {
     int (*decode)(void *user, t3r_text format, const uint8_t *bytes, size_t count, bool depth, uint64_t unit_q40,
                   t3r_decoded_image *out, char *error, size_t error_bytes);
-    /* Converts an image of an encoding for which t3r_pixel_is_converted() holds. */
+    /* Converts an image of an encoding for which t3r_pixel_is_converted() holds, or with a side above T3R_MAX_SIDE. */
     int (*convert)(void *user, const struct t3r_ros_image *image, t3r_decoded_image *out, char *error,
                    size_t error_bytes);
     /* Redraws a frame's colour, and its depth if that is of the same view, for a camera without the lens's distortion,
@@ -133,6 +135,9 @@ const char *t3r_recording_asks(const t3r_recording *recording);
 const char *t3r_recording_note(const t3r_recording *recording);
 /* Returns the bits epoch of the recording; 0 = not written by trim3r. */
 uint32_t t3r_recording_bits_epoch(const t3r_recording *recording);
+
+/* Whether a topic's name says that its images are rectified: P of camera_info holds for them, and no distortion. */
+bool t3r_topic_is_rectified(const char *topic);
 
 /* The use of a stream. */
 typedef enum t3r_stream_use {

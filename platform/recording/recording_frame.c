@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/camera.h"
 #include "host/reason.h"
 #include "messages/message_frame.h"
 #include "messages/pixel_layout.h"
@@ -46,48 +47,65 @@ static int decode(const reading *r, const t3r_stream *stream, const t3r_indexed_
     return wrong == NULL ? 0 : fail(r, stream, message, wrong);
 }
 
-/* Converts an image of an encoding that is no pixel format, with the recording's decoder. */
-static int convert(const reading *r, const t3r_stream *stream, const t3r_indexed_message *message,
-                   t3r_decoded_image *out)
+static bool is_large(const t3r_ros_image *image)
+{
+    return image->width > T3R_MAX_SIDE || image->height > T3R_MAX_SIDE;
+}
+
+/* Converts an image that is large, or whose encoding is no pixel format, with the recording's decoder. Returns NULL, or
+ * what is wrong, which may be in what[]. */
+static const char *convert(const reading *r, const t3r_ros_image *image, t3r_decoded_image *out, char *what,
+                           size_t bytes)
 {
     const t3r_image_decoder *decoder = &r->recording->decoder;
+    if (decoder->convert != NULL) {
+        return decoder->convert(decoder->user, image, out, what, bytes) == 0 ? NULL : what;
+    }
+    if (!is_large(image)) {
+        return "images of this encoding are converted by trim3r import";
+    }
+    t3r_reason(what, bytes,
+               "%" PRIu32 "x%" PRIu32 " pixels; sides of up to %u are supported, larger ones with --size of trim3r "
+               "import",
+               image->width, image->height, T3R_MAX_SIDE);
+    return what;
+}
+
+/* Reads a raw image: as it is, or converted into *out. */
+static int read_raw(const reading *r, const t3r_stream *stream, const t3r_indexed_message *message,
+                    t3r_decoded_image *out, t3r_frame *frame)
+{
     t3r_ros_image image;
-    const char *wrong = t3r_ros_read_image(message->data, message->bytes, &image);
     char what[160];
-    if (wrong == NULL && !t3r_pixel_is_converted(image.encoding)) {
+    const char *wrong = t3r_ros_read_image(message->data, message->bytes, &image);
+    t3r_pixel_format format;
+    if (wrong == NULL && stream->converted && !t3r_pixel_is_converted(image.encoding)) {
         wrong = "the encoding is another one than that of the first image";
-    }
-    if (wrong == NULL && decoder->convert == NULL) {
-        wrong = "images of this encoding are converted by trim3r import";
-    }
-    if (wrong == NULL && decoder->convert(decoder->user, &image, out, what, sizeof what) != 0) {
-        wrong = what;
+    } else if (wrong == NULL &&
+               (stream->converted || (is_large(&image) && t3r_pixel_format_of(image.encoding, &format)))) {
+        wrong = convert(r, &image, out, what, sizeof what);
+    } else if (wrong == NULL) {
+        wrong = t3r_message_colour(&image, frame);
     }
     return wrong == NULL ? 0 : fail(r, stream, message, wrong);
 }
 
-static int read_colour(const reading *r, t3r_frame *frame)
+/* Fills in the frame's colour; *decoded is all 0 if it is stored as pixels that can be used as they are. */
+static int read_colour(const reading *r, t3r_frame *frame, t3r_decoded_image *decoded)
 {
     const t3r_stream *stream = &r->recording->streams[r->recording->colour];
     const t3r_indexed_message *message = &stream->messages[r->index];
-    if (stream->compressed || stream->converted) {
-        t3r_decoded_image decoded;
-        const int status =
-            stream->compressed ? decode(r, stream, message, false, &decoded) : convert(r, stream, message, &decoded);
-        if (status != 0) {
-            return -1;
-        }
-        frame->format = decoded.format;
-        frame->width = decoded.width;
-        frame->height = decoded.height;
-        frame->planes[0] = decoded.rows;
-        frame->stride_bytes[0] = t3r_pixel_row_bytes(decoded.format, decoded.width);
-        return 0;
+    *decoded = (t3r_decoded_image){0};
+    const int status =
+        stream->compressed ? decode(r, stream, message, false, decoded) : read_raw(r, stream, message, decoded, frame);
+    if (status == 0 && decoded->rows != NULL) {
+        frame->format = decoded->format;
+        frame->width = decoded->width;
+        frame->height = decoded->height;
+        frame->planes[0] = decoded->rows;
+        frame->stride_bytes[0] = t3r_pixel_row_bytes(decoded->format, decoded->width);
     }
-    t3r_ros_image image;
-    const char *wrong = t3r_ros_read_image(message->data, message->bytes, &image);
-    wrong = wrong != NULL ? wrong : t3r_message_colour(&image, frame);
-    return wrong == NULL ? 0 : fail(r, stream, message, wrong);
+    return status;
 }
 
 /* Whether depth is taken to be of the colour camera's view. */
@@ -102,12 +120,7 @@ static bool is_of_colour(const t3r_recording *recording)
  * hold what was captured. */
 static bool is_stretched(const reading *r, const t3r_frame *frame)
 {
-    if (r->recording->bits_epoch != 0 || !is_of_colour(r->recording)) {
-        return false;
-    }
-    const int64_t difference =
-        (int64_t)frame->depth_width * frame->height - (int64_t)frame->depth_height * frame->width;
-    return llabs(difference) > (frame->width > frame->height ? frame->width : frame->height);
+    return r->recording->bits_epoch == 0 && is_of_colour(r->recording) && t3r_message_is_stretched(frame);
 }
 
 /* Checks the sides of depth beside those of colour. */
@@ -176,8 +189,11 @@ static const char *straighten(const reading *r, t3r_ros_camera_info *info, t3r_c
     return t3r_message_intrinsics(info, &frame->camera);
 }
 
-static int read_intrinsics(const reading *r, size_t link, t3r_capture_frame *frame)
+/* Reads the intrinsics of the image as it is stored. */
+static int read_intrinsics(const reading *r, size_t link, const t3r_decoded_image *decoded, t3r_capture_frame *frame)
 {
+    const uint32_t width = decoded->reduction > 1 ? decoded->whole_width : frame->frame.width;
+    const uint32_t height = decoded->reduction > 1 ? decoded->whole_height : frame->frame.height;
     const t3r_stream *stream = &r->recording->streams[r->recording->camera_info];
     const t3r_indexed_message *message = &stream->messages[link];
     t3r_ros_camera_info info;
@@ -186,10 +202,10 @@ static int read_intrinsics(const reading *r, size_t link, t3r_capture_frame *fra
     if (wrong == NULL && r->recording->streams[r->recording->colour].rectified) {
         wrong = t3r_message_rectify(&info);
     }
-    if (wrong == NULL && (info.width != frame->frame.width || info.height != frame->frame.height)) {
+    if (wrong == NULL && (info.width != width || info.height != height)) {
         t3r_reason(what, sizeof what,
                    "width x height is %" PRIu32 "x%" PRIu32 ", that of the image %" PRIu32 "x%" PRIu32, info.width,
-                   info.height, frame->frame.width, frame->frame.height);
+                   info.height, width, height);
         wrong = what;
     }
     if (wrong == NULL) {
@@ -241,7 +257,8 @@ static int read_frame(const reading *r, t3r_capture_frame *frame, char *lost, si
         .has_intrinsics = links->camera_info != T3R_NO_MESSAGE || recording->intrinsics_given,
         .camera = recording->intrinsics,
     };
-    if (read_colour(r, &result.frame) != 0) {
+    t3r_decoded_image decoded;
+    if (read_colour(r, &result.frame, &decoded) != 0) {
         return T3R_CAPTURE_FAILED;
     }
     if (links->depth != T3R_NO_MESSAGE) {
@@ -256,8 +273,12 @@ static int read_frame(const reading *r, t3r_capture_frame *frame, char *lost, si
             result.frame.depth_width = result.frame.depth_height = 0;
         }
     }
-    if (links->camera_info != T3R_NO_MESSAGE && read_intrinsics(r, links->camera_info, &result) != 0) {
+    if (links->camera_info != T3R_NO_MESSAGE && read_intrinsics(r, links->camera_info, &decoded, &result) != 0) {
         return T3R_CAPTURE_FAILED;
+    }
+    if (decoded.reduction > 1) {
+        result.camera = t3r_camera_resized(&result.camera, decoded.width * decoded.reduction,
+                                           decoded.height * decoded.reduction, decoded.width, decoded.height);
     }
     if (set != NULL) {
         memcpy(result.camera.position_q32, set->position_q32, sizeof set->position_q32);

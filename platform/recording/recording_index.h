@@ -127,7 +127,6 @@ const char *t3r_recording_inspect(t3r_recording *recording, t3r_stream *stream, 
                                   t3r_inspection *out);
 
 /* recording_names.c: what the words of a topic's name say. */
-bool t3r_topic_is_rectified(const char *topic);
 /* Whether it names images that are no camera's: overlays, masks, infrared, depth in colours. */
 bool t3r_topic_is_no_colour(const char *topic);
 /* Whether it names depth, and whether it names images in depth's encodings that hold no depth: infrared, confidence. */

@@ -14,7 +14,7 @@ typedef struct shown_frame {
     uint32_t zero; /* in place of padding */
 } shown_frame;
 
-_Static_assert(sizeof(t3r_camera) == 14 * sizeof(int32_t) + 3 * sizeof(int64_t) &&
+_Static_assert(sizeof(t3r_camera) == 16 * sizeof(int32_t) + 3 * sizeof(int64_t) &&
                    sizeof(shown_frame) == sizeof(t3r_camera) + 4 * sizeof(uint64_t),
                "no padding, whose bytes may be any");
 

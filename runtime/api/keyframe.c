@@ -39,6 +39,6 @@ t3r_status t3r_stream_overlap(const t3r_runtime *rt, const t3r_camera *camera, u
                           height >= 2 && height <= T3R_MAX_SIDE,
                       T3R_ERR_ARGUMENT);
     T3R_REFUSE_UNLESS(rt->config.stream && rt->keyframes > 0, T3R_ERR_STATE);
-    t3r_status status = t3r_camera_check(camera);
+    t3r_status status = t3r_camera_check(camera, width, height);
     return status == T3R_OK ? t3r_overlap_with_newest(rt, camera, width, height, overlap_q8) : status;
 }

@@ -121,13 +121,13 @@ static bool is_given(const t3r_runtime *rt, uint32_t v)
 {
     t3r_camera given = rt->camera[v];
     t3r_place_camera(&given, &rt->given[v]);
-    return !t3r_aligns(&rt->config) || t3r_camera_check(&given) == T3R_OK;
+    return !t3r_aligns(&rt->config) || t3r_camera_check(&given, rt->config.width, rt->config.height) == T3R_OK;
 }
 
 static bool is_view(const t3r_runtime *rt, uint32_t v)
 {
     if (!is_given(rt, v) || rt->stereo_pair[v] >= T3R_PAIR_COUNT || rt->stereo_partner[v] >= rt->views ||
-        t3r_camera_check(&rt->camera[v]) != T3R_OK || rt->depth_unit_q40[v] == 0 ||
+        t3r_camera_check(&rt->camera[v], rt->config.width, rt->config.height) != T3R_OK || rt->depth_unit_q40[v] == 0 ||
         rt->depth_unit_q40[v] > T3R_MAX_DEPTH_UNIT_Q40) {
         return false;
     }

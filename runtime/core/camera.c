@@ -42,14 +42,20 @@ static bool rotation_ok(const int32_t q[4])
     return norm2 >= UINT64_C(1) << 58 && norm2 <= UINT64_C(9) << 58;
 }
 
-t3r_status t3r_camera_check(const t3r_camera *camera)
+/* Whether the camera is for that size, or for any. */
+static bool size_ok(const t3r_camera *camera, uint32_t width, uint32_t height)
+{
+    return (camera->width == width && camera->height == height) || (camera->width | camera->height) == 0;
+}
+
+t3r_status t3r_camera_check(const t3r_camera *camera, uint32_t width, uint32_t height)
 {
     if (camera == NULL) {
         return T3R_ERR_ARGUMENT;
     }
-    if (!focal_ok(camera->fx_q16) || !focal_ok(camera->fy_q16) || !centre_ok(camera->cx_q16) ||
-        !centre_ok(camera->cy_q16) || (uint32_t)camera->distortion >= T3R_DISTORTION_COUNT ||
-        !rotation_ok(camera->rotation_q30)) {
+    if (!size_ok(camera, width, height) || !focal_ok(camera->fx_q16) || !focal_ok(camera->fy_q16) ||
+        !centre_ok(camera->cx_q16) || !centre_ok(camera->cy_q16) ||
+        (uint32_t)camera->distortion >= T3R_DISTORTION_COUNT || !rotation_ok(camera->rotation_q30)) {
         return T3R_ERR_CAMERA;
     }
     for (uint32_t i = 0; i < 3; i++) {
@@ -127,6 +133,8 @@ t3r_camera t3r_camera_resized(const t3r_camera *camera, uint32_t from_width, uin
 {
     t3r_camera resized = *camera;
 
+    resized.width = to_width;
+    resized.height = to_height;
     resized.fx_q16 = resized_focal(camera->fx_q16, from_width, to_width);
     resized.fy_q16 = resized_focal(camera->fy_q16, from_height, to_height);
     resized.cx_q16 = resized_centre(camera->cx_q16, from_width, to_width);

@@ -12,9 +12,9 @@
 /* Bound of |p1|, |p2| of T3R_DISTORTION_RADTAN: 16. */
 #define T3R_MAX_TANGENTIAL_Q24 (INT32_C(1) << 28)
 
-/* Checks a camera. Returns T3R_ERR_ARGUMENT for NULL, T3R_ERR_CAMERA when a field is outside the range of trim3r.h and
- * the bounds above. */
-t3r_status t3r_camera_check(const t3r_camera *camera);
+/* Checks a camera for a picture of width x height. Returns T3R_ERR_ARGUMENT for NULL, T3R_ERR_CAMERA when the camera is
+ * for another size, or a field is outside the range of trim3r.h and the bounds above. */
+t3r_status t3r_camera_check(const t3r_camera *camera, uint32_t width, uint32_t height);
 
 /* Computes the row-major rotation matrix of a checked quaternion w x y z, which is normalised: each entry is the exact
  * quotient, rounded once (error at most 2^-31). */

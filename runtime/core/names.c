@@ -123,7 +123,7 @@ const char *t3r_error_text(t3r_status status)
     case T3R_ERR_FRAME:
         return "the frame's format, size or stride cannot be read";
     case T3R_ERR_CAMERA:
-        return "the camera's intrinsics, distortion or pose are out of range";
+        return "the camera is for another size, or its intrinsics, distortion or pose are out of range";
     case T3R_ERR_STATE:
         return "calls out of order";
     case T3R_ERR_NO_DEPTH:

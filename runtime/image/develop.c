@@ -42,11 +42,11 @@ t3r_status t3r_frame_check(const t3r_runtime *rt, const t3r_frame *frame, const 
 {
     t3r_status status = t3r_image_check(frame);
     if (status == T3R_OK) {
-        status = t3r_camera_check(camera);
+        status = t3r_camera_check(camera, frame->width, frame->height);
     }
     if (status == T3R_OK) {
         *resized = t3r_camera_resized(camera, frame->width, frame->height, rt->config.width, rt->config.height);
-        status = t3r_camera_check(resized);
+        status = t3r_camera_check(resized, rt->config.width, rt->config.height);
     }
     if (status == T3R_OK && !T3R_FEATURE_EXTRAS && resized->distortion != T3R_DISTORTION_NONE) {
         status = T3R_ERR_UNSUPPORTED;

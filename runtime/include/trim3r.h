@@ -84,7 +84,7 @@ enum {
     T3R_ERR_CONFIG = -2,    /* a t3r_config field outside its documented range */
     T3R_ERR_ARENA = -3,     /* the arena is smaller than t3r_plan() asks, or misaligned */
     T3R_ERR_FRAME = -4,     /* a frame whose format, size or stride cannot be read */
-    T3R_ERR_CAMERA = -5,    /* intrinsics, distortion or pose outside their documented range */
+    T3R_ERR_CAMERA = -5,    /* a camera for another size, or with intrinsics, distortion or pose outside their range */
     T3R_ERR_STATE = -6,     /* calls out of order: no views yet, too many views, no analysis kept */
     T3R_ERR_NO_DEPTH = -7,  /* a context view without a single valid depth */
     T3R_ERR_CANCELLED = -8, /* the progress callback asked to stop */
@@ -152,8 +152,11 @@ enum {
     T3R_DISTORTION_COUNT
 };
 
-/* A calibrated, posed pinhole camera, for the pixel grid of its frame or target. */
+/* A calibrated, posed pinhole camera. */
 typedef struct t3r_camera {
+    /* The size in pixels of the picture that the intrinsics are for; a frame or target of another size is refused.
+     * 0 x 0 = the size of whichever frame or target the camera comes with. */
+    uint32_t width, height;
     /* The focal lengths in pixels, from 8 up to, but not including, 16384. */
     int32_t fx_q16, fy_q16;
     /* The principal point in pixels, between -16384 and 16384. (0, 0) is the centre of the top-left pixel. */

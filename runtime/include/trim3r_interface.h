@@ -63,6 +63,8 @@ T3R_STATIC_ASSERT_(offsetof(struct t3r_unpacked_, number) % T3R_ALIGNOF_(uint64_
     X(t3r_frame, depth_height)                                                                                         \
     X(t3r_frame, depth_stride_bytes)                                                                                   \
     X(t3r_frame, depth_unit_q40)                                                                                       \
+    X(t3r_camera, width)                                                                                               \
+    X(t3r_camera, height)                                                                                              \
     X(t3r_camera, fx_q16)                                                                                              \
     X(t3r_camera, fy_q16)                                                                                              \
     X(t3r_camera, cx_q16)                                                                                              \

@@ -70,7 +70,8 @@ static bool place(const alignment *a, uint32_t v)
         camera->position_q32[i] =
             rt->given[v].position_q32[i] + t3r_scale64(deviation_q30[3 + i], 2 + rt->frame.exponent);
     }
-    return t3r_camera_check(camera) == T3R_OK && t3r_pose_in_scene(camera, &rt->frame, &a->views[v].pose) == T3R_OK;
+    return t3r_camera_check(camera, rt->config.width, rt->config.height) == T3R_OK &&
+           t3r_pose_in_scene(camera, &rt->frame, &a->views[v].pose) == T3R_OK;
 }
 
 static void place_as_given(const alignment *a, uint32_t v)

@@ -18,7 +18,7 @@ static int32_t limit_q24(uint32_t side, int32_t centre_q16, int32_t f_q16)
 t3r_status t3r_projection_make(const t3r_camera *camera, const t3r_scene_frame *frame, uint32_t width, uint32_t height,
                                t3r_projection *projection)
 {
-    t3r_status status = t3r_camera_check(camera);
+    t3r_status status = t3r_camera_check(camera, width, height);
     if (status != T3R_OK) {
         return status;
     }

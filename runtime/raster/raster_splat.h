@@ -40,7 +40,8 @@ static inline void t3r_to_lattice(const t3r_lattice *lattice, t3r_splat *s)
     s->z_q20 = s->x0 <= s->x1 && s->y0 <= s->y1 ? s->z_q20 : 0;
 }
 
-/* Fills *projection. Returns T3R_ERR_CAMERA when the camera is out of the scene frame's range. */
+/* Fills *projection. Returns T3R_ERR_CAMERA when the camera is refused for that size, or out of the scene
+ * frame's range. */
 t3r_status t3r_projection_make(const t3r_camera *camera, const t3r_scene_frame *frame, uint32_t width, uint32_t height,
                                t3r_projection *projection);
 

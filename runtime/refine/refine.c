@@ -364,7 +364,8 @@ static t3r_status accumulate_remembered(const t3r_runtime *rt, slice_job *slice,
         if (!t3r_progress(rt, T3R_STAGE_REFINE, *done, total)) {
             return T3R_ERR_CANCELLED;
         }
-        if (t3r_camera_check(shown.camera) != T3R_OK || t3r_pose_in_scene(shown.camera, &rt->frame, &pose) != T3R_OK) {
+        if (t3r_camera_check(shown.camera, size->width, size->height) != T3R_OK ||
+            t3r_pose_in_scene(shown.camera, &rt->frame, &pose) != T3R_OK) {
             continue;
         }
         t3r_status status = accumulate(rt, slice, &shown, *done, total);

@@ -18,7 +18,8 @@ static bool stand_at(const t3r_runtime *rt, const t3r_camera *camera, t3r_view *
         .cx_q16 = camera->cx_q16,
         .cy_q16 = camera->cy_q16,
     };
-    return t3r_camera_check(camera) == T3R_OK && t3r_pose_in_scene(camera, &rt->frame, &view->pose) == T3R_OK;
+    return t3r_camera_check(camera, view->width, view->height) == T3R_OK &&
+           t3r_pose_in_scene(camera, &rt->frame, &view->pose) == T3R_OK;
 }
 
 /* Whether the view shows the Gaussian about as finely as its own keyframe, on a pixel that had a depth. The Gaussian

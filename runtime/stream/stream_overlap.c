@@ -36,7 +36,7 @@ t3r_status t3r_overlap_with_newest(const t3r_runtime *rt, const t3r_camera *came
         .cx_q16 = resized.cx_q16,
         .cy_q16 = resized.cy_q16,
     };
-    t3r_status status = t3r_camera_check(&resized);
+    t3r_status status = t3r_camera_check(&resized, newest->width, newest->height);
     if (status == T3R_OK) {
         status = t3r_pose_in_scene(camera, &rt->frame, &there.pose);
     }

@@ -33,6 +33,8 @@ STEPS = {  # half a step, and a tenth of it for the arithmetic of others
 HOLDS_ORIGIN = (".ply", ".glb")
 HOLDS_MIP = (".ply", ".compressed.ply", ".spz", ".sog")
 KEEPS_FAR = (".ply", ".splat", ".glb")
+COLOURS = {".splat": (0, 1), ".spz": (0.5 - 0.5 * ZERO / 0.15, 0.5 + 0.5 * ZERO / 0.15)}
+WIDTHS = {".spz": (-10, -10 + 255 / 16), ".compressed.ply": (-20, 20)}  # logarithms
 CUT_OFF = {".compressed.ply": 4, ".spz": 1}  # the largest coefficients
 MIP = "SplatRenderMode: mip"
 failures = []
@@ -129,7 +131,32 @@ def converted(kind, ending):
         largest = max(abs(each) for row in kind.rows for rgb in row.rest for each in rgb)
         check(("cut off at" in told) == (largest > CUT_OFF.get(ending, math.inf)),
               f"{kind.name}, {ending}: harmonics of up to {largest}: {told}")
+    check_cuts(f"{kind.name}, {ending}", kind.rows if ending in KEEPS_FAR else kind.rows[:len(kind.rows) - kind.far], ending, told)
     return path
+
+
+def check_cuts(name, rows, ending, told):
+    """Checks the warnings of colours and widths that the format has no numbers for."""
+    low, high = COLOURS.get(ending, (-math.inf, math.inf))
+    colours = sum(min(row.colour()) < low - 1 / 510 or max(row.colour()) > high + 1 / 510 for row in rows)
+    thin, wide = (math.exp(bound) for bound in WIDTHS.get(ending, (-math.inf, 700)))
+    widths = [[math.exp(each) for each in row.log_scale] for row in rows]
+    shapes = sum(any(each < thin - max(row) / 16 or each > wide + max(row) / 16 for each in row) for row in widths)
+    for count, what in ((colours, "colours"), (shapes, "widths")):
+        due = f"{count} Gaussians have {what} outside" if count > 0 else f"have {what} outside"
+        check((due in told) == (count > 0), f"{name}: {count} {what} beyond: {told}")
+
+
+def check_extremes():
+    """Colours and widths that some formats cut off; the thickness of a disc is none of them."""
+    rows = helix(0)
+    for i, log_scale in enumerate(([-12] * 3, [7, -3, -3], [-3, -3, -14], [-13, -13, -7], [21, 21, 21])):
+        rows[i] = dataclasses.replace(rows[i], log_scale=log_scale)
+    for i, colour in enumerate(((1.2, 0, 0), (0.5, -0.3, 1), (0.2, 0.1, 1.6), (1, 0, 1), (0.4, 0.4, 0.4))):
+        rows[i] = dataclasses.replace(rows[i], zero=[(each - 0.5) / ZERO for each in colour])
+    write_ply("extremes.ply", rows)
+    for ending in STEPS:
+        check_cuts(f"extremes, {ending}", rows, ending, run(TRIM3R, "convert", "extremes.ply", "-o", f"cut{ending}").stderr)
 
 
 # --- others ------------------------------------------------------------------------------------------------------------
@@ -197,6 +224,7 @@ def check_declared_axes():
 
 def agreement():
     own_readers = {".ply": lambda path: read_ply(path)[0], ".splat": read_splat, ".glb": read_glb}
+    check_extremes()
     for kind in kinds():
         for ending in STEPS:
             path = converted(kind, ending)

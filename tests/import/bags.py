@@ -520,11 +520,74 @@ def lenses_that_no_recording_holds():
     check(code == 1 and "128" in error, f"build: {error}")
 
 
+def large_pictures():
+    """Sides above 4096: refused with the remedy, and resampled on reading with --size."""
+    width, height = 4200, 16
+    lens = (4000.0, 4000.0, 2099.5, 7.5)
+    grey = np.tile((np.arange(width) // 20).astype(np.uint8), (height, 1))
+    rgb = np.stack([grey, np.full_like(grey, 40), np.full_like(grey, 90)], 2)
+    flat = np.full_like(grey, 128)
+    yuyv = np.stack([grey, flat], 2).reshape(height, 2 * width)
+    bayer = np.where((np.add.outer(np.arange(height), np.arange(width)) % 2 == 1), 40, grey).astype(np.uint8)
+    bayer[1::2, 1::2] = 90
+    cases = {"rgb8": rgb, "bgr8": rgb[..., ::-1].copy(), "mono8": grey, "yuv422_yuy2": yuyv, "nv12": np.concatenate([grey, flat[::2]]),
+             "rgba8": np.concatenate([rgb, flat[..., None]], 2), "bayer_rggb8": bayer, "png": rgb, "rational": rgb}
+    for name, rows in cases.items():
+        bag = Bag()
+        model = ("rational_polynomial", (0.02, 0, 0, 0, 0, 0.02, 0, 0)) if name == "rational" else ("plumb_bob", ())
+        bag.put("/cam/camera_info", ros.INFO, SECOND, ros.info(SECOND, "cam", lens=lens, size=(width, height), model=model[0], d=model[1]))
+        bag.put("/cam/depth", ros.IMAGE, SECOND, ros.image(SECOND, "cam", "16UC1", np.tile(np.arange(1050, dtype="<u2"), (4, 1))))
+        bag.put("/pose", ros.POSE, SECOND, ros.pose(SECOND, "map", (0, 0, 0)))
+        if name == "png":
+            bag.put("/cam/image/compressed", ros.COMPRESSED, SECOND, ros.compressed(SECOND, "cam", "png", png([row.tobytes() for row in rows], channels=3)))
+        else:
+            encoding = "rgb8" if name == "rational" else name
+            bag.put("/cam/image", ros.IMAGE, SECOND, ros.image(SECOND, "cam", encoding, rows, (height, width)))
+        remedy = "4200x16 pixels; sides of up to 4096 are supported, larger ones with --size"
+        check(remedy in imported(bag, status=1), f"{name}: refused")
+        if encoding_is_stored(name):
+            code, _, error = run("build", "bag.mcap", "--context", "0,0", "--gaussians", "9", "-o", "s.ply")
+            check(code == 1 and remedy in error, f"{name}: build: {error}")
+        report = imported("bag.mcap", "--size", "2100x8")
+        picture, z = report["read"]["image"][0], report["read"]["depth"][0]
+        k = report["read"]["camera_info"][0]
+        check(np.abs(k - [[2000, 0, 1049.5], [0, 2000, 3.5], [0, 0, 1]]).max() < 1e-3, f"{name}: {k}")
+        due = np.arange(2100) // 10
+        if name in ("yuv422_yuy2", "nv12"):  # BT.601, limited range
+            due = np.clip((due - 16) * 255 / 219, 0, 255)
+        off = np.abs(picture[4, :, 0].astype(int) - due)
+        check(picture.shape == (8, 2100, 3) and off.max() <= (20 if name == "bayer_rggb8" else 2), f"{name}: picture off by {off.max()}")
+        check(np.abs(z[4].astype(int) - np.arange(2100) // 2).max() <= 1, f"{name}: depth")
+        check(report["straightened"] == (name == "rational"), f"{name}: lens")
+    lens = ",".join(map(str, lens))
+    report = imported("bag.mcap", "--size", "300x8", "--intrinsics", lens)
+    k = report["read"]["camera_info"][0]
+    check(np.abs(k - [[2000, 0, 149.5], [0, 2000, 3.5], [0, 0, 1]]).max() < 1e-3, f"cropped: {k}")
+
+
+def intrinsics_for_another_size():
+    """--intrinsics state no size: they are for the first frame's, and their principal point lies in it."""
+    bag = Bag()
+    for i, side in enumerate((1, 2, 1)):
+        ns = (i + 1) * SECOND
+        bag.put("/pose", ros.POSE, ns, ros.pose(ns, "map", (i, 0, 0)))
+        bag.put("/cam/image", ros.IMAGE, ns, ros.image(ns, "cam", "rgb8", np.full((side * ros.HEIGHT, side * ros.WIDTH, 3), 9, np.uint8)))
+    report = imported(bag, "--intrinsics", "30,30,15.5,11.5")
+    check(report["frames"] == 2 and "64x48 pixels, but --intrinsics are of the first frame's size, 32x24" in report["left_out"][0], f"{report}")
+    for outside in ("30,30,32,11.5", "30,30,15.5,-1"):
+        check("principal point of --intrinsics is outside its 32x24 pixels" in imported("bag.mcap", "--intrinsics", outside, status=1), outside)
+    check(imported("bag.mcap", "--intrinsics", "30,30,31.5,-0.5")["frames"] == 2, "in the corner")
+
+
+def encoding_is_stored(name):
+    return name in ("rgb8", "bgr8", "mono8", "yuv422_yuy2", "nv12")
+
+
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)
     for case in (depth_is_chosen_by_name_and_type, poses_are_not_goals, colour_is_chosen_by_votes, intrinsics_are_of_the_same_frame,
                  channels_of_a_topic_are_one_stream, clocks_that_begin_again, bad_poses_are_left_out, bad_images_are_left_out,
                  jpegs_without_their_end, triplets_follow_the_frames, rectified_images_have_the_lens_of_p, depth_of_another_aspect_needs_its_own_lens, encodings, transparent_pixels_are_none, images_that_exif_turns, depth_units, other_files,
-                 folders_of_rosbag2, bad_files_of_a_folder, packed_files, lenses_that_no_recording_holds):
+                 folders_of_rosbag2, bad_files_of_a_folder, packed_files, lenses_that_no_recording_holds, large_pictures, intrinsics_for_another_size):
         case()
     done()

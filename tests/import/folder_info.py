@@ -6,6 +6,7 @@ folder_info.py TRIM3R
 
 import json
 import os
+import shutil
 import sys
 import tempfile
 
@@ -101,10 +102,49 @@ def bag_folders():
     expect(2, "info", "s.ply", "bag", err="--view")
 
 
+def commands_of(path):
+    """The commands that read a recording, each with the path in its place."""
+    return (("build", path, "--gaussians", 50, "-o", "out.ply"), ("replay", path, "--gaussians", 50),
+            ("eval", path, "--gaussians", 50), ("view", path, "--gaussians", 50, "-o", "out.html"),
+            ("render", "s.ply", path, "--view", 0, "-o", "out.png"), ("info", "s.ply", path, "--view", 0))
+
+
+def other_commands():
+    """Commands that need a recording name the kind of each folder, and the command that converts it."""
+    folders = {name: kind for name, (_, kind) in KINDS.items()} | {"alone": "pictures"}
+    for path, kind in folders.items():
+        for command in commands_of(path):
+            expect(1, *command, err=f"{path}: a folder ({kind}); first make a recording of it: trim3r import {path} -o")
+    os.makedirs("unpacked")
+    write("unpacked/meta.json", b"{}")
+    words = {"empty": "no pictures", "crashed": "ros2 bag reindex", "unpacked": "zipped", "films/film.webp": "dwebp",
+             "nothing": "No such file"}
+    for path, word in words.items():
+        for command in commands_of(path):
+            expect(1, *command, err=word)
+    for path in ("tum", "unpacked"):
+        expect(1, "convert", path, "-o", "out.ply", err=f"{path}: a folder, not a scene file (an unpacked .sog")
+
+
+def recording_in_a_folder():
+    """A folder of rosbag2 is the recording that its files hold."""
+    os.makedirs("stored")
+    shutil.copy("room.mcap", "stored/part_0.mcap")
+    write("stored/metadata.yaml", "x:\n  relative_file_paths:\n    - part_0.mcap\n")
+    for command, whole in zip(commands_of("stored"), commands_of("room.mcap")):
+        expect(0, *whole)
+        expect(0, *command)
+    for name in ("ply", "png"):
+        expect(0, *commands_of("room.mcap")[0 if name == "ply" else 4][:-1], f"same.{name}")
+        with open(f"out.{name}", "rb") as one, open(f"same.{name}", "rb") as other:
+            check(one.read() == other.read(), f"out.{name} of the folder and of its file")
+    expect(2, "build", "stored", "--gaussians", 50, "-o", "stored/part_0.mcap", err="stored/part_0.mcap")
+
+
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)
     make_room()
     expect(0, "build", "room.mcap", "--context", "0,1", "--gaussians", 50, "-o", "s.ply")
-    for test in (kinds, units, pictures_alone, same_refusal, bag_folders):
+    for test in (kinds, units, pictures_alone, same_refusal, bag_folders, other_commands, recording_in_a_folder):
         test()
     done()

@@ -7,6 +7,7 @@ misfits.py TRIM3R
 
 import json
 import os
+import shutil
 import struct
 import sys
 import tempfile
@@ -375,6 +376,41 @@ def test_large_pictures():
             check(np.abs(got["image"][0][4, :, 0].astype(int) - np.arange(2100) // 10).max() <= 1, f"{name}: picture")
 
 
+def test_repeated_stamps():
+    """Two pictures, or two different poses, of one time: the first counts, and the others are left out and named."""
+    for name in ("rgb.txt", "groundtruth.txt", "depth.txt"):
+        path = tum(f"twice_{name[:-4]}")
+        with open(f"{path}/{name}") as file:
+            lines = file.read().splitlines()
+        first, other = [line for line in lines if not line.startswith("#")][:2]
+        stamp = first.split()[0]
+        again = " ".join([stamp, *other.split()[1:]])
+        write(f"{path}/{name}", "\n".join([*lines, again, *([first] if name == "groundtruth.txt" else [])]) + "\n")
+        report, got = imported(path, *lens_option())
+        check(np.array_equal(got["image"], ROOM["image"]) and len(got["depth"]) == FRAMES, f"twice in {name}: frames")
+        check(np.abs(np.stack(got["pose"]) - np.stack(ROOM["pose"])).max() < 1e-6, f"twice in {name}: poses")
+        check(any(f"{name}: lines left out: 1" in line and f"{float(stamp):.6f} is there twice" in line for line in report["left_out"]),
+              f"twice in {name}: {report['left_out']}")
+        os.remove(f"{path}.mcap")
+        refused(path, "is there twice", *lens_option(), "--strict")
+
+
+def test_sizes_of_bags():
+    """--size makes the same of a bag as of a folder."""
+    transforms("in_a_folder")
+    shutil.copy("room.mcap", "in_a_bag")
+    for size in ("40x24", "16x64", "128x96"):
+        _, folder = imported("in_a_folder", "--size", size)
+        _, bag = imported("in_a_bag", "--size", size)
+        for what in ("image", "depth"):
+            check(np.array_equal(folder[what], bag[what]), f"{size}: {what}")
+        for what in ("pose", "camera_info"):
+            off = np.abs(np.stack(folder[what]) - np.stack(bag[what])).max()
+            check(off < 1e-3, f"{size}: {what} is off by {off}")
+    os.remove("in_a_bag.mcap")
+    refused("in_a_bag", "too narrow to crop", "--size", "8x4096")
+
+
 def test_reduced_pictures():
     half = [np.ascontiguousarray(each[::2, ::2]) for each in ROOM["image"]]
     for name, make, picture in (("colmap", colmap, "view_{}.png"), ("nerfstudio", transforms, "frame_{:05d}.png"),
@@ -449,7 +485,7 @@ def test_foreign_files():
 
 TESTS = [test_bad_pictures, test_bad_poses, test_bad_cameras, test_all_bad, test_depth_of_another_aspect,
          test_intrinsics_of_another_size, test_orientation, test_alpha, test_masks, test_confidence_and_scale,
-         test_large_pictures, test_reduced_pictures, test_many_coefficients, test_depth_units, test_foreign_files]
+         test_large_pictures, test_repeated_stamps, test_sizes_of_bags, test_reduced_pictures, test_many_coefficients, test_depth_units, test_foreign_files]
 
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)

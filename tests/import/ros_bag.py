@@ -73,11 +73,11 @@ class Cdr:
         return b"\0\1\0\0" + self.data
 
 
-def image(ns, frame, encoding, rows):
-    """rows: an array of bytes or numbers, whose first two sides are height and width."""
+def image(ns, frame, encoding, rows, size=None):
+    """rows: an array of bytes or numbers, whose first two sides are height and width unless `size` has these."""
     data = rows.tobytes()
     step = len(data) // rows.shape[0]
-    return (Cdr().header(ns, frame).put("I", rows.shape[0], rows.shape[1]).text(encoding).put("B", 0).put("I", step)
+    return (Cdr().header(ns, frame).put("I", *(size or rows.shape[:2])).text(encoding).put("B", 0).put("I", step)
             .rows(data).done())
 
 

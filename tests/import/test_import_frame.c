@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "import/folders/posed_folder.h"
+#include "import/frames/crop.h"
 #include "import/frames/frame.h"
 #include "pictures/picture.h"
 #include "scratch.h"

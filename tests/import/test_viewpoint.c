@@ -37,15 +37,15 @@ TEST(reads_a_pose)
     write_text("{\"fl_x\": 200, \"cx\": 100.5, \"w\": 256, \"h\": 128, \"transform_matrix\": " IDENTITY "}");
     assert_int_equal(viewpoint_read_pose(path, &list, error, sizeof error), 0);
     assert_int_equal(list.count, 1);
-    const viewpoint *v = list.items;
+    const t3r_camera *v = list.items;
     assert_true(v->width == 256 && v->height == 128);
-    assert_int_equal(v->camera.fx_q16, 200 << 16);
-    assert_int_equal(v->camera.fy_q16, 200 << 16);
-    assert_int_equal(v->camera.cx_q16, 100 << 16); /* from the corner to the first pixel's centre */
-    assert_int_equal(v->camera.cy_q16, (127 << 16) / 2);
-    assert_true(v->camera.position_q32[0] == INT64_C(1) << 32 && v->camera.position_q32[2] == INT64_C(3) << 32);
+    assert_int_equal(v->fx_q16, 200 << 16);
+    assert_int_equal(v->fy_q16, 200 << 16);
+    assert_int_equal(v->cx_q16, 100 << 16); /* from the corner to the first pixel's centre */
+    assert_int_equal(v->cy_q16, (127 << 16) / 2);
+    assert_true(v->position_q32[0] == INT64_C(1) << 32 && v->position_q32[2] == INT64_C(3) << 32);
     /* y up, z backward versus y down, z forward: half a turn around x */
-    assert_true(abs(v->camera.rotation_q30[0]) < 2 && abs(abs(v->camera.rotation_q30[1]) - ONE_Q30) < 2);
+    assert_true(abs(v->rotation_q30[0]) < 2 && abs(abs(v->rotation_q30[1]) - ONE_Q30) < 2);
     viewpoint_list_free(&list);
 }
 
@@ -105,18 +105,18 @@ TEST(refuses_bad_poses)
 
 TEST(reads_a_trajectory)
 {
-    viewpoint lens;
+    t3r_camera lens;
     viewpoint_list list;
     char error[256] = "";
     assert_int_equal(viewpoint_from_angle(90, 200, 100, &lens), 0);
-    assert_true(abs(lens.camera.fx_q16 - (100 << 16)) < 2);
+    assert_true(abs(lens.fx_q16 - (100 << 16)) < 2);
     write_text("# stamp tx ty tz qx qy qz qw\n\n0.0 1 2 3 0 0 0 1\r\n  0.1 -1 0 0.5 0 2 0 0");
     assert_int_equal(viewpoint_read_trajectory(path, &lens, &list, error, sizeof error), 0);
     assert_int_equal(list.count, 2);
     assert_int_equal(list.items[0].width, 200);
-    assert_int_equal(list.items[0].camera.rotation_q30[0], ONE_Q30);
-    assert_true(list.items[1].camera.position_q32[0] == -(INT64_C(1) << 32));
-    assert_int_equal(list.items[1].camera.rotation_q30[2], ONE_Q30); /* normalised */
+    assert_int_equal(list.items[0].rotation_q30[0], ONE_Q30);
+    assert_true(list.items[1].position_q32[0] == -(INT64_C(1) << 32));
+    assert_int_equal(list.items[1].rotation_q30[2], ONE_Q30); /* normalised */
     viewpoint_list_free(&list);
     write_text("nan 0 0 0 0 0 0 1\n0 1 2 3 0 0 0 1\n1 0 0 0 0 0 0 0\n2 0 0 inf 0 0 0 1\n");
     assert_int_equal(viewpoint_read_trajectory(path, &lens, &list, error, sizeof error), 0);
@@ -140,7 +140,7 @@ TEST(refuses_bad_trajectories)
         {"0 1 2 2e9 0 0 0 1\n", "position"},
         {"a b c d e f g h\n", "no time"},
     };
-    viewpoint lens;
+    t3r_camera lens;
     assert_int_equal(viewpoint_from_angle(60, 64, 64, &lens), 0);
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         viewpoint_list list;
@@ -152,7 +152,7 @@ TEST(refuses_bad_trajectories)
             fail_msg("'%s' does not say '%s'", error, bad[i].reason);
         }
     }
-    viewpoint wide;
+    t3r_camera wide;
     assert_int_equal(viewpoint_from_angle(179.9, 64, 64, &wide), -1);
 }
 

@@ -111,7 +111,7 @@ static int pair(uint32_t width, uint32_t height, const t3r_stereo_settings *sett
         for (int k = 0; k < 4; k++) {
             cameras[i].rotation_q30[k] = fixed(n[7 + k], 30);
         }
-        if (t3r_camera_check(&cameras[i]) != T3R_OK) {
+        if (t3r_camera_check(&cameras[i], width, height) != T3R_OK) {
             return 1;
         }
         views[i].width = width;

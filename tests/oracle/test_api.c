@@ -291,6 +291,8 @@ TEST(camera_ranges)
     const t3r_camera good = plain_camera(30, W, H);
     t3r_camera bad[64];
     size_t n = 0;
+    BAD(width, W); /* of no height */
+    BAD(height, H);
     BAD(fx_q16, 0);
     BAD(fx_q16, (8 << 16) - 1);
     BAD(fx_q16, 16384 << 16);

@@ -347,7 +347,7 @@ def built_from():
         check(words in refused, refused)
     folder_usage = run(TRIM3R, "import", ".", "--pose-topic", "/odom", "-o", "x.mcap", expect=2).stderr
     check("is for bags and recordings" in folder_usage, folder_usage)
-    bag_usage = run(TRIM3R, "import", "room.mcap", "--size", "32x24", "-o", "x.mcap", expect=2).stderr
+    bag_usage = run(TRIM3R, "import", "room.mcap", "--min-confidence", "1", "-o", "x.mcap", expect=2).stderr
     check("belong to folders" in bag_usage, bag_usage)
 
 

@@ -257,6 +257,137 @@ TEST(other_encodings_are_converted)
     finish(&h);
 }
 
+/* A transparent pixel has no depth, also if the next image arrives before its depth does. */
+TEST(transparent_pixels_have_no_depth)
+{
+    static uint8_t rgba[SIDE * SIDE * 4];
+    heard h;
+    begin(&h, false, 8);
+    send_info(&h);
+    memset(rgba, 255, sizeof rgba);
+    t3r_ros_image image = image_of(FRAME_FEED_COLOUR, 100);
+    image.encoding = t3r_text_of("rgba8");
+    image.step = SIDE * 4;
+    image.data = rgba;
+    image.data_bytes = sizeof rgba;
+    for (int turn = 0; turn < 2; turn++) {
+        rgba[3] = turn == 0 ? 0 : 255; /* alpha of the first pixel */
+        image.header.stamp_ns = (100 + 100 * turn) * MS;
+        h.held++;
+        frame_feed_image(h.feed, FRAME_FEED_COLOUR, &image, &h, 0);
+    }
+    for (int turn = 0; turn < 2; turn++) {
+        send(&h, FRAME_FEED_DEPTH, 100 + 100 * turn, 1);
+        send_pose(&h, 100 + 100 * turn, 2, "", 2);
+        assert_int_equal(h.frames, 1 + turn);
+        assert_int_equal(h.first_depth[0] | h.first_depth[1] << 8, turn == 0 ? 0 : 2000);
+        assert_int_equal(h.first[0], turn == 0 ? 0 : 255);
+    }
+    send(&h, FRAME_FEED_COLOUR, 300, 3); /* one without alpha */
+    send(&h, FRAME_FEED_DEPTH, 300, 3);
+    send_pose(&h, 300, 2, "", 3);
+    assert_int_equal(h.frames, 3);
+    assert_int_equal(h.first_depth[0] | h.first_depth[1] << 8, 2000);
+    finish(&h);
+}
+
+/* A lens with k4 to k6 is redrawn as a pinhole's; what it does not see is black and has no depth. */
+TEST(lenses_that_no_camera_holds_are_straightened)
+{
+    heard h;
+    begin(&h, true, 8);
+    h.found = FRAME_FEED_FOUND;
+    t3r_ros_camera_info info = good_info();
+    const double d[8] = {0.4, 0, 0, 0, 0, 0, 0, 0.01}; /* corners are drawn farther out than the picture reaches */
+    info.distortion_model = t3r_text_of("rational_polynomial");
+    info.d_count = 8;
+    memcpy(info.d_f64, d, sizeof d);
+    frame_feed_camera_info(h.feed, &info, 0);
+    send(&h, FRAME_FEED_COLOUR, 100, 0);
+    send(&h, FRAME_FEED_DEPTH, 100, 0);
+    assert_int_equal(h.frames, 1);
+    assert_int_equal(h.camera.distortion, T3R_DISTORTION_NONE);
+    assert_int_equal(h.camera.fx_q16, SIDE << 16);
+    assert_int_equal(h.first[0], 0);
+    assert_int_equal(h.first_depth[0] | h.first_depth[1] << 8, 0);
+    info.d_f64[0] = info.d_f64[7]; /* 0.01 */
+    frame_feed_camera_info(h.feed, &info, 0);
+    send(&h, FRAME_FEED_COLOUR, 200, 0);
+    send(&h, FRAME_FEED_DEPTH, 200, 0);
+    assert_int_equal(h.first[0], 77);
+    assert_int_equal(h.first_depth[0] | h.first_depth[1] << 8, 2000);
+    const double folds = -900;
+    memcpy(&info.d_f64[0], &folds, sizeof folds);
+    frame_feed_camera_info(h.feed, &info, 0);
+    send(&h, FRAME_FEED_COLOUR, 300, 0);
+    send(&h, FRAME_FEED_DEPTH, 300, 0);
+    assert_int_equal(h.frames, 2);
+    assert_int_equal(h.topic, FRAME_FEED_CAMERA_INFO);
+    assert_non_null(strstr(h.reason, "more than half of the picture"));
+    finish(&h);
+}
+
+/* Images of a rectified topic have the lens of P, without the distortion of the camera. */
+TEST(rectified_topics_have_the_lens_of_p)
+{
+    static const char *const names[] = {"/cam/image_raw", "/cam/image_rect_color", "/cam/image_rect"};
+    const double p[12] = {2 * SIDE, 0, 7.5, 0, 0, 2 * SIDE, 7.5, 0, 0, 0, 1, 0}, bent = 0.25;
+    for (int i = 0; i < 3; i++) {
+        heard h;
+        begin(&h, true, 8);
+        h.found = FRAME_FEED_FOUND;
+        frame_feed_colour_topic(h.feed, names[i]);
+        t3r_ros_camera_info info = good_info();
+        info.d_count = 5;
+        memcpy(&info.d_f64[0], &bent, sizeof bent);
+        if (i < 2) {
+            memcpy(info.p_f64, p, sizeof p);
+        }
+        frame_feed_camera_info(h.feed, &info, 0);
+        send(&h, FRAME_FEED_COLOUR, 100, 0);
+        send(&h, FRAME_FEED_DEPTH, 100, 0);
+        assert_int_equal(h.frames, i < 2);
+        if (i < 2) {
+            assert_int_equal(h.camera.distortion, i == 0 ? T3R_DISTORTION_RADTAN : T3R_DISTORTION_NONE);
+            assert_int_equal(h.camera.fx_q16, (i == 0 ? SIDE : 2 * SIDE) << 16);
+        } else {
+            assert_int_equal(h.topic, FRAME_FEED_CAMERA_INFO);
+            assert_string_equal(h.reason, "P is 0, but images of a rectified topic need it");
+        }
+        finish(&h);
+    }
+}
+
+TEST(depth_that_does_not_fit)
+{
+    heard h;
+    begin(&h, true, 8);
+    h.found = FRAME_FEED_FOUND;
+    send_info(&h);
+    t3r_ros_image image = image_of(FRAME_FEED_DEPTH, 100);
+    image.height = SIDE / 2;
+    h.held++;
+    frame_feed_image(h.feed, FRAME_FEED_DEPTH, &image, &h, 0);
+    send(&h, FRAME_FEED_COLOUR, 100, 0);
+    assert_int_equal(h.frames, 0);
+    assert_int_equal(h.topic, FRAME_FEED_DEPTH);
+    assert_string_equal(h.reason, "depth is 16x8 and colour 16x16: another aspect is not registered to colour");
+    image = image_of(FRAME_FEED_DEPTH, 200);
+    image.encoding = t3r_text_of("32FC1");
+    image.step = SIDE * 4;
+    image.data = (const uint8_t *)&metres[0][0];
+    image.data_bytes = sizeof metres;
+    metres[0][0] = 80;
+    metres[1][1] = 70;
+    h.held++;
+    frame_feed_image(h.feed, FRAME_FEED_DEPTH, &image, &h, 0);
+    send(&h, FRAME_FEED_COLOUR, 200, 0);
+    assert_int_equal(h.frames, 1);
+    assert_int_equal(h.first_depth[0] | h.first_depth[1], 0);
+    assert_non_null(strstr(h.reason, "beyond 65535 steps, 2 of an image"));
+    finish(&h);
+}
+
 TEST(poses_that_are_none_are_left_out)
 {
     static const double bad[][2] = {{NAN, 1}, {INFINITY, 1}, {0, 0}, {0, NAN}}; /* position x, rotation w */

@@ -45,12 +45,17 @@ static bool fixed_in(double value, uint32_t fraction_bits, int64_t low, int64_t 
 const char *capture_camera_set_intrinsics(const t3r_recorded_camera *camera, t3r_camera *out)
 {
     static const int64_t focal = INT64_C(8) << 16, side = INT64_C(16384) << 16;
+    out->width = camera->width;
+    out->height = camera->height;
     if (!fixed_in(camera->fx, 16, focal, side, &out->fx_q16) || !fixed_in(camera->fy, 16, focal, side, &out->fy_q16)) {
         return "a focal length is outside [8, 16384)";
     }
     if (!fixed_in(camera->cx, 16, -side + 1, side, &out->cx_q16) ||
         !fixed_in(camera->cy, 16, -side + 1, side, &out->cy_q16)) {
         return "the principal point is outside (-16384, 16384)";
+    }
+    if (!t3r_fixed_centre_is_within(out, out->width, out->height)) {
+        return "the principal point is outside the picture";
     }
     bool zero = true;
     int count = camera->distortion == T3R_DISTORTION_NONE ? 0 : camera->distortion == T3R_DISTORTION_FISHEYE ? 4 : 5;

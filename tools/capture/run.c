@@ -156,7 +156,10 @@ static int complete(run_state *s, t3r_capture_frame *frame)
     if (plan->intrinsics != NULL) {
         /* after a change of format they belong to another size */
         frame->has_intrinsics = !resized;
-        wrong = resized ? NULL : capture_camera_set_intrinsics(plan->intrinsics, &frame->camera);
+        t3r_recorded_camera camera = *plan->intrinsics;
+        camera.width = frame->frame.width;
+        camera.height = frame->frame.height;
+        wrong = resized ? NULL : capture_camera_set_intrinsics(&camera, &frame->camera);
     }
     if (plan->poses != NULL) {
         rigid pose;

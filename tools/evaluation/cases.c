@@ -12,6 +12,7 @@
 #include "host/text.h"
 #include "import/estimation/recording_poses.h"
 #include "import/folders/planar_recording.h"
+#include "import/import_source.h"
 
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 
@@ -84,10 +85,9 @@ static int begin(evaluation_cases *cases, char **inputs, uint32_t count)
 static int open_recordings(evaluation_cases *cases)
 {
     for (uint32_t i = 0; i < cases->input_count; i++) {
-        char error[512] = "";
-        cases->recordings[i] = t3r_recording_open(cases->inputs[i], error, sizeof error);
+        cases->recordings[i] = import_source_open(cases->inputs[i]);
         if (cases->recordings[i] == NULL) {
-            return cli_error(CLI_BAD_INPUT, "%s", error);
+            return CLI_BAD_INPUT;
         }
         const int code = recorded_frames_check(cases->recordings[i], cases->inputs[i]);
         if (code != CLI_OK) {
@@ -297,13 +297,10 @@ void evaluation_cases_close(evaluation_cases *cases)
 /* Opens the case's recording again, because its frames are targets of other cases; NULL after a message. */
 static t3r_recording *posed_anew(const evaluation_case *what, poses_source source)
 {
-    char error[512] = "";
     pose_account accounts[T3R_MAX_VIEWS];
-    t3r_recording *recording = t3r_recording_open(what->path, error, sizeof error);
-    if (recording == NULL) {
-        (void)cli_error(CLI_BAD_INPUT, "%s", error);
-    } else if (recording_pose_views(recording, what->path, what->context, what->context_count, source, accounts) !=
-               CLI_OK) {
+    t3r_recording *recording = import_source_open(what->path);
+    if (recording != NULL &&
+        recording_pose_views(recording, what->path, what->context, what->context_count, source, accounts) != CLI_OK) {
         t3r_recording_close(recording);
         recording = NULL;
     }

@@ -157,7 +157,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp_option options[] = {
-    OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
+    OPTION_ARGUMENTS("REC.mcap", OPTION_READS | OPTION_FOLDER),
     {NULL, 0, NULL, 0, "What is compared:", 1},
     {"context", KEY_CONTEXT, "A,B,...", 0,
      "frames that the scene is made of; one named twice counts once (all triplets that the recording carries)", 0},

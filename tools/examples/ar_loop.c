@@ -47,7 +47,8 @@ static bool locate(t3r_capture_frame *frame)
 /* Predicts the display's camera one frame later, by repeating the motion from the last frame to this one. */
 static t3r_camera foresee(const t3r_camera *last, const t3r_camera *now)
 {
-    t3r_camera next = {focal_q16, focal_q16, (SIDE - 1) << 15, (SIDE - 1) << 15, .distortion = T3R_DISTORTION_NONE};
+    t3r_camera next = {
+        SIDE, SIDE, focal_q16, focal_q16, (SIDE - 1) << 15, (SIDE - 1) << 15, .distortion = T3R_DISTORTION_NONE};
     double dot = 0; /* negative: the last rotation is nearer as -q, which is the same rotation */
     for (int i = 0; i < 4; i++) {
         dot += (double)last->rotation_q30[i] * now->rotation_q30[i];

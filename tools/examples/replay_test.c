@@ -41,6 +41,7 @@ static void hear(void *user, t3r_stage stage, uint64_t hash)
 /* Builds the scene of the added frames, and draws a view of it from the last frame. */
 static t3r_status build(t3r_runtime *rt, t3r_camera camera)
 {
+    camera.width = camera.height = SIDE;
     camera.fx_q16 = camera.fy_q16 = SIDE << 16;
     camera.cx_q16 = camera.cy_q16 = (SIDE - 1) << 15;
     t3r_scene scene;

@@ -62,6 +62,7 @@ static uint64_t clear_way(const t3r_scene_frame *frame)
 static void look_ahead(t3r_runtime *rt, const t3r_camera *here, uint32_t index)
 {
     t3r_camera eye = *here; /* its pose, and a lens of 60 degrees */
+    eye.width = eye.height = SIDE;
     eye.fx_q16 = eye.fy_q16 = (int32_t)(INT64_C(56756) * SIDE);
     eye.cx_q16 = eye.cy_q16 = (SIDE - 1) << 15;
     t3r_scene scene;

@@ -46,23 +46,23 @@ static int set_pose(t3r_camera *camera, const double position[3], const double r
     for (int i = 0; i < 4; i++) {
         camera->rotation_q30[i] = to_q(rotation[i] / norm, 30);
     }
-    return t3r_camera_check(camera) == T3R_OK ? 0 : -1;
+    return t3r_camera_check(camera, camera->width, camera->height) == T3R_OK ? 0 : -1;
 }
 
-int viewpoint_from_angle(double degrees, uint32_t width, uint32_t height, viewpoint *out)
+int viewpoint_from_angle(double degrees, uint32_t width, uint32_t height, t3r_camera *out)
 {
     double focal = width / 2.0 / tan(degrees * M_PI / 360);
-    *out = (viewpoint){.width = width, .height = height};
-    out->camera.fx_q16 = out->camera.fy_q16 = to_q(focal, 16);
-    out->camera.cx_q16 = to_q((width - 1) / 2.0, 16);
-    out->camera.cy_q16 = to_q((height - 1) / 2.0, 16);
-    return set_pose(&out->camera, (double[3]){0}, (double[4]){1, 0, 0, 0});
+    *out = (t3r_camera){.width = width, .height = height};
+    out->fx_q16 = out->fy_q16 = to_q(focal, 16);
+    out->cx_q16 = to_q((width - 1) / 2.0, 16);
+    out->cy_q16 = to_q((height - 1) / 2.0, 16);
+    return set_pose(out, (double[3]){0}, (double[4]){1, 0, 0, 0});
 }
 
 /* ---- pose files --------------------------------------------------------------------------------------------- */
 
 /* Returns 0, or -1 with a reason why the frame gives no view. */
-static int convert_frame(const posed_frame *frame, viewpoint *view, char *error, size_t error_bytes)
+static int convert_frame(const posed_frame *frame, t3r_camera *view, char *error, size_t error_bytes)
 {
     const posed_intrinsics *lens = &frame->intrinsics;
     t3r_recorded_camera camera;
@@ -83,12 +83,12 @@ static int convert_frame(const posed_frame *frame, viewpoint *view, char *error,
                           "k1 ..: pictures are drawn by pinhole cameras; without distortion coefficients and a "
                           "fisheye's camera_model this pose is one");
     }
-    *view = (viewpoint){.width = camera.width, .height = camera.height};
-    view->camera.fx_q16 = to_q(camera.fx, 16);
-    view->camera.fy_q16 = to_q(camera.fy, 16);
-    view->camera.cx_q16 = to_q(camera.cx, 16);
-    view->camera.cy_q16 = to_q(camera.cy, 16);
-    return set_pose(&view->camera, camera.position, camera.rotation) == 0
+    *view = (t3r_camera){.width = camera.width, .height = camera.height};
+    view->fx_q16 = to_q(camera.fx, 16);
+    view->fy_q16 = to_q(camera.fy, 16);
+    view->cx_q16 = to_q(camera.cx, 16);
+    view->cy_q16 = to_q(camera.cy, 16);
+    return set_pose(view, camera.position, camera.rotation) == 0
                ? 0
                : t3r_reason(error, error_bytes,
                             "the camera is out of range (focal length 8..16384 pixels, position below 2^30)");
@@ -164,17 +164,17 @@ int viewpoint_read_pose(const char *path, viewpoint_list *out, char *error, size
 /* ---- trajectories --------------------------------------------------------------------------------------------- */
 
 /* Returns NULL, or what is wrong. */
-static const char *read_list(pose_list *list, const viewpoint *lens, viewpoint_list *out)
+static const char *read_list(pose_list *list, const t3r_camera *lens, viewpoint_list *out)
 {
     size_t room = 0;
     for (pose_list_item item; pose_list_next(list, &item);) {
-        viewpoint *grown = t3r_grow(out->items, out->count, &room, sizeof *grown);
+        t3r_camera *grown = t3r_grow(out->items, out->count, &room, sizeof *grown);
         if (grown == NULL) {
             return "out of memory";
         }
         out->items = grown;
         out->items[out->count] = *lens;
-        if (set_pose(&out->items[out->count].camera, item.pose.position, item.pose.rotation) != 0) {
+        if (set_pose(&out->items[out->count], item.pose.position, item.pose.rotation) != 0) {
             return "the camera is out of range";
         }
         out->count++;
@@ -182,7 +182,7 @@ static const char *read_list(pose_list *list, const viewpoint *lens, viewpoint_l
     return NULL;
 }
 
-int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint_list *out, char *error,
+int viewpoint_read_trajectory(const char *path, const t3r_camera *lens, viewpoint_list *out, char *error,
                               size_t error_bytes)
 {
     *out = (viewpoint_list){0};

@@ -9,13 +9,8 @@
 #include "import/poses/pose_losses.h"
 #include "trim3r.h"
 
-typedef struct viewpoint {
-    t3r_camera camera; /* without distortion */
-    uint32_t width, height;
-} viewpoint;
-
 typedef struct viewpoint_list {
-    viewpoint *items; /* heap; viewpoint_list_free() */
+    t3r_camera *items; /* without distortion, each with its size; heap, viewpoint_list_free() */
     uint32_t count;
     pose_losses losses; /* poses that are left out */
 } viewpoint_list;
@@ -27,12 +22,12 @@ int viewpoint_read_pose(const char *path, viewpoint_list *out, char *error, size
 
 /* Reads a list of poses (pose_list.h), camera to world, x right, y down, z forward. Intrinsics and size are those of
  * `lens`. Returns 0, or -1 with "path: line: what" in error[]. */
-int viewpoint_read_trajectory(const char *path, const viewpoint *lens, viewpoint_list *out, char *error,
+int viewpoint_read_trajectory(const char *path, const t3r_camera *lens, viewpoint_list *out, char *error,
                               size_t error_bytes);
 
 /* Makes a lens of the given horizontal angle in degrees, (0, 180), at the world's origin, looking along its z. Returns
  * 0, or -1 when the focal length is out of the runtime's range. */
-int viewpoint_from_angle(double degrees, uint32_t width, uint32_t height, viewpoint *out);
+int viewpoint_from_angle(double degrees, uint32_t width, uint32_t height, t3r_camera *out);
 
 void viewpoint_list_free(viewpoint_list *list);
 

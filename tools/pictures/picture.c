@@ -382,16 +382,26 @@ static int read_either(const char *path, extent want, picture *out, char *error,
     return status;
 }
 
-int picture_parse(const uint8_t *bytes, size_t count, picture *out, char *error, size_t error_bytes)
+static int parse_either(const uint8_t *bytes, size_t count, extent want, picture *out, char *error, size_t error_bytes)
 {
     memset(out, 0, sizeof *out);
     FILE *file = count > 0 ? fmemopen((void *)(uintptr_t)bytes, count, "rb") : NULL; /* only read */
     if (file == NULL) {
         return t3r_reason(error, error_bytes, count > 0 ? "out of memory" : "the picture is empty");
     }
-    int status = read_stream(file, "picture", (extent){.most_side = T3R_MAX_SIDE}, out, error, error_bytes);
+    int status = read_stream(file, "picture", want, out, error, error_bytes);
     fclose(file);
     return status;
+}
+
+int picture_parse(const uint8_t *bytes, size_t count, picture *out, char *error, size_t error_bytes)
+{
+    return parse_either(bytes, count, (extent){.most_side = T3R_MAX_SIDE}, out, error, error_bytes);
+}
+
+int picture_parse_large(const uint8_t *bytes, size_t count, picture *out, char *error, size_t error_bytes)
+{
+    return parse_either(bytes, count, (extent){.most_side = PICTURE_LARGEST_SIDE}, out, error, error_bytes);
 }
 
 int picture_read(const char *path, picture *out, char *error, size_t error_bytes)

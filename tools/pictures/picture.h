@@ -24,8 +24,9 @@ typedef struct picture {
 int picture_read(const char *path, picture *out, char *error, size_t error_bytes);
 /* The same up to PICTURE_LARGEST_SIDE and PICTURE_LARGEST_PIXELS. */
 int picture_read_large(const char *path, picture *out, char *error, size_t error_bytes);
-/* The same for a file's bytes in memory; "what" in error[]. */
+/* Do the same for a file's bytes in memory; "what" in error[]. */
 int picture_parse(const uint8_t *bytes, size_t count, picture *out, char *error, size_t error_bytes);
+int picture_parse_large(const uint8_t *bytes, size_t count, picture *out, char *error, size_t error_bytes);
 /* Reads all but the samples from a picture's header: the sides, as they are stored, up to PICTURE_LARGEST_SIDE; errors
  * as above. */
 int picture_header(const char *path, picture *out, char *error, size_t error_bytes);

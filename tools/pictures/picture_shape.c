@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "pictures/exif.h"
+#include "trim3r.h"
 
 /* Whether an orientation swaps the sides, and then mirrors along x and y. */
 static const struct move {
@@ -87,6 +88,12 @@ void picture_reduce(picture *p, uint32_t n)
     }
     p->width = width;
     p->height = height;
+}
+
+uint32_t picture_reduction(uint32_t width, uint32_t height)
+{
+    const uint32_t longer = width > height ? width : height;
+    return (longer + T3R_MAX_SIDE - 1) / T3R_MAX_SIDE;
 }
 
 int picture_keep_bright(picture *p)

@@ -11,6 +11,8 @@ int picture_turn(picture *p);
 /* Averages an 8-bit picture over squares of n x n pixels, of which only valid ones count; a square is valid if half of
  * it is. Pixels beyond the last whole square are dropped. */
 void picture_reduce(picture *p, uint32_t n);
+/* Returns the least n that makes both sides at most T3R_MAX_SIDE; 1 for pictures that are that small. */
+uint32_t picture_reduction(uint32_t width, uint32_t height);
 
 /* Marks the black pixels of an 8-bit picture invalid, and all others valid. Returns 0, or -1 when out of memory. */
 int picture_keep_bright(picture *p);

@@ -67,8 +67,8 @@ void room_camera(uint32_t index, uint32_t width, uint32_t height, t3r_camera *ca
 {
     view v;
     view_of(index, &v);
-    *camera = (t3r_camera){.fx_q16 = (int32_t)(width * FOCAL_PER_WIDTH_Q16), .distortion = T3R_DISTORTION_NONE};
-    camera->fy_q16 = camera->fx_q16;
+    *camera = (t3r_camera){.width = width, .height = height, .distortion = T3R_DISTORTION_NONE};
+    camera->fx_q16 = camera->fy_q16 = (int32_t)(width * FOCAL_PER_WIDTH_Q16);
     camera->cx_q16 = (int32_t)((width - 1) << 15);
     camera->cy_q16 = (int32_t)((height - 1) << 15);
     for (int i = 0; i < 3; i++) {

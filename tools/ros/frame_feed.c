@@ -22,7 +22,7 @@ typedef struct image_slot {
     t3r_ros_image image;
     char frame[FRAME_FEED_NAME_BYTES];
     void *owner;
-    uint8_t *copy; /* a decoded image */
+    picture decoded;
 } image_slot;
 
 typedef struct stamped_pose {
@@ -40,13 +40,13 @@ struct frame_feed {
     stamped_pose poses[POSES_MOST]; /* oldest first */
     uint32_t pose_count;
     char world[FRAME_FEED_NAME_BYTES];
-    bool has_info;
+    bool has_info, rectified;
     t3r_ros_camera_info info; /* without its texts */
     char info_model[32], info_frame[FRAME_FEED_NAME_BYTES];
     int64_t last_ns[FRAME_FEED_TOPICS]; /* stamps; INT64_MIN: none yet */
     throttle warnings[FRAME_FEED_TOPICS];
-    bag_pictures pictures;
-    uint8_t *z16; /* converted depth */
+    bag_pictures pictures; /* of the current pair: its decoded colour, what is redrawn and hidden */
+    uint8_t *z16;          /* converted depth */
     size_t z16_bytes;
     frame_feed_counts counts;
 };
@@ -104,7 +104,7 @@ static void free_slot(frame_feed *feed, image_slot *slot)
     if (slot->used && slot->owner != NULL) {
         feed->settings.release(feed->settings.user, slot->owner);
     }
-    free(slot->copy);
+    picture_free(&slot->decoded);
     *slot = (image_slot){0};
 }
 
@@ -254,7 +254,7 @@ static frame_feed_found locate(frame_feed *feed, const image_slot *colour, t3r_c
 
 /* ---- a pair to a frame ----------------------------------------------------------------------------------------- */
 
-static int take_depth(frame_feed *feed, const image_slot *slot, t3r_frame *frame, char *reason)
+static int take_depth(frame_feed *feed, const image_slot *slot, t3r_frame *frame, int64_t now_ns, char *reason)
 {
     frame->depth_unit_q40 = feed->settings.depth_unit_q40;
     if (verdict(t3r_message_depth(&slot->image, frame), reason) != 0) {
@@ -272,9 +272,25 @@ static int take_depth(frame_feed *feed, const image_slot *slot, t3r_frame *frame
     if (feed->z16 == NULL) {
         return t3r_reason(reason, FRAME_FEED_REASON_BYTES, "out of memory");
     }
-    t3r_message_to_z16(&slot->image, feed->settings.depth_unit_q40, feed->z16);
+    const uint32_t beyond = t3r_message_to_z16(&slot->image, feed->settings.depth_unit_q40, feed->z16);
+    if (beyond > 0) {
+        t3r_reason(reason, FRAME_FEED_REASON_BYTES,
+                   "samples beyond 65535 steps, %" PRIu32 " of an image, have no depth: set depth_unit", beyond);
+        frame_feed_warn(feed, FRAME_FEED_DEPTH, reason, now_ns);
+    }
     frame->depth = feed->z16;
     return 0;
+}
+
+/* Checks that depth, which is registered to colour, can show the same view. */
+static int check_aspect(const t3r_frame *frame, char *reason)
+{
+    return !t3r_message_is_stretched(frame)
+               ? 0
+               : t3r_reason(reason, FRAME_FEED_REASON_BYTES,
+                            "depth is %" PRIu32 "x%" PRIu32 " and colour %" PRIu32 "x%" PRIu32
+                            ": another aspect is not registered to colour",
+                            frame->depth_width, frame->depth_height, frame->width, frame->height);
 }
 
 /* Checks that a message registered to the colour image names its frame, or none. */
@@ -287,7 +303,9 @@ static int check_frame(const image_slot *colour, const char *frame, char *reason
                       frame, colour->frame);
 }
 
-static int take_intrinsics(frame_feed *feed, const image_slot *colour, t3r_camera *camera, char *reason)
+/* Fills in the intrinsics. A frame whose lens no camera holds is redrawn without its distortion. */
+static int take_intrinsics(frame_feed *feed, const image_slot *colour, t3r_frame *frame, t3r_camera *camera,
+                           bool *straightened, char *reason)
 {
     if (!feed->has_info) {
         return t3r_reason(reason, FRAME_FEED_REASON_BYTES, "there is none yet");
@@ -300,8 +318,31 @@ static int take_intrinsics(frame_feed *feed, const image_slot *colour, t3r_camer
                           "width x height is %" PRIu32 "x%" PRIu32 ", that of the image %" PRIu32 "x%" PRIu32,
                           feed->info.width, feed->info.height, colour->image.width, colour->image.height);
     }
-    feed->info.distortion_model = t3r_text_of(feed->info_model);
-    return verdict(t3r_message_intrinsics(&feed->info, camera), reason);
+    t3r_ros_camera_info info = feed->info;
+    info.distortion_model = t3r_text_of(feed->info_model);
+    const char *wrong = feed->rectified ? t3r_message_rectify(&info) : NULL;
+    if (wrong != NULL) {
+        return verdict(wrong, reason);
+    }
+    wrong = t3r_message_intrinsics(&info, camera);
+    if (wrong == NULL || !t3r_message_is_bent(&info)) {
+        return verdict(wrong, reason);
+    }
+    t3r_ros_camera_info pinhole = info;
+    pinhole.d_count = 0;
+    wrong = t3r_message_intrinsics(&pinhole, camera); /* K may be what is wrong */
+    if (wrong != NULL) {
+        return verdict(wrong, reason);
+    }
+    *straightened = true;
+    const t3r_image_decoder decoder = bag_pictures_decoder(&feed->pictures);
+    return decoder.straighten(decoder.user, &info, frame, true, reason, FRAME_FEED_REASON_BYTES);
+}
+
+/* Sets depth to 0 where colour is transparent. */
+static int hide_depth(frame_feed *feed, t3r_frame *frame, bool straightened, char *reason)
+{
+    return verdict(bag_pictures_hide(&feed->pictures, frame, straightened) == 0 ? NULL : "out of memory", reason);
 }
 
 static void drop_pair(frame_feed *feed)
@@ -323,7 +364,7 @@ static bool may_wait(const frame_feed *feed, int64_t now_ns)
 /* Finishes the pair; false: it still waits for its pose, or for the first intrinsics. */
 static bool finish_pair(frame_feed *feed, int64_t now_ns)
 {
-    const image_slot *colour = &feed->slots[FRAME_FEED_COLOUR][feed->pair[FRAME_FEED_COLOUR]];
+    image_slot *colour = &feed->slots[FRAME_FEED_COLOUR][feed->pair[FRAME_FEED_COLOUR]];
     const image_slot *depth = &feed->slots[FRAME_FEED_DEPTH][feed->pair[FRAME_FEED_DEPTH]];
     t3r_frame frame = {0};
     t3r_camera camera = {0};
@@ -333,14 +374,21 @@ static bool finish_pair(frame_feed *feed, int64_t now_ns)
     if ((found == FRAME_FEED_NOT_YET || (found == FRAME_FEED_FOUND && !feed->has_info)) && may_wait(feed, now_ns)) {
         return false;
     }
+    picture_free(&feed->pictures.colour);
+    feed->pictures.colour = colour->decoded;
+    colour->decoded = (picture){0};
+    bool straightened = false;
     if (found != FRAME_FEED_FOUND) {
         topic = FRAME_FEED_POSE;
     } else if (verdict(t3r_message_colour(&colour->image, &frame), reason) != 0) {
         topic = FRAME_FEED_COLOUR;
-    } else if (check_frame(colour, depth->frame, reason) != 0 || take_depth(feed, depth, &frame, reason) != 0) {
+    } else if (check_frame(colour, depth->frame, reason) != 0 || take_depth(feed, depth, &frame, now_ns, reason) != 0 ||
+               check_aspect(&frame, reason) != 0) {
         topic = FRAME_FEED_DEPTH;
-    } else if (take_intrinsics(feed, colour, &camera, reason) != 0) {
+    } else if (take_intrinsics(feed, colour, &frame, &camera, &straightened, reason) != 0) {
         topic = FRAME_FEED_CAMERA_INFO;
+    } else if (hide_depth(feed, &frame, straightened, reason) != 0) {
+        topic = FRAME_FEED_DEPTH;
     }
     if (topic != FRAME_FEED_TOPICS) {
         refuse_colour(feed, topic, now_ns, reason);
@@ -415,23 +463,17 @@ static bool begin_image(frame_feed *feed, frame_feed_topic topic, int64_t stamp_
     return fits;
 }
 
-/* Stores decoded rows as the image that a driver would have sent. */
-static int copy_decoded(const t3r_decoded_image *decoded, bool depth, image_slot *slot)
+/* Takes a decoded picture as the image that a driver would have sent. */
+static void keep_decoded(picture *decoded, t3r_pixel_format format, bool depth, image_slot *slot)
 {
-    const uint32_t step = depth ? decoded->width * 2 : t3r_pixel_row_bytes(decoded->format, decoded->width);
-    const size_t bytes = (size_t)step * decoded->height;
-    slot->copy = malloc(bytes);
-    if (slot->copy == NULL) {
-        return -1;
-    }
-    memcpy(slot->copy, decoded->rows, bytes);
-    slot->image.width = decoded->width;
-    slot->image.height = decoded->height;
-    slot->image.encoding = t3r_text_of(depth ? "16UC1" : t3r_pixel_encoding(decoded->format));
-    slot->image.step = step;
-    slot->image.data = slot->copy;
-    slot->image.data_bytes = (uint32_t)bytes; /* sides are at most 4096 */
-    return 0;
+    slot->decoded = *decoded;
+    *decoded = (picture){0};
+    slot->image.width = slot->decoded.width;
+    slot->image.height = slot->decoded.height;
+    slot->image.encoding = t3r_text_of(depth ? "16UC1" : t3r_pixel_encoding(format));
+    slot->image.step = depth ? slot->decoded.width * 2 : t3r_pixel_row_bytes(format, slot->decoded.width);
+    slot->image.data = slot->decoded.samples;
+    slot->image.data_bytes = slot->image.step * slot->decoded.height; /* sides are at most 4096 */
 }
 
 /* Takes what the decoder made of an image, unless something is wrong with it. */
@@ -442,13 +484,17 @@ static void take_decoded(frame_feed *feed, frame_feed_topic topic, const char *w
     if (wrong == NULL) {
         wrong = t3r_pixel_size_error(depth ? T3R_PIXEL_GREY : decoded->format, decoded->width, decoded->height);
     }
-    if (wrong == NULL && copy_decoded(decoded, depth, slot) != 0) {
-        wrong = "out of memory";
-    }
-    if (wrong != NULL) {
+    if (wrong == NULL) {
+        keep_decoded(depth ? &feed->pictures.depth : &feed->pictures.colour, decoded->format, depth, slot);
+    } else {
         feed->counts.refused += !depth;
         frame_feed_warn(feed, topic, wrong, now_ns);
     }
+}
+
+void frame_feed_colour_topic(frame_feed *feed, const char *name)
+{
+    feed->rectified = t3r_topic_is_rectified(name);
 }
 
 void frame_feed_image(frame_feed *feed, frame_feed_topic topic, const t3r_ros_image *image, void *owner, int64_t now_ns)
@@ -469,7 +515,7 @@ void frame_feed_image(frame_feed *feed, frame_feed_topic topic, const t3r_ros_im
         feed->settings.release(feed->settings.user, owner);
         slot.owner = NULL;
     }
-    if (!converted || slot.copy != NULL) {
+    if (!converted || slot.decoded.samples != NULL) {
         add_image(feed, topic, &slot, now_ns);
     }
 }
@@ -489,7 +535,7 @@ void frame_feed_compressed(frame_feed *feed, frame_feed_topic topic, const t3r_r
         take_decoded(feed, topic, code == 0 ? NULL : reason, &decoded, &slot, now_ns);
     }
     feed->settings.release(feed->settings.user, owner);
-    if (slot.copy != NULL) {
+    if (slot.decoded.samples != NULL) {
         add_image(feed, topic, &slot, now_ns);
     }
 }

@@ -60,6 +60,8 @@ typedef struct frame_feed frame_feed;
 frame_feed *frame_feed_open(const frame_feed_settings *settings, char *error, size_t error_bytes);
 void frame_feed_close(frame_feed *feed);
 
+/* Notes the full name of the topic of colour: if it names rectified images, their lens is P without distortion. */
+void frame_feed_colour_topic(frame_feed *feed, const char *name);
 /* Adds an image of FRAME_FEED_COLOUR or FRAME_FEED_DEPTH. `owner` keeps its bytes until it is released, immediately if
  * the image is refused. Compressed images are decoded during the call and released. */
 void frame_feed_image(frame_feed *feed, frame_feed_topic topic, const t3r_ros_image *image, void *owner,

@@ -103,6 +103,16 @@ template <class Info> auto distortion_of(const Info &info, long) -> decltype((in
     return info.D;
 }
 
+template <class Info> auto projection_of(const Info &info, int) -> decltype((info.p))
+{
+    return info.p;
+}
+
+template <class Info> auto projection_of(const Info &info, long) -> decltype((info.P))
+{
+    return info.P;
+}
+
 template <class Info> t3r_ros_camera_info camera_info_of(const Info &message)
 {
     t3r_ros_camera_info info = {};
@@ -120,6 +130,9 @@ template <class Info> t3r_ros_camera_info camera_info_of(const Info &message)
     info.roi_rectify = message.roi.do_rectify != 0;
     for (size_t i = 0; i < 9; i++) {
         info.k_f64[i] = bits_of(matrix_of(message, 0)[i]);
+    }
+    for (size_t i = 0; i < 12; i++) {
+        info.p_f64[i] = bits_of(projection_of(message, 0)[i]);
     }
     info.d_count = static_cast<uint32_t>(std::min<size_t>(distortion.size(), T3R_ROS_MAX_D));
     for (size_t i = 0; i < distortion.size(); i++) {

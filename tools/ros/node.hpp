@@ -100,6 +100,11 @@ class node
         const t3r_ros_compressed image = compressed_of(*message);
         frame_feed_compressed(feed_, topic, &image, own(message), now_ns);
     }
+    // The full name of the topic of colour, after remapping.
+    void colour_topic(const std::string &name)
+    {
+        frame_feed_colour_topic(feed_, name.c_str());
+    }
     template <class Info> void camera_info(const Info &message, int64_t now_ns)
     {
         const t3r_ros_camera_info info = camera_info_of(message);

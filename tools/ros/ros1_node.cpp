@@ -59,6 +59,7 @@ class shell : public trim3r_ros::outlet
     {
         using plain = sensor_msgs::ImageConstPtr;
         using packed = sensor_msgs::CompressedImageConstPtr;
+        node_->colour_topic(any_.resolveName("image"));
         for (const frame_feed_topic topic : {FRAME_FEED_COLOUR, FRAME_FEED_DEPTH}) {
             const std::string name = topic == FRAME_FEED_COLOUR ? "image" : "depth";
             topics_.push_back(any_.subscribe<sensor_msgs::Image>(

@@ -26,6 +26,7 @@ ros2_node::ros2_node(const rclcpp::NodeOptions &options) : rclcpp::Node("trim3r"
     const auto depth = static_cast<size_t>(given.queue);
     const rclcpp::QoS sensor = rclcpp::SensorDataQoS().keep_last(depth);
     subscribe_images(sensor);
+    node_->colour_topic(topics_.front()->get_topic_name());
     subscribe<sensor_msgs::msg::CameraInfo>("camera_info", sensor,
                                             [this](const auto &message) { node_->camera_info(*message, now_ns()); });
     subscribe_poses(given.pose);

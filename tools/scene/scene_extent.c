@@ -53,22 +53,28 @@ static double largest_coefficient(const scene_row *row, uint32_t degree)
     return largest;
 }
 
-/* Fills positions[], the largest log_scale and the largest coefficient. */
-static int read_positions(const scene_rows *rows, double (*positions)[3], double *largest, double *harmonics,
-                          char *error, size_t error_bytes)
+static void widen(scene_bounds *bounds, double value)
+{
+    bounds->least = value < bounds->least ? value : bounds->least;
+    bounds->most = value > bounds->most ? value : bounds->most;
+}
+
+/* Fills positions[], the bounds and the largest coefficient. */
+static int read_positions(const scene_rows *rows, double (*positions)[3], scene_extent *out, char *error,
+                          size_t error_bytes)
 {
     scene_row row;
-    *largest = -INFINITY;
-    *harmonics = 0;
+    *out = (scene_extent){.colour = {INFINITY, -INFINITY}, .log_scale = {INFINITY, -INFINITY}};
     for (uint32_t i = 0; i < rows->count; i++) {
         if (scene_rows_read(rows, i, &row, error, error_bytes) != 0) {
             return -1;
         }
         for (int axis = 0; axis < 3; axis++) {
             positions[i][axis] = row.position[axis];
-            *largest = fmax(*largest, row.log_scale[axis]);
+            widen(&out->log_scale, row.log_scale[axis]);
+            widen(&out->colour, scene_row_colour(&row, axis));
         }
-        *harmonics = fmax(*harmonics, largest_coefficient(&row, rows->degree));
+        out->harmonics = fmax(out->harmonics, largest_coefficient(&row, rows->degree));
     }
     return 0;
 }
@@ -90,38 +96,36 @@ bool scene_extent_holds(const scene_extent *extent, const double position[3])
     return distance_of(position, extent->centre) <= reach_of(extent);
 }
 
-static scene_extent measure(double (*positions)[3], double *values, uint32_t count, double largest)
+/* Fills in place and size. */
+static void measure(double (*positions)[3], double *values, uint32_t count, scene_extent *extent)
 {
-    scene_extent extent = {.far = 0};
     for (int axis = 0; axis < 3; axis++) {
         for (uint32_t i = 0; i < count; i++) {
             values[i] = positions[i][axis];
         }
-        extent.centre[axis] = take_median(values, count);
+        extent->centre[axis] = take_median(values, count);
     }
     double farthest = 0;
     for (uint32_t i = 0; i < count; i++) {
-        values[i] = distance_of(positions[i], extent.centre);
+        values[i] = distance_of(positions[i], extent->centre);
         farthest = fmax(farthest, values[i]);
     }
     const double median = take_median(values, count);
-    extent.typical = median > 0 ? median : farthest > 0 ? farthest : exp(fmin(fmax(largest, -30), 30));
+    extent->typical = median > 0 ? median : farthest > 0 ? farthest : exp(fmin(fmax(extent->log_scale.most, -30), 30));
     for (uint32_t i = 0; i < count; i++) {
-        extent.far += values[i] > reach_of(&extent);
+        extent->far += values[i] > reach_of(extent);
     }
-    return extent;
 }
 
 int scene_extent_of(const scene_rows *rows, scene_extent *out, char *error, size_t error_bytes)
 {
     double(*positions)[3] = malloc(rows->count * sizeof *positions);
-    double *values = malloc(rows->count * sizeof *values), largest, harmonics;
+    double *values = malloc(rows->count * sizeof *values);
     int result = positions != NULL && values != NULL
-                     ? read_positions(rows, positions, &largest, &harmonics, error, error_bytes)
+                     ? read_positions(rows, positions, out, error, error_bytes)
                      : t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", rows->count);
     if (result == 0) {
-        *out = measure(positions, values, rows->count, largest);
-        out->harmonics = harmonics;
+        measure(positions, values, rows->count, out);
     }
     free(positions);
     free(values);

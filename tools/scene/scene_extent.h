@@ -12,6 +12,7 @@ typedef struct scene_extent {
     double typical;   /* median distance from the centre; if all share one place, the size of the largest; > 0 */
     uint32_t far;     /* Gaussians beyond the reach */
     double harmonics; /* the largest coefficient above degree 0, without its sign */
+    scene_bounds colour, log_scale; /* of all Gaussians */
 } scene_extent;
 
 /* The reach of the fixed point, and of formats that share their bits among all Gaussians, in units of the largest power

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 #include "api/checks.h"
 #include "cli/cli.h"
@@ -16,6 +17,7 @@
 #include "host/file_bytes.h"
 #include "host/reason.h"
 #include "scene/chosen_rows.h"
+#include "scene/scene_cuts.h"
 #include "scene/scene_extent.h"
 #include "scene/scene_format.h"
 
@@ -162,6 +164,12 @@ static const char *check_first(const uint8_t *first, size_t count)
 /* Returns the bytes of a scene file; NULL with the reason in error[]. */
 static uint8_t *read_bytes(const char *path, size_t *count, char *error, size_t error_bytes)
 {
+    struct stat about;
+    if (stat(path, &about) == 0 && S_ISDIR(about.st_mode)) {
+        (void)t3r_reason(error, error_bytes,
+                         "%s: a folder, not a scene file (an unpacked .sog is read once its files are zipped)", path);
+        return NULL;
+    }
     const scene_format *named = format_of_path(path);
     const bool begins_with_anything = named != NULL && named->magic == NULL && named->parse != NULL;
     return t3r_file_bytes_checked(path, SIZE_MAX, begins_with_anything ? NULL : check_first, count, error, error_bytes);
@@ -287,6 +295,25 @@ static void warn_of_origin(const char *path, const scene_format *format, const s
                     format->holds_origin ? "the file says" : "this format has no place for");
 }
 
+/* Warns of colours and widths that the format has no numbers for, and cuts off. */
+static void warn_of_cuts(const char *path, const scene_format *format, const scene_source *source,
+                         const scene_extent *extent)
+{
+    const scene_cuts cuts = scene_cuts_of(format, source, extent);
+    if (cuts.colours > 0) {
+        (void)cli_error(CLI_OK,
+                        "warning: %s: %" PRIu32 " Gaussians have colours outside %.3g to %.3g, where this format cuts "
+                        "them off",
+                        path, cuts.colours, format->colour.least, format->colour.most);
+    }
+    if (cuts.widths > 0) {
+        (void)cli_error(CLI_OK,
+                        "warning: %s: %" PRIu32 " Gaussians have widths outside %.3g to %.3g units, where this format "
+                        "cuts them off",
+                        path, cuts.widths, exp(format->log_scale.least), exp(format->log_scale.most));
+    }
+}
+
 /* Writes all rows; `extent` is theirs, in world units. */
 static int write_all(const char *path, const scene_rows *rows, const scene_extent *extent, int flags, const char *note,
                      scene_conversion *out, char *error, size_t error_bytes)
@@ -313,6 +340,7 @@ static int write_all(const char *path, const scene_rows *rows, const scene_exten
         (void)cli_error(CLI_OK, "warning: %s: harmonics of up to %.3g are cut off at %.3g, the most of this format",
                         path, extent->harmonics, format->harmonics);
     }
+    warn_of_cuts(path, format, &source, extent);
     if (rows->mip && !format->holds_mip) {
         warn_of_text(path,
                      "this format has no place for the mark of mip-splatting (antialiased): viewers will draw the "
@@ -387,7 +415,8 @@ int scene_file_write(const char *path, const t3r_scene *scene, int flags, const 
     const scene_file made = {
         .frame = scene->frame, .gaussians = (t3r_gaussian *)(uintptr_t)scene->gaussians, .count = scene->count};
     const scene_rows rows = scene_rows_of(&made);
-    const scene_extent extent = {.typical = ldexp(1, scene->frame.exponent)};
+    const scene_bounds any = {-INFINITY, INFINITY};
+    const scene_extent extent = {.typical = ldexp(1, scene->frame.exponent), .colour = any, .log_scale = any};
     char reason[256] = "";
     if (check_scene(scene, &rows, reason, sizeof reason) != 0) {
         return t3r_reason(error, error_bytes, "%s: %s", path, reason);

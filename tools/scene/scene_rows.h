@@ -22,6 +22,10 @@ typedef struct scene_row {
     double rotation[4];  /* w, x, y, z; of any length */
 } scene_row;
 
+typedef struct scene_bounds {
+    double least, most;
+} scene_bounds;
+
 /* The Gaussians of a file or of a scene in memory, in the axes and the precision that they have there. */
 typedef struct scene_rows {
     uint32_t count; /* at least 1 */

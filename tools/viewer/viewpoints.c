@@ -60,7 +60,7 @@ static void find_range(const scene_file *scene, const double axis[3], double *va
 
 int viewpoints_add_before(viewpoints *v, const scene_file *scene, uint32_t width, uint32_t height)
 {
-    viewpoint lens;
+    t3r_camera lens;
     (void)viewpoint_from_angle(DEGREES, width, height, &lens);
     const scene_turn upright = scene_turn_between(SCENE_AXES_AS_THEY_ARE, SCENE_AXES_RDF, scene->up);
     double middle[3], half[3], *values = malloc(scene->count * sizeof *values);
@@ -71,21 +71,21 @@ int viewpoints_add_before(viewpoints *v, const scene_file *scene, uint32_t width
         find_range(scene, upright.matrix + 3 * axis, values, &middle[axis], &half[axis]);
     }
     free(values);
-    const double wide = half[0] * lens.camera.fx_q16 / (width << 15);
-    const double high = half[1] * lens.camera.fy_q16 / (height << 15);
+    const double wide = half[0] * lens.fx_q16 / (width << 15);
+    const double high = half[1] * lens.fy_q16 / (height << 15);
     middle[2] -= half[2] + fmax(wide, high);
     for (int axis = 0; axis < 3; axis++) {
         double at = 0;
         for (int i = 0; i < 3; i++) { /* the inverse of the turn */
             at += upright.matrix[3 * i + axis] * middle[i];
         }
-        lens.camera.position_q32[axis] = scene->frame.origin_q32[axis] + llround(ldexp(at, scene->frame.exponent + 32));
+        lens.position_q32[axis] = scene->frame.origin_q32[axis] + llround(ldexp(at, scene->frame.exponent + 32));
     }
     for (int i = 0; i < 4; i++) {
         const double turned = i == 0 ? upright.rotation[0] : -upright.rotation[i];
-        lens.camera.rotation_q30[i] = (int32_t)llround(ldexp(turned, 30));
+        lens.rotation_q30[i] = (int32_t)llround(ldexp(turned, 30));
     }
-    v->frames[v->count] = (bundle_frame){.camera = lens.camera};
+    v->frames[v->count] = (bundle_frame){.camera = lens};
     snprintf(v->names[v->count], PAGE_NAME_BYTES, "the start");
     v->count++;
     return CLI_OK;

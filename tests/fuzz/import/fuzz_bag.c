@@ -5,6 +5,7 @@
 
 #include "import/bags/bag_frames.h"
 #include "import/bags/bag_pictures.h"
+#include "import/bags/bag_size.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -25,14 +26,17 @@ static void touch_depth(const t3r_frame *frame)
     fuzz_bag_sum = sum;
 }
 
-static void make_frames(t3r_recording *recording, bag_frames *frames)
+static void make_frames(t3r_recording *recording, bag_frames *frames, bag_pictures *pictures)
 {
     char error[256];
+    bag_size sized = {.width = 24, .height = 16};
     for (uint32_t i = 0; i < t3r_recording_frame_count(recording) && i < MOST_FRAMES; i++) {
         t3r_capture_frame frame;
         error[0] = '\0';
         bool read = t3r_recording_frame(recording, i, &frame, error, sizeof error) == T3R_CAPTURE_FRAME &&
-                    bag_frames_make(frames, i, &frame, error, sizeof error) == 0;
+                    bag_frames_make(frames, i, &frame, error, sizeof error) == 0 &&
+                    bag_pictures_hide(pictures, &frame.frame, frame.straightened) == 0 &&
+                    bag_size_apply(&sized, &frame, error, sizeof error) == 0;
         if (!read && error[0] == '\0') {
             abort();
         }
@@ -40,6 +44,7 @@ static void make_frames(t3r_recording *recording, bag_frames *frames)
             touch_depth(&frame.frame);
         }
     }
+    bag_size_free(&sized);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -49,12 +54,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (recording == NULL) {
         return 0;
     }
-    bag_pictures pictures = {0};
+    bag_pictures pictures = {.large = true};
     bag_frames frames;
     t3r_recording_set_decoder(recording, bag_pictures_decoder(&pictures));
     const bag_frames_options options = {.near_ns = 20000000};
     if (bag_frames_open(&frames, recording, &options, error, sizeof error) == 0) {
-        make_frames(recording, &frames);
+        make_frames(recording, &frames, &pictures);
     } else if (error[0] == '\0') {
         abort();
     }

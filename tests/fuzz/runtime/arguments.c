@@ -108,6 +108,10 @@ t3r_camera take_camera(input *in)
         c.cx_q16 = (int32_t)take32(in);
         c.cy_q16 = (int32_t)take32(in);
     }
+    if (kind & 32) {
+        c.width = below(in, MOST_SIDE);
+        c.height = below(in, MOST_SIDE);
+    }
     return c;
 }
 

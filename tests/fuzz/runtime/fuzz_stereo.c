@@ -24,6 +24,7 @@ static void tame(header *h)
 {
     for (int i = 0; i < 2; i++) {
         t3r_camera *c = &h->cameras[i];
+        c->width = c->height = 0;
         c->distortion = T3R_DISTORTION_NONE;
         if (h->plain >> i & 1) {
             c->fx_q16 = (int32_t)(20u << 16 | ((uint32_t)c->fx_q16 & 0x3fffff));
@@ -60,10 +61,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     }
     memcpy(&h, bytes, sizeof h);
     tame(&h);
-    if (t3r_camera_check(&h.cameras[0]) != T3R_OK || t3r_camera_check(&h.cameras[1]) != T3R_OK) {
+    const uint32_t width = 8 + h.width % 48u, height = 8 + h.height % 48u;
+    if (t3r_camera_check(&h.cameras[0], width, height) != T3R_OK ||
+        t3r_camera_check(&h.cameras[1], width, height) != T3R_OK) {
         return 0;
     }
-    const uint32_t width = 8 + h.width % 48u, height = 8 + h.height % 48u;
     const t3r_stereo_settings settings = {
         &t3r_kernels_c,  16 * (1 + h.disparities % 16u), h.paths % 2 == 0 ? 4 : 8, h.paths >> 1 & 1, {NULL, 1},
         h.paths >> 2 & 1};

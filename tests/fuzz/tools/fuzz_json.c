@@ -21,7 +21,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         abort();
     }
     for (uint32_t i = 0; status == 0 && i < list.count; i++) {
-        if (t3r_camera_check(&list.items[i].camera) != T3R_OK) {
+        const t3r_camera *camera = &list.items[i];
+        if (t3r_camera_check(camera, camera->width, camera->height) != T3R_OK) {
             abort();
         }
     }

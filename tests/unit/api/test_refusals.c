@@ -166,6 +166,45 @@ TEST(missing_pointers)
     assert_int_equal(t3r_stream_overlap(rt, &camera, SIDE, SIDE, &overlap_q8), T3R_ERR_STATE);
 }
 
+/* A camera for a picture of another size is refused by each call that takes one, and changes nothing. */
+TEST(cameras_of_another_size)
+{
+    t3r_config config = some_config();
+    const t3r_frame frame = some_frame();
+    const t3r_target target = {.width = SIDE, .height = SIDE, .rgb = rgb, .rgb_stride_bytes = 3 * SIDE};
+    const uint32_t sizes[][2] = {{SIDE, SIDE + 1}, {SIDE - 1, SIDE}, {2 * SIDE, 2 * SIDE}, {0, SIDE}, {SIDE, 0}};
+    t3r_camera camera = some_camera(), found;
+    uint32_t overlap_q8;
+    t3r_scene scene;
+    for (size_t i = 0; i <= sizeof sizes / sizeof sizes[0]; i++) {
+        const bool fits = i == sizeof sizes / sizeof sizes[0];
+        const t3r_status status = fits ? T3R_OK : T3R_ERR_CAMERA;
+        camera.width = fits ? SIDE : sizes[i][0];
+        camera.height = fits ? SIDE : sizes[i][1];
+        config.stream = 0;
+        t3r_runtime *rt = opened(&config);
+        assert_int_equal(t3r_develop(rt, &frame, &camera, rgb, NULL, &found), status);
+        assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, SIDE, 0, SIDE), status);
+        assert_int_equal(t3r_add_view(rt, &frame, &camera), status);
+        assert_int_equal(t3r_view_camera(rt, 0, &found), fits ? T3R_OK : T3R_ERR_ARGUMENT);
+        if (fits) {
+            assert_true(found.width == SIDE && found.height == SIDE);
+        } else {
+            add(rt);
+        }
+        assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+        assert_int_equal(t3r_render(rt, &camera, &target), status);
+        config.stream = 1;
+        rt = opened(&config);
+        assert_int_equal(t3r_stream_keyframe(rt, &frame, &camera, NULL), status);
+        if (!fits) {
+            const t3r_camera any = some_camera();
+            assert_int_equal(t3r_stream_keyframe(rt, &frame, &any, NULL), T3R_OK);
+        }
+        assert_int_equal(t3r_stream_overlap(rt, &camera, SIDE, SIDE, &overlap_q8), status);
+    }
+}
+
 TEST(memory_that_is_no_arena)
 {
     const t3r_config config = some_config();

@@ -4,25 +4,38 @@
 
 #include "core/camera.h"
 
+enum { W = 128, H = 96 };
+
 #define Q16(x) ((int32_t)lround((x)*65536.0))
 
 static t3r_camera plain_camera(void)
 {
-    t3r_camera camera = {Q16(100), Q16(110), Q16(63.5), Q16(47.5), T3R_DISTORTION_NONE, {0}, {0}, {1 << 30, 0, 0, 0}};
-    return camera;
+    return (t3r_camera){.width = W,
+                        .height = H,
+                        .fx_q16 = Q16(100),
+                        .fy_q16 = Q16(110),
+                        .cx_q16 = Q16(63.5),
+                        .cy_q16 = Q16(47.5),
+                        .rotation_q30 = {1 << 30}};
 }
 
 TEST(ranges)
 {
     t3r_camera camera = plain_camera();
-    assert_int_equal(t3r_camera_check(&camera), T3R_OK);
-    assert_int_equal(t3r_camera_check(NULL), T3R_ERR_ARGUMENT);
+    assert_int_equal(t3r_camera_check(&camera, W, H), T3R_OK);
+    assert_int_equal(t3r_camera_check(NULL, W, H), T3R_ERR_ARGUMENT);
 #define GIVES(status, change)                                                                                          \
     do {                                                                                                               \
         camera = plain_camera();                                                                                       \
         change;                                                                                                        \
-        assert_int_equal(t3r_camera_check(&camera), status);                                                           \
+        assert_int_equal(t3r_camera_check(&camera, W, H), status);                                                     \
     } while (0)
+    GIVES(T3R_OK, camera.width = camera.height = 0); /* any size */
+    GIVES(T3R_ERR_CAMERA, camera.width = 0);
+    GIVES(T3R_ERR_CAMERA, camera.height = 0);
+    GIVES(T3R_ERR_CAMERA, camera.width = W + 1);
+    GIVES(T3R_ERR_CAMERA, camera.height = 2 * H; camera.width = 2 * W);
+    GIVES(T3R_ERR_CAMERA, camera.width = H; camera.height = W);
     GIVES(T3R_OK, camera.fx_q16 = 8 << 16);
     GIVES(T3R_ERR_CAMERA, camera.fx_q16 = (8 << 16) - 1);
     GIVES(T3R_ERR_CAMERA, camera.fy_q16 = 16384 << 16);
@@ -51,8 +64,8 @@ TEST(ranges)
 
 static void both_sides(const t3r_camera *within, const t3r_camera *beyond)
 {
-    assert_int_equal(t3r_camera_check(within), T3R_OK);
-    assert_int_equal(t3r_camera_check(beyond), T3R_ERR_CAMERA);
+    assert_int_equal(t3r_camera_check(within, W, H), T3R_OK);
+    assert_int_equal(t3r_camera_check(beyond, W, H), T3R_ERR_CAMERA);
 }
 
 TEST(bounds)
@@ -96,7 +109,7 @@ TEST(bounds)
     camera.distortion = T3R_DISTORTION_RADTAN;
     camera.distortion_q24[0] = INT32_MIN;
     camera.distortion_q24[1] = camera.distortion_q24[4] = INT32_MAX;
-    assert_int_equal(t3r_camera_check(&camera), T3R_OK);
+    assert_int_equal(t3r_camera_check(&camera, W, H), T3R_OK);
 }
 
 TEST(rotation)
@@ -112,7 +125,7 @@ TEST(rotation)
         }
         t3r_camera camera = plain_camera();
         memcpy(camera.rotation_q30, quaternion, sizeof quaternion);
-        if (t3r_camera_check(&camera) != T3R_OK) {
+        if (t3r_camera_check(&camera, W, H) != T3R_OK) {
             continue;
         }
         t3r_camera_rotation(quaternion, matrix);
@@ -150,7 +163,8 @@ TEST(resized)
         assert_true(fabs(got.fy_q16 - camera.fy_q16 * sy) <= 0.5001);
         assert_true(fabs(got.cx_q16 - ((camera.cx_q16 + 32768.0) * sx - 32768)) <= 0.5001);
         assert_true(fabs(got.cy_q16 - ((camera.cy_q16 + 32768.0) * sy - 32768)) <= 0.5001);
-        got = t3r_camera_resized(&camera, from_w, from_h, from_w, from_h);
+        assert_true(got.width == to_w && got.height == to_h);
+        got = t3r_camera_resized(&camera, W, H, W, H);
         assert_memory_equal(&got, &camera, sizeof got);
     }
     t3r_camera camera = plain_camera();
@@ -159,5 +173,5 @@ TEST(resized)
     t3r_camera got = t3r_camera_resized(&camera, 2, 2, 4096, 4096);
     assert_int_equal(got.fx_q16, INT32_MAX);
     assert_int_equal(got.cx_q16, INT32_MIN);
-    assert_int_equal(t3r_camera_check(&got), T3R_ERR_CAMERA);
+    assert_int_equal(t3r_camera_check(&got, 4096, 4096), T3R_ERR_CAMERA);
 }

@@ -18,7 +18,7 @@ static int32_t placed(int64_t position_q32, int64_t origin_q32, int32_t exponent
         t3r_pose pose = {.position_q20 = {7, 7, 7}};
         camera.position_q32[axis] = position_q32;
         frame.origin_q32[axis] = origin_q32;
-        assert_int_equal(t3r_camera_check(&camera), T3R_OK);
+        assert_int_equal(t3r_camera_check(&camera, 8, 8), T3R_OK);
         const t3r_status status = t3r_pose_in_scene(&camera, &frame, &pose);
         assert_true(status == T3R_OK || status == T3R_ERR_CAMERA);
         got[axis] = status == T3R_OK ? pose.position_q20[axis] : REFUSED;

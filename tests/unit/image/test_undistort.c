@@ -32,7 +32,8 @@ enum { CASES = sizeof cases / sizeof cases[0] };
 
 static t3r_camera camera_of(const lens_case *c)
 {
-    t3r_camera camera = {Q16(c->fx), Q16(c->fy), Q16(c->cx), Q16(c->cy), c->kind, {0}, {0}, {1 << 30, 0, 0, 0}};
+    t3r_camera camera = {c->width,   c->height, Q16(c->fx), Q16(c->fy), Q16(c->cx),
+                         Q16(c->cy), c->kind,   {0},        {0},        {1 << 30, 0, 0, 0}};
     for (int i = 0; i < 5; i++) {
         camera.distortion_q24[i] = Q24(c->k[i]);
     }
@@ -67,7 +68,7 @@ TEST(nodes)
         int32_t *grid = unit_array(T3R_GRID_VALUES(c->width, c->height), sizeof(int32_t));
         uint32_t across = c->width / T3R_GRID_STEP + 2, down = c->height / T3R_GRID_STEP + 2;
         double worst = 0, worst_between = 0;
-        assert_int_equal(t3r_camera_check(&camera), T3R_OK);
+        assert_int_equal(t3r_camera_check(&camera, c->width, c->height), T3R_OK);
         assert_int_equal(t3r_undistort_grid(&camera, c->width, c->height, grid), T3R_OK);
         for (uint32_t n = 0; n < across * down; n++) {
             double exact[2];
@@ -249,7 +250,7 @@ TEST(wild)
         for (int i = 0; i < 5; i++) {
             camera.distortion_q24[i] = (int32_t)unit_between(&seed, INT32_MIN, INT32_MAX) >> unit_between(&seed, 0, 12);
         }
-        if (t3r_camera_check(&camera) != T3R_OK) {
+        if (t3r_camera_check(&camera, width, height) != T3R_OK) {
             continue;
         }
         if (t3r_undistort_grid(&camera, width, height, grid) != T3R_OK) {

@@ -19,7 +19,9 @@ int main(int argc, char **argv)
         return 2;
     }
     uint32_t width = (uint32_t)atoi(argv[1]), height = (uint32_t)atoi(argv[2]);
-    t3r_camera camera = {fixed(argv[4], 16),
+    t3r_camera camera = {width,
+                         height,
+                         fixed(argv[4], 16),
                          fixed(argv[5], 16),
                          fixed(argv[6], 16),
                          fixed(argv[7], 16),
@@ -35,7 +37,8 @@ int main(int argc, char **argv)
     int32_t *grid = malloc(T3R_GRID_VALUES(width, height) * sizeof *grid);
     int done = 0;
     if (in != NULL && out != NULL && grid != NULL && fread(in, 1, pixels * 3, stdin) == pixels * 3 &&
-        t3r_camera_check(&camera) == T3R_OK && t3r_undistort_grid(&camera, width, height, grid) == T3R_OK) {
+        t3r_camera_check(&camera, width, height) == T3R_OK &&
+        t3r_undistort_grid(&camera, width, height, grid) == T3R_OK) {
         const uint8_t *const source[3] = {in, in + pixels, in + 2 * pixels};
         uint8_t *const target[3] = {out, out + pixels, out + 2 * pixels};
         t3r_undistort_colour(grid, width, height, 0, height, source, target);

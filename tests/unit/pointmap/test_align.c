@@ -250,7 +250,7 @@ TEST(positions_stay_in_range)
         (void)scene_hash(rt);
         for (uint32_t v = 0; v < 2; v++) {
             assert_int_equal(t3r_view_camera(rt, v, &found[v]), T3R_OK);
-            assert_int_equal(t3r_camera_check(&found[v]), T3R_OK);
+            assert_int_equal(t3r_camera_check(&found[v], config.width, config.height), T3R_OK);
         }
         assert_true((found[outer].position_q32[0] == cameras[outer].position_q32[0]) == far);
         assert_true(turned(&found[1 - outer], &cameras[1 - outer]) > 0.005);

@@ -351,7 +351,7 @@ TEST(anything)
             for (int k = 1; k < 4; k++) {
                 c[i].rotation_q30[k] = (int32_t)unit_between(&seed, -spread / 2, spread / 2);
             }
-            assert_int_equal(t3r_camera_check(&c[i]), T3R_OK);
+            assert_int_equal(t3r_camera_check(&c[i], 48, 40), T3R_OK);
         }
         const t3r_pair pair = t3r_rectify(&c[0], &c[1], 48, 40, 16, &rect);
         if (pair != T3R_PAIR_OK) {

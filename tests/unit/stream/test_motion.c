@@ -21,7 +21,7 @@ static t3r_camera camera_at(double x, double y, double z, double turn, double ti
     for (int i = 0; i < 4; i++) {
         camera.rotation_q30[i] = (int32_t)lround(q[i] * norm * ONE_Q30);
     }
-    assert_int_equal(t3r_camera_check(&camera), T3R_OK);
+    assert_int_equal(t3r_camera_check(&camera, 8, 8), T3R_OK);
     return camera;
 }
 
@@ -69,7 +69,7 @@ TEST(a_camera_that_leaves)
     motion.to_q20[0] = T3R_POSITION_MOST_Q20;
     motion.to_q20[1] = -T3R_POSITION_MOST_Q20;
     t3r_move_camera(&motion, &frame, &camera);
-    assert_int_equal(t3r_camera_check(&camera), T3R_OK);
+    assert_int_equal(t3r_camera_check(&camera, 8, 8), T3R_OK);
     assert_int_equal(t3r_pose_in_scene(&camera, &frame, &pose), T3R_ERR_CAMERA);
 }
 

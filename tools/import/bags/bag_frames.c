@@ -15,6 +15,7 @@
 #include "messages/fixed_double.h"
 #include "messages/message_frame.h"
 #include "messages/ros_messages.h"
+#include "pictures/picture_shape.h"
 
 /* ---- reading ---- */
 
@@ -278,7 +279,11 @@ static int bent_lens(const bag_frames *b, uint32_t index, lens *out, char *error
     t3r_ros_camera_info info;
     const char *wrong = t3r_ros_read_camera_info(message.data, message.bytes, &info);
     wrong = wrong != NULL ? wrong : lens_of_info(&info, out);
-    return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "camera_info: %s", wrong);
+    if (wrong != NULL) {
+        return t3r_reason(error, error_bytes, "camera_info: %s", wrong);
+    }
+    lens_reduce(out, picture_reduction(info.width, info.height));
+    return 0;
 }
 
 /* Reads the depth camera's intrinsics; *there is false if it has none of its own. */

@@ -9,7 +9,9 @@
 #include "core/little_endian.h"
 #include "host/little_floats.h"
 #include "host/reason.h"
+#include "import/bags/bag_size.h"
 #include "import/bags/bag_straight.h"
+#include "import/frames/crop.h"
 #include "import/poses/lens.h"
 #include "messages/pixel_layout.h"
 #include "messages/ros_messages.h"
@@ -63,7 +65,30 @@ static int decode_depth(bag_pictures *pictures, t3r_text format, const uint8_t *
         metres_to_steps(p, (double)t3r_load_float(bytes + 4), (double)t3r_load_float(bytes + 8), unit_q40);
     }
     to_bytes(p);
-    *out = (t3r_decoded_image){p->width, p->height, T3R_PIXEL_GREY, p->samples};
+    *out = (t3r_decoded_image){.width = p->width, .height = p->height, .format = T3R_PIXEL_GREY, .rows = p->samples};
+    return 0;
+}
+
+/* Fills in *out from the colour picture, reduced to sides of at most T3R_MAX_SIDE. */
+static int finish_colour(bag_pictures *pictures, t3r_decoded_image *out, char *error, size_t error_bytes)
+{
+    picture *p = &pictures->colour;
+    const uint32_t whole[2] = {p->width, p->height}, n = picture_reduction(p->width, p->height);
+    if (n > 1 && !pictures->large) {
+        return t3r_reason(error, error_bytes,
+                          "%ux%u pixels; sides of up to %u are supported, larger ones with --size of trim3r import",
+                          p->width, p->height, T3R_MAX_SIDE);
+    }
+    if (n > 1) {
+        picture_reduce(p, n);
+    }
+    *out = (t3r_decoded_image){.width = p->width,
+                               .height = p->height,
+                               .whole_width = whole[0],
+                               .whole_height = whole[1],
+                               .reduction = n,
+                               .format = p->channels == 3 ? T3R_PIXEL_RGB24 : T3R_PIXEL_GREY,
+                               .rows = p->samples};
     return 0;
 }
 
@@ -76,7 +101,7 @@ static int decode(void *user, t3r_text format, const uint8_t *bytes, size_t coun
     if (depth) {
         return decode_depth(pictures, format, bytes, count, unit_q40, out, error, error_bytes);
     }
-    if (picture_parse(bytes, count, p, error, error_bytes) != 0) {
+    if (picture_parse_large(bytes, count, p, error, error_bytes) != 0) {
         return -1;
     }
     if (p->bits != 8) {
@@ -91,8 +116,7 @@ static int decode(void *user, t3r_text format, const uint8_t *bytes, size_t coun
     if (!picture_blacken(p)) {
         return t3r_reason(error, error_bytes, "all pixels are transparent");
     }
-    *out = (t3r_decoded_image){p->width, p->height, p->channels == 3 ? T3R_PIXEL_RGB24 : T3R_PIXEL_GREY, p->samples};
-    return 0;
+    return finish_colour(pictures, out, error, error_bytes);
 }
 
 /* ---- encodings that are no pixel formats ---- */
@@ -139,20 +163,53 @@ static void demosaic(const t3r_ros_image *image, const char *pattern, uint8_t *o
     }
 }
 
+/* Checks the sides of a raw image, and that its data hold `rows` rows of that many bytes a pixel. Returns NULL, or what
+ * is wrong. */
+static const char *extent_error(const t3r_ros_image *image, uint32_t pixel_bytes, uint32_t rows)
+{
+    const bool fits = image->width >= IMPORT_LEAST_SIDE && image->height >= IMPORT_LEAST_SIDE &&
+                      image->width <= PICTURE_LARGEST_SIDE && image->height <= PICTURE_LARGEST_SIDE &&
+                      (uint64_t)image->width * image->height <= PICTURE_LARGEST_PIXELS;
+    return !fits ? "width or height is outside 2..4096; with --size of trim3r import, 2..16384"
+           : image->step < image->width * pixel_bytes || (uint64_t)image->step * rows > image->data_bytes
+               ? "data hold fewer than step x rows bytes"
+               : NULL;
+}
+
+/* Converts an image of a pixel format that the runtime reads, but larger, to RGB. */
+static int take_large(const t3r_ros_image *image, t3r_pixel_format format, picture *out, char *error,
+                      size_t error_bytes)
+{
+    const bool nv12 = format == T3R_PIXEL_NV12, pairs = nv12 || format == T3R_PIXEL_YUYV || format == T3R_PIXEL_UYVY;
+    const t3r_frame frame = {.format = format,
+                             .width = image->width,
+                             .height = image->height,
+                             .planes = {image->data, image->data + (nv12 ? (size_t)image->step * image->height : 0)},
+                             .stride_bytes = {image->step, image->step}};
+    const char *wrong =
+        extent_error(image, t3r_pixel_row_bytes(format, 1), image->height + t3r_pixel_rows(format, 1, image->height));
+    if (wrong == NULL && ((pairs && image->width % 2 != 0) || (nv12 && image->height % 2 != 0))) {
+        wrong = "width or height is odd, which its encoding cannot be";
+    }
+    wrong = wrong != NULL ? wrong : bag_size_colour(&frame, out);
+    return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "%s", wrong);
+}
+
 static int convert(void *user, const t3r_ros_image *image, t3r_decoded_image *out, char *error, size_t error_bytes)
 {
     bag_pictures *pictures = user;
     picture *p = &pictures->colour;
-    const bool bayer = begins_with(image->encoding, "bayer_");
-    const char *wrong = t3r_pixel_size_error(T3R_PIXEL_RGB24, image->width, image->height);
-    if (wrong == NULL &&
-        (image->step < image->width * (bayer ? 1 : 4) || (uint64_t)image->step * image->height > image->data_bytes)) {
-        wrong = "data hold fewer than step x rows bytes";
+    t3r_pixel_format format;
+    picture_free(p);
+    if (t3r_pixel_format_of(image->encoding, &format)) {
+        return take_large(image, format, p, error, error_bytes) == 0 ? finish_colour(pictures, out, error, error_bytes)
+                                                                     : -1;
     }
+    const bool bayer = begins_with(image->encoding, "bayer_");
+    const char *wrong = extent_error(image, bayer ? 1 : 4, image->height);
     if (wrong != NULL) {
         return t3r_reason(error, error_bytes, "%s", wrong);
     }
-    picture_free(p);
     *p = (picture){.width = image->width, .height = image->height, .channels = 3, .bits = 8};
     p->samples = malloc((size_t)image->width * image->height * 3);
     p->valid = bayer ? NULL : malloc((size_t)image->width * image->height);
@@ -166,8 +223,7 @@ static int convert(void *user, const t3r_ros_image *image, t3r_decoded_image *ou
         p->valid = NULL;
     }
     (void)picture_blacken(p);
-    *out = (t3r_decoded_image){p->width, p->height, T3R_PIXEL_RGB24, p->samples};
-    return 0;
+    return finish_colour(pictures, out, error, error_bytes);
 }
 
 static int redraw(void *user, const t3r_ros_camera_info *info, t3r_frame *frame, bool depth, char *error,
@@ -179,15 +235,17 @@ static int redraw(void *user, const t3r_ros_camera_info *info, t3r_frame *frame,
     if (wrong != NULL) {
         return t3r_reason(error, error_bytes, "%s", wrong);
     }
-    if (bag_straighten_colour(&bent, frame, &pictures->straight_colour, error, error_bytes) != 0) {
+    lens_reduce(&bent, picture_reduction(info->width, info->height));
+    if (bag_straighten_colour(&bent, frame, pictures->colour.valid, &pictures->straight_colour, error, error_bytes) !=
+        0) {
         return -1;
     }
     return depth ? bag_straighten_depth(&bent, frame, &pictures->straight_depth, error, error_bytes) : 0;
 }
 
-int bag_pictures_hide(bag_pictures *pictures, t3r_frame *frame)
+int bag_pictures_hide(bag_pictures *pictures, t3r_frame *frame, bool straightened)
 {
-    const picture *colour = &pictures->colour;
+    const picture *colour = straightened ? &pictures->straight_colour : &pictures->colour;
     picture *p = &pictures->hidden;
     if (colour->valid == NULL || frame->depth == NULL) {
         return 0;

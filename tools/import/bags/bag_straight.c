@@ -2,34 +2,27 @@
 #include "import/bags/bag_straight.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/little_endian.h"
 #include "host/reason.h"
-#include "image/image.h"
+#include "import/bags/bag_size.h"
 #include "import/frames/straighten.h"
 
-/* Converts colour of any format to RGB. Returns -1 without memory. */
-static int take_colour(const t3r_frame *frame, picture *out)
+int bag_straighten_colour(const lens *l, t3r_frame *frame, const uint8_t *valid, picture *out, char *error,
+                          size_t error_bytes)
 {
     const size_t pixels = (size_t)frame->width * frame->height;
-    uint8_t *planes = malloc(pixels * 3), *rgb = malloc(pixels * 3);
-    *out = (picture){.width = frame->width, .height = frame->height, .channels = 3, .bits = 8, .samples = rgb};
-    if (planes != NULL && rgb != NULL) {
-        uint8_t *const rows[3] = {planes, planes + pixels, planes + 2 * pixels};
-        t3r_image_colour(&t3r_kernels_c, frame, frame->width, frame->height, 0, frame->height, rows, NULL);
-        for (size_t i = 0; i < 3 * pixels; i++) {
-            rgb[i] = rows[i % 3][i / 3];
-        }
-    }
-    free(planes);
-    return planes != NULL && rgb != NULL ? 0 : -1;
-}
-
-int bag_straighten_colour(const lens *l, t3r_frame *frame, picture *out, char *error, size_t error_bytes)
-{
     picture_free(out);
-    if (take_colour(frame, out) != 0) {
+    const char *wrong = bag_size_colour(frame, out);
+    if (wrong != NULL) {
+        return t3r_reason(error, error_bytes, "%s", wrong);
+    }
+    if (valid != NULL && (out->valid = malloc(pixels)) == NULL) {
         return t3r_reason(error, error_bytes, "out of memory");
+    }
+    if (valid != NULL) {
+        memcpy(out->valid, valid, pixels);
     }
     if (straighten(l, out, error, error_bytes) != 0) {
         return -1;

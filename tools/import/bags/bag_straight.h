@@ -10,8 +10,9 @@
 #include "trim3r.h"
 
 /* Redraws the colour of a frame (straighten.h) into `out`, which replaces what it held, and points the frame to it.
- * Returns 0, or -1 with a reason. */
-int bag_straighten_colour(const lens *l, t3r_frame *frame, picture *out, char *error, size_t error_bytes);
+ * valid: as in picture.h, of the frame's pixels; NULL = all are. Returns 0, or -1 with a reason. */
+int bag_straighten_colour(const lens *l, t3r_frame *frame, const uint8_t *valid, picture *out, char *error,
+                          size_t error_bytes);
 /* Does the same with depth of the same view. */
 int bag_straighten_depth(const lens *l, t3r_frame *frame, picture *out, char *error, size_t error_bytes);
 

@@ -11,6 +11,7 @@
 #include "cli/tables/json_output.h"
 #include "host/reason.h"
 #include "import/bags/bag_pictures.h"
+#include "import/bags/bag_size.h"
 #include "import/estimation/poses_output.h"
 #include "import/estimation/recording_poses.h"
 #include "import/folders/posed_recording.h"
@@ -29,16 +30,43 @@ typedef struct made_frames {
     bag_pictures *pictures;
     bag_frames *frames;
     const estimation *estimated;
+    bag_size size;
+    bool given;     /* the intrinsics are those of the command line */
+    uint32_t of[2]; /* width and height that they are for: those of the first frame; 0: none yet */
 } made_frames;
+
+/* Checks the frame's size against intrinsics that state none. */
+static int check_given(made_frames *made, const t3r_capture_frame *frame, char *error, size_t error_bytes)
+{
+    const uint32_t width = frame->frame.width, height = frame->frame.height;
+    if (made->of[0] == 0) {
+        made->of[0] = width;
+        made->of[1] = height;
+    }
+    if (made->of[0] != width || made->of[1] != height) {
+        return t3r_reason(error, error_bytes, "%ux%u pixels, but --intrinsics are of the first frame's size, %ux%u",
+                          width, height, made->of[0], made->of[1]);
+    }
+    return t3r_fixed_centre_is_within(&frame->camera, width, height)
+               ? 0
+               : t3r_reason(error, error_bytes, "the principal point of --intrinsics is outside its %ux%u pixels",
+                            width, height);
+}
 
 /* Makes the frame to write, with its estimated pose if poses were estimated. */
 static int make(void *user, uint32_t index, t3r_capture_frame *frame, char *error, size_t error_bytes)
 {
-    const made_frames *made = user;
+    made_frames *made = user;
     const estimation *e = made->estimated;
-    int status = bag_frames_make(made->frames, index, frame, error, error_bytes);
-    if (status == 0 && bag_pictures_hide(made->pictures, &frame->frame) != 0) {
+    int status = made->given ? check_given(made, frame, error, error_bytes) : 0;
+    if (status == 0) {
+        status = bag_frames_make(made->frames, index, frame, error, error_bytes);
+    }
+    if (status == 0 && bag_pictures_hide(made->pictures, &frame->frame, frame->straightened) != 0) {
         status = t3r_reason(error, error_bytes, "out of memory");
+    }
+    if (status == 0) {
+        status = bag_size_apply(&made->size, frame, error, error_bytes);
     }
     if (e->accounts != NULL && e->accounts[e->place[index]].why[0] != '\0') {
         frame->has_pose = false; /* a recorded pose would be in another world than the estimated ones */
@@ -332,8 +360,10 @@ static int import_opened(const recording_import_request *r, t3r_recording *recor
     if (code == CLI_OK && r->poses != POSES_GIVEN) {
         code = estimate_all(recording, r, &losses, &estimated);
     }
-    code = code == CLI_OK ? write_new(r, recording, &(made_frames){pictures, &frames, &estimated}, &losses, &totals)
-                          : code;
+    made_frames makes = {pictures, &frames, &estimated, {.width = r->width, .height = r->height}, r->intrinsics != NULL,
+                         {0}};
+    code = code == CLI_OK ? write_new(r, recording, &makes, &losses, &totals) : code;
+    bag_size_free(&makes.size);
     const report made = {recording, &frames, &totals, &losses, &estimated};
     if (code == CLI_OK && r->json) {
         print_json(&made);
@@ -351,7 +381,7 @@ static int import_opened(const recording_import_request *r, t3r_recording *recor
 int recording_import(const recording_import_request *request)
 {
     char error[ERROR_BYTES] = "";
-    bag_pictures pictures = {0};
+    bag_pictures pictures = {.large = request->width != 0};
     t3r_recording_choice choice = request->bag->topics;
     choice.intrinsics = request->intrinsics;
     choice.depth_unit_q40 = request->depth_unit_q40;

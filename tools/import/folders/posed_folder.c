@@ -151,6 +151,10 @@ int posed_folder_open(const char *directory, const posed_folder_options *options
         free(bag);
         return -1;
     }
+    if (posed_exists(directory, "meta.json")) {
+        return t3r_reason(error, error_bytes, "%s: an unpacked .sog; it is a scene once its files are zipped",
+                          directory);
+    }
     if (options != NULL && options->without_poses) {
         return picture_folder_read(directory, options, out, error, error_bytes);
     }

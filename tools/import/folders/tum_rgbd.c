@@ -24,8 +24,9 @@
 
 typedef struct stamped {
     double stamp;
-    char *name; /* for picture lists */
-    rigid pose; /* the trajectory */
+    size_t order; /* in the list */
+    char *name;   /* for picture lists */
+    rigid pose;   /* the trajectory */
 } stamped;
 
 typedef struct stamped_list {
@@ -59,8 +60,8 @@ static void list_free(stamped_list *list)
 
 static int by_stamp(const void *a, const void *b)
 {
-    double x = ((const stamped *)a)->stamp, y = ((const stamped *)b)->stamp;
-    return (x > y) - (x < y);
+    const stamped *x = a, *y = b;
+    return x->stamp > y->stamp ? 1 : x->stamp < y->stamp ? -1 : (x->order > y->order) - (x->order < y->order);
 }
 
 static bool append(stamped_list *list, const stamped *item)
@@ -68,7 +69,9 @@ static bool append(stamped_list *list, const stamped *item)
     stamped *grown = t3r_grow(list->items, list->count, &list->room, sizeof *grown);
     if (grown != NULL) {
         list->items = grown;
-        list->items[list->count++] = *item;
+        list->items[list->count] = *item;
+        list->items[list->count].order = list->count;
+        list->count++;
     }
     return grown != NULL;
 }
@@ -122,6 +125,25 @@ static int parse_poses(const char *path, char *text, stamped_list *list, char *e
     return pose_list_end(&poses, path, error, error_bytes);
 }
 
+/* Leaves out lines with the time stamp of an earlier one, because nothing says which of them is meant. Repeated poses
+ * that are equal are no loss. */
+static void drop_repeated(stamped_list *list, bool poses)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < list->count; i++) {
+        stamped *item = &list->items[i];
+        if (kept == 0 || list->items[kept - 1].stamp < item->stamp) {
+            list->items[kept++] = *item;
+            continue;
+        }
+        if (!poses || memcmp(&list->items[kept - 1].pose, &item->pose, sizeof item->pose) != 0) {
+            pose_losses_add(&list->bad, 1, "the time stamp %.6f is there twice", item->stamp);
+        }
+        free(item->name);
+    }
+    list->count = kept;
+}
+
 static int read_list(const char *directory, const char *name, bool poses, stamped_list *list, char *error,
                      size_t error_bytes)
 {
@@ -136,6 +158,7 @@ static int read_list(const char *directory, const char *name, bool poses, stampe
                               : parse_pictures(path, text, list, error, error_bytes);
     if (status == 0) {
         qsort(list->items, list->count, sizeof *list->items, by_stamp);
+        drop_repeated(list, poses);
     }
     free(text);
     free(path);

@@ -13,6 +13,7 @@
 #include "image/undistort.h"
 #include "import/depth/exr_depth.h"
 #include "import/frames/align_depth.h"
+#include "import/frames/crop.h"
 #include "import/frames/straighten.h"
 #include "mcap/reader_limits.h"
 #include "messages/fixed_camera.h"
@@ -20,55 +21,10 @@
 #include "pictures/picture.h"
 #include "pictures/picture_shape.h"
 
-#define MIN_SIDE 2u /* least side of t3r_frame */
-
 _Static_assert(T3R_MAX_POSITION_Q32 == INT64_C(1) << (T3R_LIMIT_POSITION_LOG2 + 32) &&
                    T3R_MAX_TANGENTIAL_Q24 == T3R_LIMIT_TANGENTIAL << 24 &&
                    T3R_MAX_DEPTH_UNIT_Q40 == ((uint64_t)T3R_LIMIT_DEPTH_UNIT << 40) - 1,
                "readers and runtime have the same limits");
-
-/* Returns a b / c rounded to nearest, halves up; sides are at most 2^14, so nothing overflows. */
-static uint32_t share(uint32_t a, uint32_t b, uint32_t c)
-{
-    return (2 * a * b + c) / (2 * c);
-}
-
-import_crop import_largest_crop(uint32_t picture_width, uint32_t picture_height, uint32_t width, uint32_t height)
-{
-    import_crop crop = {.width = picture_width, .height = picture_height};
-    if (picture_width * height > picture_height * width) {
-        crop.width = share(picture_height, width, height);
-    } else {
-        crop.height = share(picture_width, height, width);
-    }
-    crop.width = crop.width == 0 ? 1 : crop.width;
-    crop.height = crop.height == 0 ? 1 : crop.height;
-    crop.x = (picture_width - crop.width) / 2;
-    crop.y = (picture_height - crop.height) / 2;
-    return crop;
-}
-
-import_crop import_crop_in_proportion(const import_crop *crop, uint32_t from_width, uint32_t from_height,
-                                      uint32_t width, uint32_t height)
-{
-    import_crop out = {.x = share(crop->x, width, from_width), .y = share(crop->y, height, from_height)};
-    out.width = share(crop->x + crop->width, width, from_width) - out.x;
-    out.height = share(crop->y + crop->height, height, from_height) - out.y;
-    return out;
-}
-
-void import_crop_camera(t3r_recorded_camera *camera, const import_crop *crop, uint32_t width, uint32_t height)
-{
-    double scale_x = (double)width / crop->width;
-    double scale_y = (double)height / crop->height;
-    camera->fx *= scale_x;
-    camera->fy *= scale_y;
-    /* scaling keeps the corner of the top-left pixel, which is half a pixel before its centre */
-    camera->cx = (camera->cx + 0.5 - crop->x) * scale_x - 0.5;
-    camera->cy = (camera->cy + 0.5 - crop->y) * scale_y - 0.5;
-    camera->width = width;
-    camera->height = height;
-}
 
 /* ---- pictures -------------------------------------------------------------------------------------------------- */
 
@@ -158,7 +114,7 @@ static int read_colour(const char *path, picture *out, char *error, size_t error
     if (out->bits != 8) {
         return t3r_reason(error, error_bytes, "%s: 16-bit grey, but a colour picture has 8 bits", path);
     }
-    if (out->width < MIN_SIDE || out->height < MIN_SIDE) {
+    if (out->width < IMPORT_LEAST_SIDE || out->height < IMPORT_LEAST_SIDE) {
         return t3r_reason(error, error_bytes, "%s: %ux%u pixels are too few", path, out->width, out->height);
     }
     return 0;
@@ -175,7 +131,7 @@ static int read_depth(const char *path, const raw_depth *raw, picture *out, char
         return t3r_reason(error, error_bytes, "%s: %u-bit %s, but depth is a 16-bit grey PNG", path, out->bits,
                           out->channels == 1 ? "grey" : "colour");
     }
-    if (out->width < MIN_SIDE || out->height < MIN_SIDE) {
+    if (out->width < IMPORT_LEAST_SIDE || out->height < IMPORT_LEAST_SIDE) {
         return t3r_reason(error, error_bytes, "%s: %ux%u pixels are too few", path, out->width, out->height);
     }
     return 0;
@@ -203,62 +159,6 @@ static void forget_samples(picture *depth, uint16_t no_depth)
 }
 
 /* ---- adapting -------------------------------------------------------------------------------------------------- */
-
-/* Converts the cropped colour picture to interleaved RGB of width x height, with the runtime's own resize. */
-static int develop_colour(const picture *in, const import_crop *crop, uint32_t width, uint32_t height, uint8_t *rgb)
-{
-    t3r_frame frame = {
-        .format = in->channels == 3 ? T3R_PIXEL_RGB24 : T3R_PIXEL_GREY, .width = crop->width, .height = crop->height};
-    frame.stride_bytes[0] = in->width * in->channels;
-    frame.planes[0] =
-        (const uint8_t *)in->samples + (size_t)crop->y * frame.stride_bytes[0] + (size_t)crop->x * in->channels;
-    size_t pixels = (size_t)width * height;
-    uint8_t *memory = malloc(pixels * 3);
-    void *work = malloc(t3r_image_work_bytes(width));
-    int status = memory != NULL && work != NULL && t3r_image_check(&frame) == T3R_OK ? 0 : -1;
-    if (status == 0) {
-        uint8_t *const planes[3] = {memory, memory + pixels, memory + 2 * pixels};
-        t3r_image_colour(&t3r_kernels_c, &frame, width, height, 0, height, planes, work);
-        for (size_t i = 0; i < pixels; i++) {
-            for (size_t c = 0; c < 3; c++) {
-                rgb[i * 3 + c] = planes[c][i];
-            }
-        }
-    }
-    free(work);
-    free(memory);
-    return status;
-}
-
-/* t3r_frame takes depth as little-endian bytes. */
-static void to_little_endian(uint16_t *values, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        uint8_t bytes[2] = {(uint8_t)values[i], (uint8_t)(values[i] >> 8)};
-        memcpy(&values[i], bytes, sizeof bytes);
-    }
-}
-
-static int develop_depth(picture *in, const import_crop *crop, uint32_t width, uint32_t height, uint16_t *depth)
-{
-    to_little_endian(in->samples, (size_t)in->width * in->height);
-    uint8_t dummy[2 * 2] = {0};
-    t3r_frame frame = {.format = T3R_PIXEL_GREY,
-                       .width = 2,
-                       .height = 2,
-                       .planes = {dummy},
-                       .stride_bytes = {2},
-                       .depth_width = crop->width,
-                       .depth_height = crop->height,
-                       .depth_unit_q40 = 1};
-    frame.depth_stride_bytes = in->width * 2;
-    frame.depth = (const uint8_t *)in->samples + (size_t)crop->y * frame.depth_stride_bytes + (size_t)crop->x * 2;
-    if (t3r_image_check(&frame) != T3R_OK) {
-        return -1;
-    }
-    t3r_image_depth(&frame, width, height, 0, height, depth);
-    return 0;
-}
 
 /* Whether the lens folds: with some coefficients the runtime cannot invert the distortion within the picture. -1 when
  * memory is out. */
@@ -342,8 +242,7 @@ static int read_view(const char *directory, const posed_frame *frame, bool large
     if (posed_frame_camera(frame, colour->width, colour->height, camera, reason, sizeof reason) != 0) {
         return t3r_reason(error, error_bytes, "%s: %s", frame->image, reason);
     }
-    const uint32_t longer = colour->width > colour->height ? colour->width : colour->height;
-    const uint32_t n = (longer + T3R_MAX_SIDE - 1) / T3R_MAX_SIDE;
+    const uint32_t n = picture_reduction(colour->width, colour->height);
     if (n > 1 && !large) {
         return t3r_reason(error, error_bytes,
                           "%s: %ux%u pixels; sides of up to %u are supported, larger ones with --size", frame->image,
@@ -380,7 +279,7 @@ static int adapt_colour(const posed_frame *frame, const picture *colour, import_
                           frame->image, out->width, out->height, T3R_MIN_SIDE);
     }
     *crop = import_largest_crop(colour->width, colour->height, out->width, out->height);
-    if (crop->width < MIN_SIDE || crop->height < MIN_SIDE) {
+    if (crop->width < IMPORT_LEAST_SIDE || crop->height < IMPORT_LEAST_SIDE) {
         return t3r_reason(error, error_bytes, "%s: too narrow to crop to that aspect", frame->image);
     }
     import_crop_camera(&out->camera, crop, out->width, out->height);
@@ -388,7 +287,7 @@ static int adapt_colour(const posed_frame *frame, const picture *colour, import_
         return -1;
     }
     buffers->rgb = malloc((size_t)out->width * out->height * 3);
-    if (buffers->rgb == NULL || develop_colour(colour, crop, out->width, out->height, buffers->rgb) != 0) {
+    if (buffers->rgb == NULL || import_crop_colour(colour, crop, out->width, out->height, buffers->rgb) != 0) {
         return t3r_reason(error, error_bytes, "%s: out of memory", frame->image);
     }
     out->planes[0] = buffers->rgb;
@@ -426,6 +325,15 @@ static int read_aligned(const char *directory, const posed_frame *frame, const p
                : t3r_reason(error, error_bytes, "%s: %s", frame->depth, reason);
 }
 
+/* t3r_frame takes depth as little-endian bytes. */
+static void to_little_endian(uint16_t *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint8_t bytes[2] = {(uint8_t)values[i], (uint8_t)(values[i] >> 8)};
+        memcpy(&values[i], bytes, sizeof bytes);
+    }
+}
+
 /* Sets depth to 0 where colour is invalid. */
 static void forget_invalid(const picture *colour, picture *depth)
 {
@@ -444,15 +352,16 @@ static int adapt_depth(const posed_frame *frame, const picture *colour, const im
     const char *name = frame->depth != NULL ? frame->depth : "pointmap";
     const import_crop part =
         import_crop_in_proportion(crop, colour->width, colour->height, depth->width, depth->height);
-    if (part.width < MIN_SIDE || part.height < MIN_SIDE) {
+    if (part.width < IMPORT_LEAST_SIDE || part.height < IMPORT_LEAST_SIDE) {
         return t3r_reason(error, error_bytes, "%s: too small to crop", name);
     }
     forget_invalid(colour, depth);
+    to_little_endian(depth->samples, (size_t)depth->width * depth->height);
     out->depth_width = resize ? out->width : depth->width;
     out->depth_height = resize ? out->height : depth->height;
     buffers->depth = malloc((size_t)out->depth_width * out->depth_height * sizeof *buffers->depth);
-    if (buffers->depth == NULL ||
-        develop_depth(depth, &part, out->depth_width, out->depth_height, buffers->depth) != 0) {
+    if (buffers->depth == NULL || import_crop_depth(depth->samples, depth->width * 2, &part, out->depth_width,
+                                                    out->depth_height, buffers->depth) != 0) {
         return t3r_reason(error, error_bytes, "%s: out of memory", name);
     }
     out->depth = buffers->depth;

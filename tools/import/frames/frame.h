@@ -10,19 +10,6 @@
 #include "pictures/picture.h"
 #include "recording/recording.h"
 
-/* A rectangle of whole pixels. */
-typedef struct import_crop {
-    uint32_t x, y, width, height;
-} import_crop;
-
-/* Returns the largest centred rectangle of width:height in a picture. Its other side is rounded to the nearest pixel;
- * an odd pixel left over goes to the right or bottom. */
-import_crop import_largest_crop(uint32_t picture_width, uint32_t picture_height, uint32_t width, uint32_t height);
-
-/* Returns the same share of a picture of another resolution, each edge at the nearest pixel. */
-import_crop import_crop_in_proportion(const import_crop *crop, uint32_t from_width, uint32_t from_height,
-                                      uint32_t width, uint32_t height);
-
 /* Reads the sides of the frame's picture, upright, from its header. Returns 0, or -1 with "picture: what" in error[].
  */
 int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
@@ -31,9 +18,6 @@ int import_picture_size(const char *directory, const posed_frame *frame, uint32_
 /* Reads the sides of its depth; the frame must have depth. */
 int import_depth_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
                       size_t error_bytes);
-
-/* Adapts a camera to cropping and resizing to width x height. */
-void import_crop_camera(t3r_recorded_camera *camera, const import_crop *crop, uint32_t width, uint32_t height);
 
 typedef struct import_buffers {
     uint8_t *rgb;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "host/reason.h"
+#include "import/frames/crop.h"
 #include "import/frames/frame.h"
 #include "messages/fixed_camera.h"
 #include "posing/opencv_module.h"

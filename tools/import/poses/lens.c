@@ -118,6 +118,17 @@ const char *lens_of_info(const t3r_ros_camera_info *info, lens *out)
     return NULL;
 }
 
+void lens_reduce(lens *l, uint32_t n)
+{
+    l->width = floor(l->width / n);
+    l->height = floor(l->height / n);
+    l->fx /= n;
+    l->fy /= n;
+    l->cx = (l->cx + 0.5) / n - 0.5; /* the corner stays, half a pixel before the first centre */
+    l->cy = (l->cy + 0.5) / n - 0.5;
+    find_radius(l);
+}
+
 void lens_of_camera(const t3r_camera *camera, uint32_t width, uint32_t height, lens *out)
 {
     *out = (lens){.width = width,

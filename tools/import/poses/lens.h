@@ -25,6 +25,8 @@ typedef struct lens {
 /* Returns NULL, or what is wrong. */
 const char *lens_of_info(const t3r_ros_camera_info *info, lens *out);
 void lens_of_camera(const t3r_camera *camera, uint32_t width, uint32_t height, lens *out);
+/* Adapts a lens to the picture of which each square of n x n pixels became one. */
+void lens_reduce(lens *l, uint32_t n);
 /* Projects a point in the camera's frame to a pixel; false for points behind the camera and far outside the picture,
  * where polynomials fold. */
 bool lens_project(const lens *l, const double point[3], double pixel[2]);

@@ -41,5 +41,5 @@ def room(frames: int = 6, width: int = 256, height: int = 256, seed: int = 1) ->
         camera = ffi.new("t3r_camera *")
         lib.room_frame(index, width, height, seed, address(colour, "uint8_t *"), address(depth, "uint16_t *"))
         lib.room_camera(index, width, height, camera)
-        made.append(Frame(colour, Camera.from_native(camera, (width, height)), depth))
+        made.append(Frame(colour, Camera.from_native(camera), depth))
     return made

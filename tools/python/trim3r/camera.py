@@ -145,17 +145,18 @@ class Camera:
         if self.distortion not in _LENSES:
             raise InputError(f"distortion is one of {', '.join(_LENSES)}, not {self.distortion!r}", "T3R_ERR_CAMERA")
         fields = {name: _integers(name, getattr(self, name), *field) for name, field in _FIELDS.items()}
-        return ffi.new("t3r_camera *", {**fields, "distortion": _LENSES[self.distortion]})
+        width, height = self.size or (0, 0)
+        return ffi.new("t3r_camera *", {**fields, "width": width, "height": height, "distortion": _LENSES[self.distortion]})
 
     @classmethod
-    def from_native(cls, camera: Any, size: Tuple[int, int]) -> "Camera":
-        """Makes a camera of a t3r_camera for a picture of that width and height."""
+    def from_native(cls, camera: Any) -> "Camera":
+        """Makes a camera of a t3r_camera."""
         lens = next(name for name, value in _LENSES.items() if value == camera.distortion)
         x, y, z = camera.position_q32
         w, i, j, k = camera.rotation_q30
         a, b, c, d, e = camera.distortion_q24
         return cls(camera.fx_q16, camera.fy_q16, camera.cx_q16, camera.cy_q16, (x, y, z), (w, i, j, k), lens,
-                   (a, b, c, d, e), size)
+                   (a, b, c, d, e), (camera.width, camera.height) if camera.width else None)
 
 
 def _grid(size: Any) -> Tuple[int, int]:

@@ -67,4 +67,4 @@ def develop(frame: Frame, width: int, height: int) -> Frame:
     check(lib.t3r_develop(runtime[0], native, camera_of(frame).native(frame.size), address(colour, "uint8_t *"), steps,
                           undistorted))
     del kept
-    return Frame(colour, Camera.from_native(undistorted, (width, height)), depth, frame.depth_unit)
+    return Frame(colour, Camera.from_native(undistorted), depth, frame.depth_unit)

@@ -67,8 +67,7 @@ class Recording:
         if lib.t3r_recording_frame(self._recording, index % count, captured, error, ERROR_BYTES) != lib.T3R_CAPTURE_FRAME:
             raise InputError(f"frame {index}: {text_of(error)}")
         native = captured.frame
-        camera = Camera.from_native(captured.camera, (native.width, native.height)) \
-            if captured.has_pose and captured.has_intrinsics else None
+        camera = Camera.from_native(captured.camera) if captured.has_pose and captured.has_intrinsics else None
         return Frame(self._colour(native), camera, self._depth(native), native.depth_unit_q40 / (1 << 40),
                      text_of(lib.t3r_pixel_format_name(native.format)))
 

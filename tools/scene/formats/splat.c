@@ -106,4 +106,5 @@ static int splat_write(FILE *file, const scene_source *source, char *error, size
     return 0;
 }
 
-const scene_format scene_format_splat = {.suffix = ".splat", .parse = splat_parse, .write = splat_write};
+const scene_format scene_format_splat = {
+    .suffix = ".splat", .colour = {0, 1}, .parse = splat_parse, .write = splat_write};

@@ -91,20 +91,15 @@ static uint32_t depths_seen(const scene_file *scene, const t3r_capture_frame *fr
 
 static int measure_pixels(const scene_info_request *request, const scene_file *scene, scene_summaries *summary)
 {
-    char error[ERROR_BYTES] = "";
     t3r_capture_frame frame;
-    t3r_recording *recording = t3r_recording_open(request->recording, error, sizeof error);
-    if (recording == NULL) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
-    }
     double *depths = malloc(((size_t)scene->count + 1) * sizeof *depths);
     int code = depths == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
-                              : recorded_frame_read(recording, request->recording, request->view, &frame);
+                              : recorded_frame_read(request->recording, request->recording_path, request->view, &frame);
     if (code == CLI_OK) {
         uint32_t seen = depths_seen(scene, &frame, depths);
         qsort(depths, seen, sizeof *depths, ascending);
         if (seen == 0) {
-            code = cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 " shows no Gaussian of %s", request->recording,
+            code = cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 " shows no Gaussian of %s", request->recording_path,
                              request->view, request->scenes[0]);
         } else {
             summary->depth = depths[seen / 2];
@@ -112,7 +107,6 @@ static int measure_pixels(const scene_info_request *request, const scene_file *s
         }
     }
     free(depths);
-    t3r_recording_close(recording);
     return code;
 }
 
@@ -215,7 +209,7 @@ static void print_text(const scene_info_request *request, const scene_summaries 
         }
     }
     if (summary->pixels > 0) {
-        printf("pixels of frame %" PRIu32 " of %s at the median depth, %.4g\n", request->view, request->recording,
+        printf("pixels of frame %" PRIu32 " of %s at the median depth, %.4g\n", request->view, request->recording_path,
                summary->depth);
     }
 }

@@ -6,6 +6,7 @@
 
 #include "cli/cli.h"
 #include "import/folders/planar_recording.h"
+#include "import/import_source.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_error.h"
 #include "recording/recording.h"
@@ -47,10 +48,9 @@ static int add_scene(calibration *c, const t3r_recording *recording, const char 
 
 static int add_recording(calibration *c, const char *path)
 {
-    char error[512] = "";
-    t3r_recording *recording = t3r_recording_open(path, error, sizeof error);
+    t3r_recording *recording = import_source_open(path);
     if (recording == NULL) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
+        return CLI_BAD_INPUT;
     }
     uint32_t frames = t3r_recording_frame_count(recording), triplets = t3r_recording_triplet_count(recording);
     uint32_t choices = triplets > 0 ? triplets : frames / 2;

@@ -13,6 +13,7 @@
 #include "cli/options/option_values.h"
 #include "cli/text/word_list.h"
 #include "host/text.h"
+#include "import/import_source.h"
 #include "room/room.h"
 #include "study/rivals/options.h"
 #include "study/stress/measure.h"
@@ -128,7 +129,7 @@ static error_t parse_option(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
-    OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
+    OPTION_ARGUMENTS("REC.mcap", OPTION_READS | OPTION_FOLDER),
     {NULL, 0, NULL, 0, "What is compared:", 1},
     {"methods", KEY_METHODS, "M,M,...", 0, METHOD_HELP, 0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percents of the valid points of the unperturbed frames (10)", 0},
@@ -433,7 +434,7 @@ static int stress_scenes(stress_report *report, const options *o)
 static int open_recordings(const options *o, t3r_recording **recordings, uint32_t *cases)
 {
     for (uint32_t i = 0; i < o->input_count; i++) {
-        char error[512] = "", name[256], other[256];
+        char name[256], other[256];
         case_name(o->inputs[i], name, sizeof name);
         for (uint32_t earlier = 0; earlier < i; earlier++) {
             case_name(o->inputs[earlier], other, sizeof other);
@@ -441,9 +442,9 @@ static int open_recordings(const options *o, t3r_recording **recordings, uint32_
                 return cli_error(CLI_BAD_USAGE, "%s and %s would have the same name", o->inputs[earlier], o->inputs[i]);
             }
         }
-        recordings[i] = t3r_recording_open(o->inputs[i], error, sizeof error);
+        recordings[i] = import_source_open(o->inputs[i]);
         if (recordings[i] == NULL) {
-            return cli_error(CLI_BAD_INPUT, "%s", error);
+            return CLI_BAD_INPUT;
         }
         if (t3r_recording_triplet_count(recordings[i]) == 0) {
             return cli_error(CLI_BAD_INPUT, "%s: the recording carries no triplets", o->inputs[i]);

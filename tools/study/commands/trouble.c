@@ -16,6 +16,7 @@
 #include "cli/options/option_values.h"
 #include "host/reason.h"
 #include "host/text.h"
+#include "import/import_source.h"
 #include "study/troubles/trouble.h"
 
 #define ERROR_BYTES 512
@@ -67,7 +68,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
-    OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
+    OPTION_ARGUMENTS("REC.mcap", OPTION_READS | OPTION_FOLDER),
     {"output", 'o', "OUT.mcap", OPTION_WRITES(FILE_RECORDING), "recording to write (needed)", 0},
     {"with", KEY_WITH, "TROUBLE", 0, "the trouble, listed below (needed)", 0},
     {"at", KEY_AT, "N", 0, "the first frame that has it, at least 1 (10)", 0},
@@ -234,10 +235,9 @@ int command_trouble(int argc, char **argv)
 {
     options o = {.first = 10, .count = 3};
     file_options_parse(&parser, argc, argv, &o);
-    char error[ERROR_BYTES] = "";
-    t3r_recording *recording = t3r_recording_open(o.recording, error, sizeof error);
+    t3r_recording *recording = import_source_open(o.recording);
     if (recording == NULL) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
+        return CLI_BAD_INPUT;
     }
     const int code = o.first < t3r_recording_frame_count(recording)
                          ? write_recording(&o, recording)

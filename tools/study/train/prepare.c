@@ -145,7 +145,9 @@ static t3r_status add_view(preparation *p, const prepare_views *views, uint32_t 
                        .depth_height = views->height,
                        .depth_stride_bytes = 2 * views->width,
                        .depth_unit_q40 = 1099511628};
-    p->cameras[v] = (t3r_camera){.fx_q16 = (int32_t)(intrinsics[0] * 65536),
+    p->cameras[v] = (t3r_camera){.width = views->width,
+                                 .height = views->height,
+                                 .fx_q16 = (int32_t)(intrinsics[0] * 65536),
                                  .fy_q16 = (int32_t)(intrinsics[1] * 65536),
                                  .cx_q16 = (int32_t)(intrinsics[2] * 65536),
                                  .cy_q16 = (int32_t)(intrinsics[3] * 65536)};

@@ -15,6 +15,7 @@
 #include "cli/text/style.h"
 #include "import/estimation/poses_output.h"
 #include "import/estimation/recording_poses.h"
+#include "import/import_source.h"
 #include "reconstruction/aligned_poses.h"
 #include "reconstruction/colmap_start.h"
 #include "reconstruction/options/poses_option.h"
@@ -30,7 +31,7 @@
 enum { KEY_LOCAL = 0x1000, KEY_COMMENTS, KEY_UP };
 
 static const struct argp_option options[] = {
-    OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
+    OPTION_ARGUMENTS("REC.mcap", OPTION_READS | OPTION_FOLDER),
     {"output", 'o', "SCENE.ply", OPTION_WRITES(FILE_SCENE), "scene to write (needed, or --colmap)", 0},
     {"colmap", OPTION_TO(build_options, colmap), "DIR", OPTION_WRITES(FILE_OTHER) | OPTION_FOLDER,
      "folder, new or empty, for the start of another optimiser: the context views, and the means and colours of the "
@@ -331,9 +332,9 @@ int build_run(build_options *o)
     char error[ERROR_BYTES] = "";
     work_times times;
     work_times_begin(&times);
-    t3r_recording *recording = t3r_recording_open(o->recording, error, sizeof error);
+    t3r_recording *recording = import_source_open(o->recording);
     if (recording == NULL) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
+        return CLI_BAD_INPUT;
     }
     work_times_end(&times, WORK_READ);
     int code = CLI_OK;

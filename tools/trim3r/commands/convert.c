@@ -51,7 +51,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option argp_options[] = {
-    OPTION_ARGUMENTS("SCENE", OPTION_READS),
+    OPTION_ARGUMENTS("SCENE", OPTION_READS | OPTION_FOLDER),
     {"output", 'o', "SCENE", OPTION_WRITES(FILE_SCENE), "scene to write (needed); its ending names the format", 0},
     {"up", KEY_UP, "AXIS", 0,
      "axis of the scene that points up, x, -x, y, -y, z or -z: the file is turned so that y does, for viewers that "

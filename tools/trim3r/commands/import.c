@@ -448,8 +448,8 @@ static int given_lens(const options *o, t3r_camera *camera, char *error)
 
 static int import_recording(const options *o)
 {
-    if (o->width != 0 || o->pointmaps.file != NULL || o->pointmaps.confidence_least != -HUGE_VAL) {
-        return cli_error(CLI_BAD_USAGE, "%s is a recording: --size and pointmaps belong to folders", o->directory);
+    if (o->pointmaps.file != NULL || o->pointmaps.confidence_least != -HUGE_VAL) {
+        return cli_error(CLI_BAD_USAGE, "%s is a recording: pointmaps belong to folders", o->directory);
     }
     char error[ERROR_BYTES];
     t3r_camera camera;
@@ -467,6 +467,8 @@ static int import_recording(const options *o)
     int code = recording_import(&(recording_import_request){.input = o->directory,
                                                             .output = o->output,
                                                             .source = source,
+                                                            .width = o->width,
+                                                            .height = o->height,
                                                             .poses = o->poses,
                                                             .intrinsics = o->intrinsics_count != 0 ? &camera : NULL,
                                                             .depth_unit_q40 = unit_q40,

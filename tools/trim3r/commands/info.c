@@ -297,9 +297,9 @@ static void print_text(const t3r_recording *recording, const frame_summary *s, c
 static int recording_info(const options *o)
 {
     char error[ERROR_BYTES];
-    t3r_recording *recording = t3r_recording_open(o->recording, error, sizeof error);
+    t3r_recording *recording = import_source_open(o->recording);
     if (recording == NULL) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
+        return CLI_BAD_INPUT;
     }
     bag_pictures pictures = {0};
     t3r_recording_set_decoder(recording, bag_pictures_decoder(&pictures));
@@ -317,18 +317,30 @@ static int recording_info(const options *o)
     return status;
 }
 
+static int scenes_info(const options *o)
+{
+    t3r_recording *recording = o->recording != NULL ? import_source_open(o->recording) : NULL;
+    if (o->recording != NULL && recording == NULL) {
+        return CLI_BAD_INPUT;
+    }
+    const int status = scene_info(&(scene_info_request){.scenes = o->scenes,
+                                                        .scene_count = o->scene_count,
+                                                        .recording = recording,
+                                                        .recording_path = o->recording,
+                                                        .view = o->view,
+                                                        .svg = o->svg,
+                                                        .flags = o->flags,
+                                                        .json = o->json});
+    t3r_recording_close(recording);
+    return status;
+}
+
 int command_info(int argc, char **argv)
 {
     options o = {0};
     file_options_parse(&parser, argc, argv, &o);
     if (o.scene_count > 0) {
-        return scene_info(&(scene_info_request){.scenes = o.scenes,
-                                                .scene_count = o.scene_count,
-                                                .recording = o.recording,
-                                                .view = o.view,
-                                                .svg = o.svg,
-                                                .flags = o.flags,
-                                                .json = o.json});
+        return scenes_info(&o);
     }
     const char *advice;
     switch (import_source_of(o.recording, &advice)) {

@@ -16,6 +16,7 @@
 #include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
 #include "core/hash.h"
+#include "import/import_source.h"
 #include "import/viewpoint.h"
 #include "pictures/picture.h"
 #include "reconstruction/reconstruction.h"
@@ -41,7 +42,7 @@ typedef struct render_options {
 enum { KEY_VIEW = 0x1000, KEY_SIZE, KEY_FOV, KEY_DEPTH_UNIT, KEY_ARENA, KEY_MAX_MS, KEY_TILE_SPLATS };
 
 static const struct argp_option options[] = {
-    OPTION_ARGUMENTS("SCENE.ply", OPTION_READS),
+    OPTION_ARGUMENTS("SCENE.ply", OPTION_READS | OPTION_FOLDER),
     {NULL, 0, NULL, 0, "Viewpoint:", 1},
     {"view", KEY_VIEW, "N", 0, "frame of REC.mcap whose camera draws", 0},
     {"pose", OPTION_TO(render_options, pose), "FILE", OPTION_READS, "camera as JSON (below)", 0},
@@ -178,10 +179,9 @@ static const struct argp argp = {
 
 static int view_of_recording(const render_options *o, viewpoint_list *views)
 {
-    char error[ERROR_BYTES] = "";
-    t3r_recording *recording = t3r_recording_open(o->recording, error, sizeof error);
+    t3r_recording *recording = import_source_open(o->recording);
     if (recording == NULL) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
+        return CLI_BAD_INPUT;
     }
     t3r_capture_frame frame;
     int code = recorded_frame_read(recording, o->recording, o->view, &frame);
@@ -191,8 +191,7 @@ static int view_of_recording(const render_options *o, viewpoint_list *views)
             code = cli_error(CLI_BAD_INPUT, "out of memory");
         } else {
             uint32_t width = frame.frame.width, height = frame.frame.height;
-            views->items[0] =
-                (viewpoint){reconstruction_camera(&frame.camera, width, height, width, height), width, height};
+            views->items[0] = reconstruction_camera(&frame.camera, width, height, width, height);
             views->count = 1;
         }
     }
@@ -201,7 +200,7 @@ static int view_of_recording(const render_options *o, viewpoint_list *views)
 }
 
 /* Reads the poses of --pose or --trajectory, and reports what is left out of them. */
-static int read_poses(const render_options *o, const viewpoint *lens, viewpoint_list *views)
+static int read_poses(const render_options *o, const t3r_camera *lens, viewpoint_list *views)
 {
     char error[ERROR_BYTES] = "";
     const char *path = lens != NULL ? o->trajectory : o->pose;
@@ -217,7 +216,7 @@ static int choose_viewpoints(const render_options *o, viewpoint_list *views)
                : o->pose != NULL    ? read_poses(o, NULL, views)
                                     : CLI_OK;
     if (code == CLI_OK && o->trajectory != NULL) {
-        viewpoint lens;
+        t3r_camera lens;
         if (!o->has_fov) {
             lens = views->items[0];
         } else if (viewpoint_from_angle(o->fov_degrees, o->width, o->height, &lens) != 0) {
@@ -228,10 +227,8 @@ static int choose_viewpoints(const render_options *o, viewpoint_list *views)
         code = read_poses(o, &lens, views);
     }
     for (uint32_t i = 0; code == CLI_OK && o->has_size && i < views->count; i++) {
-        viewpoint *v = &views->items[i];
-        v->camera = reconstruction_camera(&v->camera, v->width, v->height, o->width, o->height);
-        v->width = o->width;
-        v->height = o->height;
+        t3r_camera *v = &views->items[i];
+        *v = reconstruction_camera(v, v->width, v->height, o->width, o->height);
     }
     return code;
 }
@@ -289,8 +286,8 @@ typedef struct planes {
     uint16_t *grey;
 } planes;
 
-static int render_one(const render_options *o, reconstruction *r, const viewpoint *view, uint32_t index, uint32_t count,
-                      const planes *p, uint64_t *hash, work_times *times)
+static int render_one(const render_options *o, reconstruction *r, const t3r_camera *view, uint32_t index,
+                      uint32_t count, const planes *p, uint64_t *hash, work_times *times)
 {
     size_t pixels = (size_t)view->width * view->height;
     t3r_target target = {
@@ -305,11 +302,11 @@ static int render_one(const render_options *o, reconstruction *r, const viewpoin
     };
     r->give_up_at = o->most_ms > 0 ? cli_now() + o->most_ms / 1e3 : 0;
     work_times_pass(times);
-    int code = reconstruction_look_from(r, &view->camera, view->width, view->height);
+    int code = reconstruction_look_from(r, view, view->width, view->height);
     if (code != CLI_OK) {
         return code;
     }
-    t3r_status status = t3r_render(r->runtime, &view->camera, &target);
+    t3r_status status = t3r_render(r->runtime, view, &target);
     work_times_end(times, WORK_DRAW);
     if (status == T3R_ERR_CANCELLED) {
         return cli_error(CLI_BAD_INPUT, "view %" PRIu32 " takes longer than %g ms (--max-ms, --tile-splats)", index,
@@ -352,7 +349,7 @@ static int render_all(const render_options *o, scene_file *scene, const viewpoin
     uint32_t width = 1, height = 1;
     size_t pixels = 1;
     for (uint32_t i = 0; i < views->count; i++) {
-        const viewpoint *v = &views->items[i];
+        const t3r_camera *v = &views->items[i];
         width = v->width > width ? v->width : width;
         height = v->height > height ? v->height : height;
         size_t area = (size_t)v->width * v->height;

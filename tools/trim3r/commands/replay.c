@@ -15,6 +15,7 @@
 #include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
 #include "core/hash.h"
+#include "import/import_source.h"
 #include "reconstruction/options/settings.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_error.h"
@@ -48,7 +49,7 @@ typedef struct replayed_view {
 enum { KEY_JSON = 0x1000, KEY_EVERY, KEY_UNTIL };
 
 static const struct argp_option options[] = {
-    OPTION_ARGUMENTS("REC.mcap", OPTION_READS),
+    OPTION_ARGUMENTS("REC.mcap", OPTION_READS | OPTION_FOLDER),
     {"expect", OPTION_TO(replay_options, expect), "HASH|FILE", OPTION_READS | OPTION_OR_WORD,
      "expected final hash, or the JSON of an earlier run; exit status 1 when it differs", 0},
     {"json", KEY_JSON, NULL, 0, "print one JSON object on stdout, fit for --expect", 0},
@@ -345,12 +346,11 @@ int command_replay(int argc, char **argv)
     expectation e;
     int code = expectation_read(&e, o.expect);
     if (code == CLI_OK) {
-        char error[ERROR_BYTES] = "";
         work_times times;
         work_times_begin(&times);
-        t3r_recording *recording = t3r_recording_open(o.recording, error, sizeof error);
+        t3r_recording *recording = import_source_open(o.recording);
         if (recording == NULL) {
-            code = cli_error(CLI_BAD_INPUT, "%s", error);
+            code = CLI_BAD_INPUT;
         } else {
             work_times_end(&times, WORK_READ);
             warn_of_epoch(&o, recording);

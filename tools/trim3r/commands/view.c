@@ -15,6 +15,7 @@
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
+#include "import/import_source.h"
 #include "reconstruction/reconstruction.h"
 #include "scene/scene_file.h"
 #include "scene/scene_options.h"
@@ -39,7 +40,7 @@ typedef struct view_options {
 enum { KEY_PORT = 0x1000, KEY_COMPARE };
 
 static const struct argp_option options[] = {
-    OPTION_ARGUMENTS("INPUT", OPTION_READS),
+    OPTION_ARGUMENTS("INPUT", OPTION_READS | OPTION_FOLDER),
     {"output", 'o', "view.html", OPTION_WRITES(FILE_PAGE), "page to write, which needs no server (it is served)", 0},
     {"port", KEY_PORT, "N", 0, "port of the server on 127.0.0.1, 0 = any free one (0)", 0},
     {"compare", KEY_COMPARE, "LIST", 0,
@@ -57,11 +58,11 @@ static const struct argp_option options[] = {
 static void check_options(struct argp_state *state, view_options *o)
 {
     for (int i = 0; i < 2 && o->inputs[i] != NULL; i++) {
-        const file_kind kind = file_kind_of(o->inputs[i]);
-        const char **place = kind == FILE_RECORDING ? &o->recording : &o->scene;
+        const bool scene = scene_file_is_one(o->inputs[i]);
+        const char **place = scene ? &o->scene : &o->recording;
         if (*place != NULL) {
             argp_error(state, "'%s' and '%s' are both %s; one scene and one recording go together", *place,
-                       o->inputs[i], kind == FILE_RECORDING ? "recordings" : "scenes");
+                       o->inputs[i], scene ? "scenes" : "recordings");
         }
         *place = o->inputs[i];
     }
@@ -98,6 +99,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         check_options(state, o);
+        if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
+            o->settings.keep_percent = 10;
+        }
         return 0;
     default:
         return option_field(key, arg, state);
@@ -149,10 +153,9 @@ static int add_frames(viewpoints *v, const view_options *o, const t3r_recording 
 /* Builds what the page builds first, so that the page can compare. */
 static int prepare_recording(const view_options *o, reconstruction *r, viewpoints *v, viewer_page *page)
 {
-    char error[ERROR_BYTES] = "";
-    t3r_recording *recording = t3r_recording_open(o->recording, error, sizeof error);
+    t3r_recording *recording = import_source_open(o->recording);
     if (recording == NULL) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
+        return CLI_BAD_INPUT;
     }
     int code = reconstruction_build(r, recording, o->recording, &o->settings);
     if (code == CLI_OK) {
@@ -305,7 +308,6 @@ int command_view(int argc, char **argv)
 {
     view_options o = {.port = 0};
     reconstruction_defaults(&o.settings);
-    o.settings.keep_percent = 10;
     o.settings.config.keep_analysis = 1; /* as the page's own builds: the slider takes the analysis over */
     file_options_parse(&argp, argc, argv, &o);
     if (!viewer_page_is_built()) {

@@ -3,11 +3,15 @@
 
 #include "scene/scene_format.h"
 
+#define COLOUR_REACH (0.5 * HARMONICS_ZERO / SPZ_COLOUR_SCALE) /* of a byte's ends from the middle */
+
 const scene_format scene_format_spz = {.suffix = ".spz",
                                        .magic = SPZ_MAGIC,
                                        .axes = SCENE_AXES_RUB,
                                        .degree = 3,
                                        .harmonics = 1,
+                                       .colour = {0.5 - COLOUR_REACH, 0.5 + COLOUR_REACH},
+                                       .log_scale = {SPZ_SCALE_LEAST, SPZ_SCALE_LEAST + 255 / SPZ_SCALE_STEPS},
                                        .holds_mip = true,
                                        .shares_bits = true,
                                        .parse = spz_parse,
