@@ -16,7 +16,7 @@ trim3r = sys.argv[1]
 NAMES = ["full", "no-adaptation", "no-mask", "random", "random-clusters", "paper-random-clusters", "uniform", "paper",
          "pixel", *(f"k-{k}" for k in (5, 25, 50, 100, 200, 300, 400)), *(f"n-{n}" for n in (5, 10, 15, 20)),
          "no-refinement", "no-flying", "no-redundancy", "no-exposure"]
-SCORES = ("gaussians", "psnr", "ssim", "sharp", "holes", "psnr_all", "context_psnr", "perceptual")
+SCORES = ("gaussians", "psnr", "ssim", "sharp", "holes", "psnr_all", "psnr_seen", "context_psnr", "perceptual")
 KEEPS = (30, 5)
 
 

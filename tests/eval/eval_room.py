@@ -17,7 +17,7 @@ numpy, cv2 = need_numpy()
 trim3r = sys.argv[1]
 scorer = load_scorer(sys.argv[2])
 COLUMNS = ("scene context target method head bits refine allocate depth ablation wavelet levels clusters settings keep requested gaussians psnr "
-           "ssim sharp holes psnr_all context_psnr perceptual build_ms render_ms arena_bytes scene_bytes planar_psnr "
+           "ssim sharp holes psnr_all psnr_seen context_psnr perceptual build_ms render_ms arena_bytes scene_bytes planar_psnr "
            "picture bits_epoch").split()
 
 
@@ -57,7 +57,7 @@ def evaluate_triplet(folder, room):
           "one row a method and budget, in the order asked for")
     check(len(shown.splitlines()) == 1 + len(rows), "a heading and a line a row")
     check(sorted(os.listdir(f"{pictures}/1")) ==
-          sorted(["target.png", "mask.png", "context_a.png", "context_b.png"] +
+          sorted(["target.png", "mask.png", "seen.png", "context_a.png", "context_b.png"] +
                  [f"{m}_{k}.png" for m in ("trim3r", "random") for k in keeps]), "the pictures' names")
     target, mask = read(f"{pictures}/1/target.png"), read(f"{pictures}/1/mask.png", grey=True)
     check(target.shape == (64, 64, 3), "pictures have the working size")
@@ -65,6 +65,8 @@ def evaluate_triplet(folder, room):
           "the mask is black and white, and not empty")
     mask = mask > 127
     everything = numpy.ones_like(mask)
+    seen = read(f"{pictures}/1/seen.png", grey=True) > 127
+    check(0.5 < seen.mean() < 1, f"context views see much of the room: {seen.mean()}")
     for row in rows:
         check((row["scene"], row["context"], row["target"], row["depth"]) == ("room", "0,2", "1", "sensor"), "names")
         check((row["head"], row["allocate"]) ==
@@ -78,6 +80,8 @@ def evaluate_triplet(folder, room):
         check_scores(row, target, render, mask, "psnr")
         error = ((target.astype(float) - render) ** 2)[everything].mean()
         near(float(row["psnr_all"]), 10 * numpy.log10(255**2 / error), 0.02, "psnr_all")
+        error = ((target.astype(float) - render) ** 2)[seen].mean()
+        near(float(row["psnr_seen"]), 10 * numpy.log10(255**2 / error), 0.02, "psnr_seen")
         check(0 <= float(row["holes"]) <= 1 and int(row["arena_bytes"]) > 0, "holes and arena")
         check(float(row["build_ms"]) > 0 and float(row["render_ms"]) > 0, "times")
     full = int(rows[0]["gaussians"])
@@ -171,7 +175,7 @@ def evaluate_variants(folder, room):
         return json.loads(run(*common, *more).stdout)["rows"][0]
 
     plain = row()
-    scores = ("gaussians", "psnr", "ssim", "sharp", "holes", "psnr_all", "context_psnr", "perceptual")
+    scores = ("gaussians", "psnr", "ssim", "sharp", "holes", "psnr_all", "psnr_seen", "context_psnr", "perceptual")
     least = row("--arena", "min")
     check([least[s] for s in scores] == [plain[s] for s in scores], "the smallest arena scores the same")
     check(least["arena_bytes"] < plain["arena_bytes"], "and is smaller")
@@ -203,7 +207,7 @@ def evaluate_heads(folder, room):
           "pictures a head")
     page = open(f"{folder}/heads.html").read()
     check(all(label in page for label in labels), "the page tells the heads")
-    scores = ("gaussians", "psnr", "ssim", "sharp", "holes", "psnr_all", "context_psnr", "perceptual")
+    scores = ("gaussians", "psnr", "ssim", "sharp", "holes", "psnr_all", "psnr_seen", "context_psnr", "perceptual")
     for name, alone in zip(names, range(2, len(rows), 2)):
         row = json.loads(run(trim3r, "eval", room, *common, "--head", name, "--json").stdout)["rows"][0]
         check([row[s] for s in scores] == [rows[alone][s] for s in scores], f"{name} alone and beside others")
@@ -222,7 +226,7 @@ def evaluate_rivals(folder, room):
                             ",".join(methods), "--images", f"{folder}/rivals").stdout)
     by = {(row["method"], row["keep"]): row for row in answer["rows"]}
     check(list(by) == [(m, k) for m in methods for k in keeps], "one row a method and budget, in the order asked for")
-    scores = ("gaussians", "psnr", "ssim", "sharp", "holes", "psnr_all", "context_psnr", "perceptual")
+    scores = ("gaussians", "psnr", "ssim", "sharp", "holes", "psnr_all", "psnr_seen", "context_psnr", "perceptual")
     for (name, keep), row in by.items():
         check(row["gaussians"] == by["trim3r", keep]["gaussians"], f"{name} at {keep} %: the count of trim3r")
         check((row["head"], row["bits"], row["refine"]) == ("small", "8", by["trim3r", keep]["refine"]), "settings")

@@ -11,6 +11,7 @@
 #include "cli/cli.h"
 #include "cli/files/part_files.h"
 #include "cli/files/recorded_frame.h"
+#include "evaluation/seen.h"
 #include "pictures/metrics.h"
 #include "reconstruction/developed_frame.h"
 #include "reconstruction/reconstruction_error.h"
@@ -51,6 +52,7 @@ void evaluation_views_free(evaluation_views *views)
 {
     free(views->target.rgb);
     free(views->target.mask);
+    free(views->seen);
     for (uint32_t v = 0; v < views->context_count; v++) {
         free(views->context[v].rgb);
         free(views->context[v].mask);
@@ -97,17 +99,66 @@ static int make_pictures(evaluation_views *views, const evaluation_case *what, r
     return code;
 }
 
+/* Reads the depth of frame `index` at the working size; depth is allocated. */
+static int read_depth(seen_view *view, uint16_t **depth, const evaluation_views *views, const evaluation_case *what,
+                      uint32_t index, const evaluation_picture *picture)
+{
+    size_t pixels = (size_t)views->width * views->height;
+    uint8_t *rgb = malloc(pixels * 3);
+    *depth = calloc(pixels, sizeof **depth);
+    t3r_camera camera;
+    t3r_capture_frame frame;
+    int code = rgb == NULL || *depth == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
+                                             : recorded_frame_read(what->recording, what->path, index, &frame);
+    if (code == CLI_OK) {
+        *view = (seen_view){&picture->camera, *depth, ldexp((double)frame.frame.depth_unit_q40, -40)};
+        code = developed_capture(&frame, what->path, index, views->width, views->height, rgb, *depth, &camera);
+    }
+    free(rgb);
+    return code;
+}
+
+/* Marks the target's pixels that a context view saw too; every frame has a depth of its own. */
+static int make_seen(evaluation_views *views, const evaluation_case *what)
+{
+    uint16_t *depth[1 + T3R_MAX_VIEWS] = {NULL};
+    seen_view view[1 + T3R_MAX_VIEWS];
+    int code = read_depth(&view[0], &depth[0], views, what, what->target, &views->target);
+    for (uint32_t v = 0; v < views->context_count && code == CLI_OK; v++) {
+        code = read_depth(&view[1 + v], &depth[1 + v], views, what, what->context[v], &views->context[v]);
+    }
+    views->seen = code == CLI_OK ? malloc((size_t)views->width * views->height) : NULL;
+    if (views->seen != NULL) {
+        seen_mask(views->seen, views->width, views->height, &view[0], &view[1], views->context_count);
+    } else if (code == CLI_OK) {
+        code = cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    for (uint32_t v = 0; v <= views->context_count; v++) {
+        free(depth[v]);
+    }
+    return code;
+}
+
+/* Whether a frame has a depth of its own. */
+static int has_depth(const evaluation_case *what, uint32_t index, bool *has)
+{
+    t3r_capture_frame frame;
+    int code = recorded_frame_read(what->recording, what->path, index, &frame);
+    *has = code == CLI_OK && frame.frame.depth != NULL;
+    return code;
+}
+
 /* Whether every context frame has a depth of its own. */
 static int have_depth(const evaluation_case *what, bool *all)
 {
     *all = true;
     for (uint32_t v = 0; v < what->context_count; v++) {
-        t3r_capture_frame frame;
-        int code = recorded_frame_read(what->recording, what->path, what->context[v], &frame);
+        bool has;
+        int code = has_depth(what, what->context[v], &has);
         if (code != CLI_OK) {
             return code;
         }
-        *all = *all && frame.frame.depth != NULL;
+        *all = *all && has;
     }
     return CLI_OK;
 }
@@ -117,8 +168,11 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     /* all points of the raw depth with the plain analytic head for every comparison; the sensor's depth if all
      * frames have it */
     reconstruction_options options = *settings;
-    bool sensed;
+    bool sensed, target_sensed = false;
     int looked = have_depth(what, &sensed);
+    if (looked == CLI_OK) {
+        looked = has_depth(what, what->target, &target_sensed);
+    }
     if (looked != CLI_OK) {
         return looked;
     }
@@ -154,6 +208,9 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     views->height = r.config.height;
     code = make_pictures(views, what, &r);
     reconstruction_close(&r);
+    if (code == CLI_OK && sensed && target_sensed && !what->planar) {
+        code = make_seen(views, what);
+    }
     if (code != CLI_OK) {
         evaluation_views_free(views);
     }
@@ -196,6 +253,7 @@ static int score(evaluation_row *row, uint8_t *render, uint8_t *rgb, uint16_t *a
         return CLI_OK;
     }
     row->value[EVALUATION_PSNR] = metric_psnr(target->rgb, render, target->mask, w, h);
+    row->value[EVALUATION_PSNR_SEEN] = views->seen != NULL ? metric_psnr(target->rgb, render, views->seen, w, h) : NAN;
     double sum = 0;
     for (uint32_t v = 0; v < views->context_count; v++) {
         code = evaluation_draw(r, &views->context[v].camera, views, rgb, alpha);

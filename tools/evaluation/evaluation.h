@@ -45,6 +45,7 @@ typedef struct evaluation_picture {
 typedef struct evaluation_views {
     uint32_t width, height;
     evaluation_picture target;
+    uint8_t *seen; /* width x height, 255 = a context view saw the surface too (seen.h); NULL = depth is missing */
     evaluation_picture context[T3R_MAX_VIEWS];
     uint32_t context_count;
     method_source source; /* shared by the rows of a method */
@@ -65,6 +66,7 @@ typedef enum evaluation_value {
     EVALUATION_SHARP,
     EVALUATION_HOLES,        /* share of mask pixels with transmittance above 1/2 */
     EVALUATION_PSNR_ALL,     /* all pixels over black, dB */
+    EVALUATION_PSNR_SEEN,    /* pixels whose surface a context view saw, over black, dB */
     EVALUATION_CONTEXT_PSNR, /* mean over the context views on their masks, dB */
     EVALUATION_PERCEPTUAL,   /* FLIP on the mask */
     EVALUATION_BUILD_MS,  /* frames to scene: the image stage and all later steps, including scoring and fine-tuning */

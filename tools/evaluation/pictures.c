@@ -52,6 +52,9 @@ int evaluation_write_views(const char *folder, const evaluation_views *views, co
     if (code == CLI_OK) {
         code = write_png(folder, "mask.png", views, 1, views->target.mask);
     }
+    if (code == CLI_OK && views->seen != NULL) {
+        code = write_png(folder, "seen.png", views, 1, views->seen);
+    }
     for (uint32_t v = 0; v < views->context_count && code == CLI_OK; v++) {
         char name[] = "context_a.png";
         name[strlen("context_")] = (char)('a' + v); /* at most 16 */
