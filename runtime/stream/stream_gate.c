@@ -7,6 +7,7 @@
 #include "stream_map.h"
 
 #define SAMPLES_MOST 4096u /* Gaussians compared */
+#define GAUSSIANS_LEAST 32 /* fewer say nothing */
 #define LEVEL_LEAST 16
 #define LEVEL_MOST 239
 #define DETAIL_REACH 4 /* pixels: distance of the coarse differences */
@@ -72,11 +73,11 @@ static void add_pair(likeness *l, int32_t x, int32_t y)
     l->xy += x * y;
 }
 
-/* Returns the correlation, 0..256; 256 if the Gaussians differ by less than 8 levels. */
+/* Returns the correlation, 0..256; 256 if there are few pairs, or the Gaussians differ by less than 8 levels. */
 static uint32_t correlation_q8(const likeness *l)
 {
     const int64_t of_x = l->count * l->xx - l->x * l->x, of_y = l->count * l->yy - l->y * l->y;
-    if (of_x < 64 * l->count * l->count) {
+    if (l->count < GAUSSIANS_LEAST || of_x < 64 * l->count * l->count) {
         return 256;
     }
     const int64_t roots = (int64_t)t3r_isqrt64((uint64_t)of_x) * t3r_isqrt64((uint64_t)of_y);
@@ -89,7 +90,7 @@ typedef struct comparison {
     uint32_t levelled;               /* well exposed ones of them */
     uint32_t seen_last, recent;      /* seen by the last keyframe; of these in the picture */
     uint32_t hidden;                 /* of these behind something near, or without a depth */
-    likeness shown, covered;         /* colours of the agreeing ones, and of the hidden ones */
+    likeness shown, covered;         /* colours of the agreeing ones that are not clipped, and of the hidden ones */
 } comparison;
 
 /* Counts the log ratio of the pixel's green to that of a well exposed Gaussian. */
@@ -130,7 +131,9 @@ static void compare_gaussian(const t3r_pointmap *frame, const t3r_gaussian *g, c
     all->recent += recent;
     if (measured && t3r_is_one_surface(surface_q20, at.z_q20, 16)) {
         all->agreeing++;
-        add_pair(&all->shown, luma, luma_of(view, at.pixel));
+        if (luma <= LEVEL_MOST && luma_of(view, at.pixel) <= LEVEL_MOST) { /* clipped colours correlate with nothing */
+            add_pair(&all->shown, luma, luma_of(view, at.pixel));
+        }
         count_ratio(view->colour[1][at.pixel], g->colour_q7[1], bins, &all->levelled);
     } else if (t3r_seen_through(frame, &at, false)) {
         all->contradicted++;
@@ -177,7 +180,6 @@ void t3r_gate_measure(const t3r_runtime *rt, const t3r_view *view, t3r_stream_re
 /* Chosen on the training scenes with depth and on the built-in room. */
 #define LEAST_DEPTH_Q8 4u      /* 1/64 of the pixels */
 #define UNLIT_Q8 240u          /* 15/16 of the pixels are too dark, or too bright */
-#define GAUSSIANS_LEAST 32u    /* fewer say nothing */
 #define HIDDEN_Q8 160u         /* 5/8 of what the last keyframe saw */
 #define HIDDEN_LIKENESS_Q8 80u /* 5/16 */
 #define IN_VIEW_Q8 128u        /* half of it */
