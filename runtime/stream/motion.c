@@ -37,23 +37,29 @@ static void multiply(const int32_t a[4], const int32_t b[4], int32_t out_q30[4])
     normalise(product, out_q30);
 }
 
-t3r_motion t3r_motion_between(const t3r_camera *from, const t3r_camera *to, const t3r_scene_frame *frame)
+static bool find_pose(const t3r_camera *camera, const t3r_scene_frame *frame, t3r_pose *pose)
 {
-    t3r_motion motion;
+    return t3r_camera_check(camera, camera->width, camera->height) == T3R_OK &&
+           t3r_pose_in_scene(camera, frame, pose) == T3R_OK;
+}
+
+bool t3r_motion_between(const t3r_camera *from, const t3r_camera *to, const t3r_scene_frame *frame, t3r_motion *motion)
+{
     t3r_pose pose_from, pose_to;
     int32_t back[4], ahead[4];
-    (void)t3r_pose_in_scene(from, frame, &pose_from); /* both are in range */
-    (void)t3r_pose_in_scene(to, frame, &pose_to);
-    memcpy(motion.from_q20, pose_from.position_q20, sizeof motion.from_q20);
-    memcpy(motion.to_q20, pose_to.position_q20, sizeof motion.to_q20);
+    if (!find_pose(from, frame, &pose_from) || !find_pose(to, frame, &pose_to)) {
+        return false;
+    }
+    memcpy(motion->from_q20, pose_from.position_q20, sizeof motion->from_q20);
+    memcpy(motion->to_q20, pose_to.position_q20, sizeof motion->to_q20);
     normalise(from->rotation_q30, back);
     normalise(to->rotation_q30, ahead);
     for (int i = 1; i < 4; i++) {
         back[i] = -back[i];
     }
-    multiply(ahead, back, motion.quaternion_q30);
-    t3r_camera_rotation(motion.quaternion_q30, motion.rotation_q30);
-    return motion;
+    multiply(ahead, back, motion->quaternion_q30);
+    t3r_camera_rotation(motion->quaternion_q30, motion->rotation_q30);
+    return true;
 }
 
 /* Moves a point: |coordinate| <= 2^30, so offsets are at most 2^31 and sums below 2^63. */
@@ -75,7 +81,9 @@ void t3r_move_camera(const t3r_motion *motion, const t3r_scene_frame *frame, t3r
     int32_t turned[4];
     int64_t moved_q20[3];
     t3r_pose pose;
-    (void)t3r_pose_in_scene(camera, frame, &pose); /* live and remembered keyframes are in range */
+    if (!find_pose(camera, frame, &pose)) {
+        return;
+    }
     move_point(motion, pose.position_q20, moved_q20);
     for (int i = 0; i < 3; i++) {
         const int64_t offset_q32 = t3r_scale64(t3r_clamp64(moved_q20[i], -most, most), shift);

@@ -3,6 +3,8 @@
 #ifndef T3R_MOTION_H
 #define T3R_MOTION_H
 
+#include <stdbool.h>
+
 #include "core/scene_frame.h"
 #include "stream_map.h"
 #include "trim3r.h"
@@ -14,10 +16,12 @@ typedef struct t3r_motion {
     int32_t to_q20[3];         /* its place afterwards */
 } t3r_motion;
 
-/* Returns the motion from one checked camera to another. Both must be in the frame's range. */
-t3r_motion t3r_motion_between(const t3r_camera *from, const t3r_camera *to, const t3r_scene_frame *frame);
+/* Computes the motion from one camera to another. Returns false if one of them is not valid, or out of the frame's
+ * range: a restored arena may hold any cameras. */
+bool t3r_motion_between(const t3r_camera *from, const t3r_camera *to, const t3r_scene_frame *frame, t3r_motion *motion);
 
-/* Moves a camera. If it leaves the range of positions, it stops at the bound, far out of the frame's range. */
+/* Moves a camera. If it leaves the range of positions, it stops at the bound, far out of the frame's range. One that is
+ * not valid, or out of the frame's range, stays as it is. */
 void t3r_move_camera(const t3r_motion *motion, const t3r_scene_frame *frame, t3r_camera *camera);
 
 /* Moves the Gaussians and turns them. Removes those that leave the frame's range. */

@@ -26,18 +26,22 @@ typedef struct candidate {
     int32_t votes;
 } candidate;
 
-/* Returns the frame's camera after such a step, and after the motion that poses give from then on. */
-static t3r_camera camera_after(const t3r_runtime *rt, uint32_t slot, step taken)
+/* Moves the frame's camera to where it is after such a step, and after the motion that poses give from then on. Returns
+ * false if that is not known. */
+static bool move_by_step(const t3r_runtime *rt, uint32_t slot, step taken, t3r_camera *camera)
 {
     const t3r_camera last = rt->camera[(slot + rt->config.views - 1) % rt->config.views];
-    t3r_camera first = rt->camera[slot], camera = rt->camera[slot];
+    t3r_camera first = *camera;
+    t3r_motion back;
     t3r_place_camera(&first, &rt->gate.contradicts_from);
     if (taken == TURNED_AS_GIVEN) {
         memcpy(first.rotation_q30, last.rotation_q30, sizeof first.rotation_q30);
     }
-    const t3r_motion back = t3r_motion_between(&first, &last, &rt->frame);
-    t3r_move_camera(&back, &rt->frame, &camera);
-    return camera;
+    if (!t3r_motion_between(&first, &last, &rt->frame, &back)) {
+        return false;
+    }
+    t3r_move_camera(&back, &rt->frame, camera);
+    return true;
 }
 
 /* Returns 1 if the frame shows the Gaussian, -1 if it sees through it, else 0. */
@@ -69,20 +73,19 @@ static int32_t votes_of(const t3r_map *map, const t3r_pointmap *frame)
  * votes are those of none. */
 static void seek(t3r_runtime *rt, uint32_t slot, candidate *c)
 {
-    t3r_pose middle;
+    t3r_motion shift;
     c->votes = INT32_MIN;
-    if (t3r_pose_in_scene(&c->camera, &rt->frame, &middle) != T3R_OK) {
+    if (!t3r_motion_between(&c->camera, &c->camera, &rt->frame, &shift)) {
         return;
     }
     rt->camera[slot] = c->camera;
     t3r_view view = t3r_view_of(rt, slot);
     const t3r_pointmap frame = t3r_pointmap_of(&view, rt->frame.exponent);
     const t3r_map map = t3r_map_of(rt);
-    t3r_motion shift = t3r_motion_between(&c->camera, &c->camera, &rt->frame);
     for (int32_t at = 0; at < GRID_SIDE * GRID_SIDE * GRID_SIDE; at++) {
         const int32_t by[3] = {at % GRID_SIDE, at / GRID_SIDE % GRID_SIDE, at / (GRID_SIDE * GRID_SIDE)};
         for (int i = 0; i < 3; i++) {
-            view.pose.position_q20[i] = middle.position_q20[i] + (by[i] - GRID_HALF) * GRID_STEP_Q20;
+            view.pose.position_q20[i] = shift.from_q20[i] + (by[i] - GRID_HALF) * GRID_STEP_Q20;
         }
         const int32_t votes = votes_of(&map, &frame);
         if (votes > c->votes) {
@@ -97,16 +100,17 @@ static void seek(t3r_runtime *rt, uint32_t slot, candidate *c)
  * not on the stack later. */
 static __attribute__((noinline)) bool guess(t3r_runtime *rt, uint32_t slot)
 {
-    candidate best = {.votes = INT32_MIN};
     const t3r_camera given = rt->camera[slot];
+    candidate best = {.camera = given, .votes = INT32_MIN};
     t3r_pose pose;
     for (step taken = STOOD_STILL; taken < STEPS; taken++) {
-        rt->camera[slot] = given;
-        candidate c = {.camera = camera_after(rt, slot, taken)};
-        seek(rt, slot, &c);
-        best = c.votes > best.votes ? c : best;
+        candidate c = {.camera = given};
+        if (move_by_step(rt, slot, taken, &c.camera)) {
+            seek(rt, slot, &c);
+            best = c.votes > best.votes ? c : best;
+        }
     }
-    rt->camera[slot] = best.votes == INT32_MIN ? given : best.camera;
+    rt->camera[slot] = best.camera;
     return best.votes > INT32_MIN && t3r_pose_in_scene(&rt->camera[slot], &rt->frame, &pose) == T3R_OK;
 }
 
@@ -148,9 +152,9 @@ t3r_status t3r_realign(t3r_runtime *rt, uint32_t slot, t3r_stream_report *report
     if (status == T3R_OK) {
         t3r_stream_report aligned = *report;
         const t3r_view view = t3r_view_of(rt, slot);
+        t3r_motion motion;
         t3r_gate_measure(rt, &view, &aligned);
-        if (t3r_gate_agrees(&aligned, report)) {
-            const t3r_motion motion = t3r_motion_between(&rt->camera[slot], &given, &rt->frame);
+        if (t3r_gate_agrees(&aligned, report) && t3r_motion_between(&rt->camera[slot], &given, &rt->frame, &motion)) {
             move(rt, &motion, slot);
             *report = aligned;
             report->realigned = 1;

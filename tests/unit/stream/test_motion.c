@@ -48,7 +48,8 @@ TEST(from_camera_to_camera)
         const t3r_scene_frame frame = {{INT64_C(5) << 32, -(INT64_C(3) << 32), 7}, exponent};
         const t3r_camera a = camera_at(5 + unit, -3, unit / 3, 0.2, -0.5, 0.6);
         const t3r_camera b = camera_at(5 - 2 * unit, -3 + unit, 0, -1.3, 0.9, 1.4);
-        const t3r_motion there = t3r_motion_between(&a, &b, &frame), back = t3r_motion_between(&b, &a, &frame);
+        t3r_motion there, back;
+        assert_true(t3r_motion_between(&a, &b, &frame, &there) && t3r_motion_between(&b, &a, &frame, &back));
         t3r_camera moved = a;
         t3r_move_camera(&there, &frame, &moved);
         assert_true(off(&moved, &b) < 4e-6 * fmax(unit, 1));
@@ -65,7 +66,7 @@ TEST(a_camera_that_leaves)
     t3r_motion motion;
     t3r_pose pose;
     from.position_q32[0] = to.position_q32[0] = camera.position_q32[0] = frame.origin_q32[0];
-    motion = t3r_motion_between(&from, &to, &frame);
+    assert_true(t3r_motion_between(&from, &to, &frame, &motion));
     motion.to_q20[0] = T3R_POSITION_MOST_Q20;
     motion.to_q20[1] = -T3R_POSITION_MOST_Q20;
     t3r_move_camera(&motion, &frame, &camera);
@@ -73,12 +74,34 @@ TEST(a_camera_that_leaves)
     assert_int_equal(t3r_pose_in_scene(&camera, &frame, &pose), T3R_ERR_CAMERA);
 }
 
+/* Cameras of a restored arena may be anything: those that are not valid or far away have no motion, and stay. */
+TEST(any_cameras)
+{
+    const t3r_scene_frame frame = {{0, 0, 0}, 0};
+    const t3r_camera valid = camera_at(0, 0, 0, 0.1, 0.2, 1), far = camera_at(5000, 0, 0, 0, 0, 1);
+    const t3r_camera broken = {.fx_q16 = 100 << 16, .fy_q16 = 100 << 16};
+    const t3r_camera *cameras[] = {&valid, &far, &broken};
+    t3r_motion motion;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            assert_int_equal(t3r_motion_between(cameras[i], cameras[k], &frame, &motion), i + k == 0);
+        }
+    }
+    assert_true(t3r_motion_between(&valid, &valid, &frame, &motion));
+    for (int i = 1; i < 3; i++) {
+        t3r_camera moved = *cameras[i];
+        t3r_move_camera(&motion, &frame, &moved);
+        assert_memory_equal(&moved, cameras[i], sizeof moved);
+    }
+}
+
 /* Gaussians move and turn: position and covariance are those of real numbers, and what leaves the range is dropped. */
 TEST(the_map_moves)
 {
     const t3r_scene_frame frame = {{0, 0, 0}, 0};
     const t3r_camera a = camera_at(0.5, -0.25, 2, 0.4, 0.1, 1), b = camera_at(-1, 0.75, 1, -0.7, 0.6, 1);
-    const t3r_motion motion = t3r_motion_between(&a, &b, &frame);
+    t3r_motion motion;
+    assert_true(t3r_motion_between(&a, &b, &frame, &motion));
     t3r_gaussian g[2] = {{.position_q20 = {1 << 20, -(3 << 19), 5 << 18},
                           .factor = {16000, -700, 3, 250, 9000, -4000, 11, 12, 13000},
                           .factor_exponent = -20}};
