@@ -17,10 +17,10 @@
 
 /* --- guesses ---------------------------------------------------------------------------------------------------- */
 
-/* What the camera did between the last keyframe and the first frame that contradicts the map. */
+/* The step of the camera between the last keyframe and the first frame that contradicts the map. */
 typedef enum step { STOOD_STILL, TURNED_AS_GIVEN, STEPS } step;
 
-/* A guess of where the frame's camera is in the map's frame, and what speaks for it. */
+/* A guess of the frame's camera in the map's frame, and its votes. */
 typedef struct candidate {
     t3r_camera camera;
     int32_t votes;
