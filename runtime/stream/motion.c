@@ -25,7 +25,7 @@ static void normalise(const int32_t q_q30[4], int32_t out_q30[4])
 static void multiply(const int32_t a[4], const int32_t b[4], int32_t out_q30[4])
 {
     static const uint8_t other[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
-    static const int8_t sign[4][4] = {{1, -1, -1, -1}, {1, 1, -1, 1}, {1, 1, 1, -1}, {1, -1, 1, 1}};
+    static const int8_t sign[4][4] = {{1, -1, -1, -1}, {1, 1, 1, -1}, {1, -1, 1, 1}, {1, 1, -1, 1}};
     int32_t product[4];
     for (int i = 0; i < 4; i++) {
         int64_t sum = 0;

@@ -114,9 +114,14 @@ TEST(the_map_moves)
     t3r_move_map(&motion, &map);
     assert_int_equal(map.count, 1);
     assert_int_equal(records[0].key, 7);
-    double r[9], f[9], want[9];
+    double r[9] = {0}, f[9], want[9];
+    int32_t from_q30[9], to_q30[9];
+    t3r_camera_rotation(a.rotation_q30, from_q30);
+    t3r_camera_rotation(b.rotation_q30, to_q30);
     for (int i = 0; i < 9; i++) {
-        r[i] = motion.rotation_q30[i] / ONE_Q30;
+        for (int k = 0; k < 3; k++) { /* the second rotation times the first one's transpose */
+            r[i] += to_q30[i / 3 * 3 + k] / ONE_Q30 * (from_q30[i % 3 * 3 + k] / ONE_Q30);
+        }
         f[i] = ldexp(old.factor[i], old.factor_exponent);
     }
     for (int i = 0; i < 3; i++) {
