@@ -29,14 +29,11 @@ if(T3R_V4L2_THERE)
   list(APPEND T3R_ADAPTER_DEFINITIONS T3R_V4L2)
 endif()
 
-if(T3R_MJPEG)
-  pkg_check_modules(T3R_JPEG QUIET IMPORTED_TARGET libjpeg)
-endif()
-t3r_adapter(MJPEG "${T3R_JPEG_FOUND}" libjpeg)
+t3r_adapter(MJPEG "${JPEG_FOUND}" libjpeg)
 if(T3R_MJPEG_THERE)
   list(APPEND T3R_ADAPTER_SOURCES capture/mjpeg.c)
   list(APPEND T3R_ADAPTER_DEFINITIONS T3R_MJPEG)
-  list(APPEND T3R_ADAPTER_LIBS PkgConfig::T3R_JPEG)
+  list(APPEND T3R_ADAPTER_LIBS PkgConfig::JPEG)
 endif()
 
 # C++ is enabled only if a library that needs it was found.

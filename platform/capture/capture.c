@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Shared by all sources: counting, events, defaults. */
-#include "capture.h"
+#include "trim3r_capture.h"
 
 #include <inttypes.h>
 #include <stdarg.h>

@@ -3,7 +3,7 @@
 #ifndef T3R_PLATFORM_CAPTURE_ADAPTER_H
 #define T3R_PLATFORM_CAPTURE_ADAPTER_H
 
-#include "capture.h"
+#include "trim3r_capture.h"
 
 #define T3R_CAPTURE_NOTE_BYTES 512
 

@@ -5,6 +5,7 @@
 
 #include "capture_adapter.h"
 #include "host/module.h"
+#include "host/program_check.h"
 #include "host/reason.h"
 #include "host/text.h"
 
@@ -102,9 +103,13 @@ static t3r_capture *refuse_unknown(const char *what, char *error, size_t error_b
     return NULL;
 }
 
-t3r_capture *t3r_capture_open(const char *source, const t3r_capture_settings *settings, char *error, size_t error_bytes)
+t3r_capture *t3r_capture_open_as(t3r_program program, const char *source, const t3r_capture_settings *settings,
+                                 char *error, size_t error_bytes)
 {
     t3r_capture_settings filled;
+    if (!t3r_program_fits(program, t3r_capture_program(), error, error_bytes)) {
+        return NULL;
+    }
     const char *wrong = t3r_capture_settings_fill(settings, &filled);
     if (wrong != NULL) {
         t3r_reason(error, error_bytes, "%s", wrong);

@@ -3,8 +3,8 @@
 #ifndef T3R_PLATFORM_LIBCAMERA_H
 #define T3R_PLATFORM_LIBCAMERA_H
 
-#include "capture.h"
 #include "libcamera_shim.h"
+#include "trim3r_capture.h"
 
 /* Opens a camera with the given module. Settings must be filled (capture_adapter.h). */
 t3r_capture *t3r_libcamera_open_on(const t3r_libcamera_shim *shim, const char *camera,

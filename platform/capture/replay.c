@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "capture_adapter.h"
+#include "host/program_check.h"
 #include "host/reason.h"
 #include "recording/recording.h"
 
@@ -99,9 +100,11 @@ t3r_capture *t3r_replay_open_repeated(const char *path, uint32_t times, char *er
     return &self->capture;
 }
 
-t3r_capture *t3r_replay_open(const char *path, char *error, size_t error_bytes)
+t3r_capture *t3r_replay_open_as(t3r_program program, const char *path, char *error, size_t error_bytes)
 {
-    return t3r_replay_open_repeated(path, 1, error, error_bytes);
+    return t3r_program_fits(program, t3r_capture_program(), error, error_bytes)
+               ? t3r_replay_open_repeated(path, 1, error, error_bytes)
+               : NULL;
 }
 
 static t3r_capture *open_source(const char *path, const t3r_capture_settings *settings, char *error, size_t error_bytes)

@@ -3,7 +3,7 @@
 #ifndef T3R_PLATFORM_V4L2_H
 #define T3R_PLATFORM_V4L2_H
 
-#include "capture.h"
+#include "trim3r_capture.h"
 #include "v4l2_system.h"
 
 /* Opens a device with these system calls instead of Linux's; the table is copied. Settings must be filled

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "capture.h"
+#include "trim3r_capture.h"
 #include "v4l2_format.h"
 #include "v4l2_system.h"
 

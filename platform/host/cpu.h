@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Features of the current processor that its operating system supports as well, for t3r_set_cpu(). */
+/* Features of processors as text; trim3r_host.h has those of the current one. */
 #ifndef T3R_PLATFORM_CPU_H
 #define T3R_PLATFORM_CPU_H
 
@@ -7,8 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Returns T3R_CPU_... bits; 0 on an unknown processor. */
-uint32_t t3r_cpu_features(void);
+#include "trim3r_host.h"
 
 /* Writes the names of the features in a mask, such as "avx2 avx512", cut to fit; "none" for 0. */
 void t3r_cpu_describe(uint32_t features, char *text, size_t text_bytes);

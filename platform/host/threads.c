@@ -3,7 +3,7 @@
  *
  * A build has hundreds of jobs of a few hundred microseconds. Waking a thread takes about a tenth of that, far more in
  * a virtual machine. So a waiting thread spins for a while before it sleeps. */
-#include "threads.h"
+#include "trim3r_host.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -8,17 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "trim3r.h"
-
-/* A camera in doubles, unchanged from its source. */
-typedef struct t3r_recorded_camera {
-    uint32_t width, height;
-    double fx, fy, cx, cy; /* pixels; pixel (0, 0) is the centre of the top-left pixel */
-    t3r_distortion distortion;
-    double coefficients[5];
-    double position[3]; /* world units */
-    double rotation[4]; /* w x y z, camera to world */
-} t3r_recorded_camera;
+#include "trim3r_host.h"
 
 /* Converts a double's bits; false for NaN and values out of range. */
 bool t3r_fixed_focal(uint64_t f64, int32_t *q16);

@@ -7,8 +7,8 @@
 #ifndef T3R_PLATFORM_FRAME_READER_H
 #define T3R_PLATFORM_FRAME_READER_H
 
-#include "captured_frame.h"
 #include "messages/ros_messages.h"
+#include "trim3r_capture.h"
 
 /* A source of bytes: flash, a card, a debugger's host. */
 typedef struct t3r_byte_source {

@@ -7,11 +7,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "captured_frame.h"
 #include "host/sink.h"
 #include "host/text.h"
 #include "mcap/packer.h"
 #include "messages/fixed_camera.h"
+#include "trim3r_capture.h"
 
 struct t3r_ros_image; /* messages/ros_messages.h */
 struct t3r_ros_camera_info;

@@ -249,7 +249,7 @@ TEST(turn_up)
         scene_file scene, back;
         make_scene(&scene, 0);
         const char *path = path_of(&formats[k], "up");
-        must_write(path, &scene, SCENE_FILE_UP * SCENE_UP_Z);
+        must_write(path, &scene, SCENE_FILE_UP * T3R_UP_Z);
         must_read(path, &back);
         const bool flipped = strcmp(formats[k].suffix, ".spz") == 0 || strcmp(formats[k].suffix, ".glb") == 0;
         for (uint32_t i = 0; i < COUNT; i += 50) { /* z was up */

@@ -125,9 +125,9 @@ TEST(reads_back_what_it_wrote)
 {
     const double none[3] = {0}, origin[3] = {5 + 12345 / 4294967296.0, -1.5, 77 / 4294967296.0};
     round_trip(0, none, 0);
-    round_trip(SCENE_FILE_COMMENTS, none, 1);
-    round_trip(SCENE_FILE_LOCAL, origin, 0);
-    round_trip(SCENE_FILE_LOCAL | SCENE_FILE_COMMENTS, none, 1);
+    round_trip(T3R_SCENE_COMMENTS, none, 1);
+    round_trip(T3R_SCENE_LOCAL, origin, 0);
+    round_trip(T3R_SCENE_LOCAL | T3R_SCENE_COMMENTS, none, 1);
 }
 
 TEST(decomposes_shapes)

@@ -60,7 +60,7 @@ static void check_turn(const scene_turn *turn)
 TEST(turns_all_alike)
 {
     for (int axes = SCENE_AXES_AS_THEY_ARE; axes <= SCENE_AXES_LAST; axes++) {
-        for (int up = SCENE_UP_UNKNOWN; up <= SCENE_UP_MZ; up++) {
+        for (int up = T3R_UP_UNKNOWN; up <= T3R_UP_MZ; up++) {
             const scene_turn turn = scene_turn_between(SCENE_AXES_AS_THEY_ARE, (scene_axes)axes, (scene_up)up);
             check_turn(&turn);
         }
@@ -87,7 +87,7 @@ TEST(points_up)
                {"-y", {0, -1, 0}}, {"z", {0, 0, 1}},   {"-z", {0, 0, -1}}};
     for (size_t i = 0; i < sizeof ups / sizeof ups[0]; i++) {
         const scene_up up = scene_up_named(ups[i].name);
-        assert_int_not_equal(up, SCENE_UP_UNKNOWN);
+        assert_int_not_equal(up, T3R_UP_UNKNOWN);
         static const scene_axes written[] = {SCENE_AXES_AS_THEY_ARE, SCENE_AXES_RUB, SCENE_AXES_LUF};
         for (int k = 0; k < 3; k++) {
             const scene_turn turn = scene_turn_between(SCENE_AXES_AS_THEY_ARE, written[k], up);
@@ -96,8 +96,8 @@ TEST(points_up)
             assert_true(turned[0] == 0 && turned[1] == 1 && turned[2] == 0);
         }
     }
-    assert_int_equal(scene_up_named("w"), SCENE_UP_UNKNOWN);
-    assert_int_equal(scene_up_named(""), SCENE_UP_UNKNOWN);
+    assert_int_equal(scene_up_named("w"), T3R_UP_UNKNOWN);
+    assert_int_equal(scene_up_named(""), T3R_UP_UNKNOWN);
 }
 
 /* Reading and writing a file changes nothing; without --up, a scene has x right, y down and z forward. */
@@ -106,8 +106,8 @@ TEST(knows_the_axes_of_formats)
     const double point[3] = {1, 2, 3}, rub[3] = {1, -2, -3}, luf[3] = {-1, -2, 3}, rbu[3] = {1, 3, 2},
                  ldb[3] = {-1, 2, -3};
     for (int axes = SCENE_AXES_AS_THEY_ARE; axes <= SCENE_AXES_LAST; axes++) {
-        const scene_turn to = scene_turn_between(SCENE_AXES_AS_THEY_ARE, (scene_axes)axes, SCENE_UP_UNKNOWN),
-                         from = scene_turn_between((scene_axes)axes, SCENE_AXES_AS_THEY_ARE, SCENE_UP_UNKNOWN);
+        const scene_turn to = scene_turn_between(SCENE_AXES_AS_THEY_ARE, (scene_axes)axes, T3R_UP_UNKNOWN),
+                         from = scene_turn_between((scene_axes)axes, SCENE_AXES_AS_THEY_ARE, T3R_UP_UNKNOWN);
         double there[3], back[3];
         turn_vector(&to, point, there);
         turn_vector(&from, there, back);
@@ -120,7 +120,7 @@ TEST(knows_the_axes_of_formats)
         assert_memory_equal(there, want, sizeof there);
     }
     const int64_t origin[3] = {INT64_C(1) << 61, -5, 7};
-    const scene_turn turn = scene_turn_between(SCENE_AXES_AS_THEY_ARE, SCENE_AXES_RUB, SCENE_UP_UNKNOWN);
+    const scene_turn turn = scene_turn_between(SCENE_AXES_AS_THEY_ARE, SCENE_AXES_RUB, T3R_UP_UNKNOWN);
     int64_t turned[3];
     scene_turn_origin(&turn, origin, turned);
     assert_true(turned[0] == origin[0] && turned[1] == 5 && turned[2] == -7);

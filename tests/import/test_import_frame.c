@@ -119,7 +119,7 @@ TEST(test_the_crop_is_the_largest)
 {
     for (uint32_t w = 2; w < 200; w += 7) {
         for (uint32_t h = 2; h < 200; h += 5) {
-            import_crop c = import_largest_crop(w, h, 4, 3);
+            t3r_crop c = import_largest_crop(w, h, 4, 3);
             assert_true(c.width == w || c.height == h);
             assert_true(c.x + c.width <= w && c.y + c.height <= h);
             double off_aspect = fabs((double)c.width * 3 - (double)c.height * 4);
@@ -127,7 +127,7 @@ TEST(test_the_crop_is_the_largest)
             assert_true(w - c.width - 2 * c.x <= 1 && h - c.height - 2 * c.y <= 1);
         }
     }
-    import_crop c = import_largest_crop(540, 360, 256, 256);
+    t3r_crop c = import_largest_crop(540, 360, 256, 256);
     assert_int_equal(c.x, 90);
     assert_int_equal(c.width, 360);
     assert_int_equal(c.height, 360);

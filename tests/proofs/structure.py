@@ -22,11 +22,11 @@ ROOMS = ("include", "core", "kernels", "state", "depth", "image", "pointmap", "s
 MAY = {"runtime/" + room: {"runtime/" + below for below in ROOMS[:at]} for at, room in enumerate(ROOMS)}
 RUNTIME = set(MAY)
 MAY["quant"] = RUNTIME
-# Rooms of the platform, in the same way.
-PLATFORM = ("host", "mcap", "messages", "recording", "capture")
+# Rooms of the platform, in the same way; `platform` itself has the headers that are installed.
+PLATFORM = ("platform", *(f"platform/{room}" for room in ("host", "mcap", "messages", "recording", "capture")))
 for at, room in enumerate(PLATFORM):
-    MAY["platform/" + room] = RUNTIME | {"platform/" + below for below in PLATFORM[:at]}
-PLATFORM = {"platform/" + room for room in PLATFORM}
+    MAY[room] = RUNTIME | set(PLATFORM[:at])
+PLATFORM = set(PLATFORM)
 MAY["platform/baremetal"] = RUNTIME | PLATFORM | {"quant"}
 
 
@@ -38,12 +38,12 @@ def tool(name, *uses, base=PLATFORM):
 
 
 tool("cli")
-tool("geometry", base=())
+tool("geometry")
 tool("room")
 tool("pictures", "cli")
 tool("posing", "cli", "geometry")
 tool("import", "pictures", "posing")
-tool("scene", "pictures", "geometry")
+tool("scene", "cli", "geometry")
 tool("reconstruction", "import", "scene", base=PLATFORM | {"quant"})
 tool("capture", "reconstruction")
 tool("viewer", "reconstruction")

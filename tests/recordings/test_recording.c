@@ -6,13 +6,13 @@
 #include <unistd.h>
 
 #include "bag.h"
-#include "capture/capture.h"
 #include "mcap/chunk_packer.h"
 #include "mcap/mcap_reader.h"
 #include "messages/fixed_double.h"
 #include "messages/pixel_layout.h"
 #include "sample.h"
 #include "test.h"
+#include "trim3r_capture.h"
 
 static bag_bytes sample(t3r_pixel_format format, uint32_t storage)
 {

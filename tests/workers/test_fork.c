@@ -6,9 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "host/threads.h"
 #include "sanitized.h"
 #include "test.h"
+#include "trim3r_host.h"
 
 enum { THREADS = 4, COUNT = 1000, SECONDS = 30 };
 

@@ -4,8 +4,8 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "host/threads.h"
 #include "test.h"
+#include "trim3r_host.h"
 
 #define MOST 3000u
 

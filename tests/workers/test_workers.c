@@ -5,9 +5,9 @@
 #include "sanitized_cpu.h"
 #include "unit/unit.h"
 
-#include "host/threads.h"
 #include "room/room.h"
 #include "trim3r_heads.h"
+#include "trim3r_host.h"
 
 enum { WIDTH = 88, HEIGHT = 72, VIEWS = 3, BUDGET = VIEWS * WIDTH * HEIGHT / 8, KEYFRAMES = 4 };
 

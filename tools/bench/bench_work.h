@@ -9,10 +9,10 @@
 
 #include "bench/bench_points.h"
 #include "cli/options/processor_options.h"
-#include "host/threads.h"
 #include "planning/bench_views.h"
 #include "reconstruction/chosen_head.h"
 #include "reconstruction/stage_times.h"
+#include "trim3r_host.h"
 
 #define BENCH_SIDE 256u
 #define BENCH_VIEWS 2u

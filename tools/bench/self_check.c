@@ -5,9 +5,9 @@
 
 #include "cli/cli.h"
 #include "core/hash.h"
-#include "host/threads.h"
 #include "reconstruction/chosen_head.h"
 #include "room/room.h"
+#include "trim3r_host.h"
 
 enum { SIDE = 64, VIEWS = 2, BUDGET = 400, SEED = 1, PIXELS = SIDE * SIDE };
 

@@ -6,8 +6,8 @@
 
 #include <stdbool.h>
 
-#include "capture/capture.h"
 #include "recording/recording.h"
+#include "trim3r_capture.h"
 
 /* Returns the camera of a frame, with what is known of it; exact. */
 t3r_recorded_camera capture_camera_recorded(const t3r_capture_frame *frame);

@@ -4,8 +4,8 @@
 #ifndef TRIM3R_TOOLS_LIVE_BUILD_H
 #define TRIM3R_TOOLS_LIVE_BUILD_H
 
-#include "capture/capture.h"
 #include "reconstruction/reconstruction.h"
+#include "trim3r_capture.h"
 
 /* A context frame whose buffer had to go back to its driver. */
 typedef struct live_frame {

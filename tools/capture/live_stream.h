@@ -5,9 +5,9 @@
 
 #include <stdbool.h>
 
-#include "capture/capture.h"
 #include "reconstruction/live/live_map.h"
 #include "reconstruction/live/live_output.h"
+#include "trim3r_capture.h"
 
 typedef struct live_stream {
     live_map map;

@@ -6,10 +6,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "capture/capture.h"
 #include "cli/options/recording_options.h"
 #include "reconstruction/live/live_options.h"
 #include "reconstruction/reconstruction.h"
+#include "trim3r_capture.h"
 
 typedef struct capture_options {
     const char *source, *output, *poses, *pose_topic;

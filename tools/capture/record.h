@@ -8,9 +8,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "capture/capture.h"
 #include "cli/options/recording_options.h"
 #include "recording/recording_file.h"
+#include "trim3r_capture.h"
 
 typedef struct capture_record {
     const char *path;   /* of the first file; the n-th after it has -n before its suffix */

@@ -8,11 +8,11 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "capture/capture.h"
 #include "capture/live_build.h"
 #include "capture/live_stream.h"
 #include "capture/record.h"
 #include "import/poses/trajectory.h"
+#include "trim3r_capture.h"
 
 typedef struct capture_plan {
     const char *source;                    /* name for messages and the recording */

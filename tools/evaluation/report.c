@@ -280,7 +280,7 @@ static int finish_page(evaluation_report *report, const evaluation_row *means, u
     if (html_page_write(report->page, report->page_file.stream) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s: out of memory for the page", report->to.page);
     }
-    if (whole_file_commit(&report->page_file, NULL, error, sizeof error) != 0) {
+    if (t3r_whole_file_commit(&report->page_file, NULL, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     return CLI_OK;
@@ -329,7 +329,7 @@ int evaluation_report_close(evaluation_report *report, int code)
     }
     const int closed = csv_file_close(&report->csv, is_whole);
     code = code == CLI_OK ? closed : code;
-    whole_file_abandon(&report->page_file);
+    t3r_whole_file_abandon(&report->page_file);
     html_page_free(report->page);
     cJSON_Delete(report->refused);
     free(report->rows);

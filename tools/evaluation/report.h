@@ -27,7 +27,7 @@ typedef struct evaluation_report {
     evaluation_outputs to;
     csv_file csv;
     html_page *page;
-    whole_file page_file;
+    t3r_whole_file page_file;
     evaluation_row *rows; /* room for all */
     uint32_t row_count, row_total;
     uint32_t known_count;           /* how many of row_count were in the table already */

@@ -10,8 +10,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "capture/capture.h"
 #include "host/cpu.h"
+#include "trim3r_capture.h"
 #include "trim3r_heads.h"
 
 enum { SIDE = 256, GAUSSIANS = 6000 };

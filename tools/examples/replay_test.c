@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "capture/capture.h"
 #include "host/cpu.h"
+#include "trim3r_capture.h"
 
 enum { SIDE = 128, VIEWS = 2, GAUSSIANS = 2000 };
 

@@ -7,8 +7,8 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "capture/capture.h"
 #include "host/cpu.h"
+#include "trim3r_capture.h"
 
 #ifndef ROBOT_BYTES
 #define ROBOT_BYTES (1 << 20)

@@ -219,7 +219,7 @@ int picture_write_png(const char *path, const picture *in, char *error, size_t e
         (in->bits != 8 && !(in->bits == 16 && in->channels == 1))) {
         return fail(error, error_bytes, path, "only 8-bit RGB, 8-bit grey and 16-bit grey pictures can be written");
     }
-    whole_file file;
+    t3r_whole_file file;
     if (whole_file_begin(&file, path, error, error_bytes) != 0) {
         return -1;
     }
@@ -228,10 +228,10 @@ int picture_write_png(const char *path, const picture *in, char *error, size_t e
     png_destroy_write_struct(&work.png, &work.info);
     free(work.rows);
     if (status != 0) {
-        whole_file_abandon(&file);
+        t3r_whole_file_abandon(&file);
         return fail(error, error_bytes, path, work.reason);
     }
-    return whole_file_commit(&file, NULL, error, error_bytes);
+    return t3r_whole_file_commit(&file, NULL, error, error_bytes);
 }
 
 /* ---- JPEG ------------------------------------------------------------------------------------------------------ */

@@ -5,12 +5,12 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "host/threads.h"
 #include "planning/bench_views.h"
 #include "planning/price_fit.h"
 #include "reconstruction/chosen_head.h"
 #include "reconstruction/stage_times.h"
 #include "room/room.h"
+#include "trim3r_host.h"
 
 /* Configurations in which each kind of work dominates in one and matters little in another. */
 static const struct {

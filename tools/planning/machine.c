@@ -133,7 +133,7 @@ static char *text_of(const machine *m)
 
 int machine_write(const machine *m, const char *path, char *error, size_t error_bytes)
 {
-    whole_file file;
+    t3r_whole_file file;
     char *text = text_of(m);
     if (text == NULL) {
         return t3r_reason(error, error_bytes, "out of memory");
@@ -141,7 +141,7 @@ int machine_write(const machine *m, const char *path, char *error, size_t error_
     int result = whole_file_begin(&file, path, error, error_bytes);
     if (result == 0) {
         fprintf(file.stream, "%s\n", text);
-        result = whole_file_commit(&file, NULL, error, error_bytes);
+        result = t3r_whole_file_commit(&file, NULL, error, error_bytes);
     }
     free(text);
     return result;

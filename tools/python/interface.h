@@ -4,12 +4,12 @@
 #define TRIM3R_PYTHON_INTERFACE_H
 
 #include "host/cpu.h"
-#include "host/threads.h"
 #include "pictures/metrics.h"
 #include "recording/recording.h"
 #include "room/room.h"
 #include "scene/scene_file.h"
 #include "trim3r.h"
 #include "trim3r_heads.h"
+#include "trim3r_host.h"
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "cli/cli.h"
 #include "reconstruction/developed_frame.h"
-#include "scene/colmap_folder.h"
+#include "reconstruction/colmap_folder.h"
 
 #define ERROR_BYTES 512
 

@@ -17,8 +17,8 @@
 #include "reconstruction/developed_frame.h"
 #include "reconstruction/importance_pictures.h"
 #include "reconstruction/reconstruction_error.h"
-#include "reconstruction/scene_append.h"
 #include "reconstruction/scene_frames.h"
+#include "scene/scene_append.h"
 
 void reconstruction_defaults(reconstruction_options *options)
 {

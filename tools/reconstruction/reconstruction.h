@@ -12,13 +12,13 @@
 #include <stdint.h>
 
 #include "cli/options/processor_options.h"
-#include "host/threads.h"
 #include "posing/poses_source.h"
 #include "reconstruction/chosen_head.h"
 #include "reconstruction/stage_times.h"
 #include "recording/recording.h"
 #include "scene/scene_file.h"
 #include "trim3r.h"
+#include "trim3r_host.h"
 
 typedef enum arena_choice { ARENA_FULL, ARENA_MIN, ARENA_BYTES } arena_choice;
 

@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <time.h>
 
-#include "host/threads.h"
 #include "trim3r.h"
+#include "trim3r_host.h"
 
 typedef struct stage_times {
     double seconds[T3R_STAGE_COUNT]; /* 0 for a stage that did not run */

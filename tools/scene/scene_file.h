@@ -7,30 +7,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "scene/scene_turn.h"
-#include "trim3r.h"
+#include "trim3r_host.h"
 
 #define SCENE_FILE_SUFFIXES_BYTES 96
 
-/* Changes that reading made. */
-typedef struct scene_remarks {
-    uint32_t pulled;  /* Gaussians beyond the fixed point, moved to its end (scene_pull()) */
-    uint32_t clipped; /* Gaussians with harmonics beyond 8, which are 8 now */
-    uint32_t dropped; /* invalid Gaussians left out */
-    char text[96];    /* what of the file is not read; "": nothing */
-} scene_remarks;
-
-/* A scene outside the arena. */
-typedef struct scene_file {
-    t3r_scene_frame frame;
-    t3r_gaussian *gaussians; /* heap; scene_file_free() */
-    uint32_t count;
-    uint32_t degree;        /* of its harmonics, 0..3 */
-    int16_t *harmonics_q12; /* heap; NULL: degree 0. In the layout of t3r_harmonics_colour(), Gaussian by Gaussian */
-    bool mip;               /* opacities are those of mip-splatting; see seen_gaussian.h */
-    scene_up up;            /* as a comment of the file names it, for the first view */
-    scene_remarks remarks;
-} scene_file;
+/* The types of trim3r_host.h, by the names that the tools use. */
+typedef t3r_scene_remarks scene_remarks;
+typedef t3r_scene_file scene_file;
 
 /* Whether the Gaussians look different from each viewpoint. */
 static inline bool scene_file_depends_on_view(const scene_file *scene)
@@ -57,31 +40,26 @@ bool scene_file_is_written(const char *path);
 /* Writes the suffixes of files that can be written: ".ply, .splat". */
 const char *scene_file_suffixes(char text[SCENE_FILE_SUFFIXES_BYTES]);
 
-/* For reading: leaves out and counts Gaussians with numbers that are not finite or a rotation without length; without
- * it one of them refuses the file. */
+/* Flags besides those of trim3r_host.h. */
 enum {
-    SCENE_FILE_DROP_INVALID = 4,
-    SCENE_FILE_QUIET = 8, /* no warnings: the file was read before */
+    SCENE_FILE_QUIET = 8, /* for reading: no warnings, because the file was read before */
+    SCENE_FILE_UP = 16,   /* for writing: multiplied by a scene_up of scene_turn.h, turns this axis to y, pointing up */
 };
 
-/* Reads a scene in the format that its first bytes identify, else its suffix. flags: 0, or a sum of the two above.
- * Prints a warning for each of the remarks. Returns 0, or -1 with "what, where" in error[]. The scene frame (origin,
- * exponent) is the one in the file's SCENE_FILE_COMMENTS, else chosen from the positions. */
+/* Reads a scene in the format that its first bytes identify, else its suffix. flags: a sum of T3R_SCENE_DROP_INVALID
+ * and SCENE_FILE_QUIET. Prints a warning for each of the remarks. Returns 0, or -1 with "what, where" in error[]. The
+ * scene frame (origin, exponent) is the one in the file's T3R_SCENE_COMMENTS, else chosen from the positions. */
 int scene_file_read(const char *path, int flags, scene_file *out, char *error, size_t error_bytes);
 /* The same for bytes in memory, without the warnings; `name` ends with the suffix. */
 int scene_file_parse(const char *name, const uint8_t *bytes, size_t count, int flags, scene_file *out, char *error,
                      size_t error_bytes);
 
-/* Writes in the recording's world frame, in the format of the path's suffix; flags: 0, or a sum of these. `note` (NULL:
+/* Writes in the recording's world frame, in the format of the path's suffix; flags: a sum of T3R_SCENE_LOCAL,
+ * T3R_SCENE_COMMENTS and SCENE_FILE_UP. `note` (NULL:
  * none), one line, becomes another comment. Floats lose the detail of a scene that is small and far from the world's
- * origin: it is written as by SCENE_FILE_LOCAL, with the origin in the file if the format has a place for it, and a
+ * origin: it is written as by T3R_SCENE_LOCAL, with the origin in the file if the format has a place for it, and a
  * warning. Refused are scenes that could not be read again: empty ones, fields out of range, an extent outside
  * 2^-24..2^24 units. Returns 0, or -1 with the reason in error[]. */
-enum {
-    SCENE_FILE_LOCAL = 1,    /* relative to the frame's origin: metres from the first context camera, for example */
-    SCENE_FILE_COMMENTS = 2, /* header comments with bits epoch and scene frame; some readers reject comments */
-    SCENE_FILE_UP = 16,      /* multiplied by a scene_up of scene_turn.h: turns this axis to y, pointing up */
-};
 int scene_file_write(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
                      size_t error_bytes);
 

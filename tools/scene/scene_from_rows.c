@@ -112,7 +112,7 @@ int scene_file_from_rows(const scene_rows *rows, scene_file *out, char *error, s
     *out = (scene_file){0};
     scene_file scene = {
         .frame = rows->frame, .count = rows->count, .degree = rows->degree, .mip = rows->mip, .up = rows->up};
-    const scene_turn turn = scene_turn_between(rows->axes, SCENE_AXES_AS_THEY_ARE, SCENE_UP_UNKNOWN);
+    const scene_turn turn = scene_turn_between(rows->axes, SCENE_AXES_AS_THEY_ARE, T3R_UP_UNKNOWN);
     if ((rows->has_frame ? check_frame(&scene.frame, error, error_bytes)
                          : scene_rows_choose_frame(rows, &turn, &scene.frame, error, error_bytes)) != 0) {
         return -1;

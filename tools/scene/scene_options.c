@@ -15,7 +15,7 @@ void scene_output_option(struct argp_state *state, const char *option, const cha
 int scene_up_option(struct argp_state *state, const char *name)
 {
     const scene_up up = scene_up_named(name);
-    if (up == SCENE_UP_UNKNOWN) {
+    if (up == T3R_UP_UNKNOWN) {
         argp_error(state, "--up takes one of %s, not '%s'", SCENE_UP_NAMES, name);
     }
     return SCENE_FILE_UP * (int)up;
@@ -32,7 +32,7 @@ static error_t parse_input(int key, char *argument, struct argp_state *state)
     if (key != KEY_DROP_INVALID) {
         return ARGP_ERR_UNKNOWN;
     }
-    *flags |= SCENE_FILE_DROP_INVALID;
+    *flags |= T3R_SCENE_DROP_INVALID;
     return 0;
 }
 

@@ -11,13 +11,13 @@ static const struct {
     const char *name;
     double rotation[4];
 } ups[] = {
-    [SCENE_UP_UNKNOWN] = {"", {1, 0, 0, 0}},
-    [SCENE_UP_X] = {"x", {M_SQRT1_2, 0, 0, -M_SQRT1_2}},
-    [SCENE_UP_MX] = {"-x", {M_SQRT1_2, 0, 0, M_SQRT1_2}},
-    [SCENE_UP_Y] = {"y", {0, 1, 0, 0}},
-    [SCENE_UP_MY] = {"-y", {1, 0, 0, 0}},
-    [SCENE_UP_Z] = {"z", {M_SQRT1_2, M_SQRT1_2, 0, 0}},
-    [SCENE_UP_MZ] = {"-z", {M_SQRT1_2, -M_SQRT1_2, 0, 0}},
+    [T3R_UP_UNKNOWN] = {"", {1, 0, 0, 0}},
+    [T3R_UP_X] = {"x", {M_SQRT1_2, 0, 0, -M_SQRT1_2}},
+    [T3R_UP_MX] = {"-x", {M_SQRT1_2, 0, 0, M_SQRT1_2}},
+    [T3R_UP_Y] = {"y", {0, 1, 0, 0}},
+    [T3R_UP_MY] = {"-y", {1, 0, 0, 0}},
+    [T3R_UP_Z] = {"z", {M_SQRT1_2, M_SQRT1_2, 0, 0}},
+    [T3R_UP_MZ] = {"-z", {M_SQRT1_2, -M_SQRT1_2, 0, 0}},
 };
 
 /* Returns the turn by a matrix that rotates, or rotates and mirrors. */
@@ -62,7 +62,7 @@ static void multiply(const double a[9], const double b[9], double out[9])
 
 scene_turn scene_turn_between(scene_axes from, scene_axes to, scene_up up)
 {
-    const bool bare = to == SCENE_AXES_AS_THEY_ARE && up != SCENE_UP_UNKNOWN;
+    const bool bare = to == SCENE_AXES_AS_THEY_ARE && up != T3R_UP_UNKNOWN;
     double read[9], upright[9], write[9], back[9], both[9], all[9];
     matrix_from(from, read);
     quaternion_matrix(ups[up].rotation, upright);
@@ -109,10 +109,10 @@ void scene_turn_origin(const scene_turn *turn, const int64_t origin_q32[3], int6
 
 scene_up scene_up_named(const char *name)
 {
-    for (int i = SCENE_UP_X; i <= SCENE_UP_MZ; i++) {
+    for (int i = T3R_UP_X; i <= T3R_UP_MZ; i++) {
         if (strcmp(ups[i].name, name) == 0) {
             return (scene_up)i;
         }
     }
-    return SCENE_UP_UNKNOWN;
+    return T3R_UP_UNKNOWN;
 }

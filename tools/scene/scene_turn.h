@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "scene/harmonics.h"
+#include "trim3r_host.h"
 
 /* The axes of a file: where x, y and z point, of left or right, up or down, forward or backward. Numbers and meaning
  * are those of nianticlabs/spz, whose files can declare any of them; half of them mirror a scene. From SCENE_AXES_LFD
@@ -23,16 +24,8 @@ typedef enum scene_axes {
     SCENE_AXES_LAST = SCENE_AXES_RBU
 } scene_axes;
 
-/* The axis of a scene that points up. */
-typedef enum scene_up {
-    SCENE_UP_UNKNOWN,
-    SCENE_UP_X,
-    SCENE_UP_MX,
-    SCENE_UP_Y,
-    SCENE_UP_MY,
-    SCENE_UP_Z,
-    SCENE_UP_MZ
-} scene_up;
+/* The type of trim3r_host.h, by the name that the tools use. */
+typedef t3r_scene_up scene_up;
 #define SCENE_UP_NAMES "x, -x, y, -y, z, -z"
 
 typedef struct scene_turn {
@@ -53,7 +46,7 @@ void scene_turn_apply(const scene_turn *turn, double position[3], double rotatio
                       double rest[HARMONICS_REST_MOST][3]);
 /* Turns the origin of a scene's frame. */
 void scene_turn_origin(const scene_turn *turn, const int64_t origin_q32[3], int64_t turned_q32[3]);
-/* Returns the axis of a name from SCENE_UP_NAMES; SCENE_UP_UNKNOWN: there is none. */
+/* Returns the axis of a name from SCENE_UP_NAMES; T3R_UP_UNKNOWN: there is none. */
 scene_up scene_up_named(const char *name);
 
 #endif

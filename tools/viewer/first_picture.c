@@ -6,7 +6,7 @@
 #include "host/cpu.h"
 #include "pictures/png_bytes.h"
 #include "reconstruction/reconstruction.h"
-#include "reconstruction/scene_append.h"
+#include "scene/scene_append.h"
 
 #define WIDEST 320u
 

@@ -10,6 +10,7 @@
 #include "cli/files/recorded_frame.h"
 #include "import/viewpoint.h"
 #include "reconstruction/developed_frame.h"
+#include "scene/scene_turn.h"
 
 #define DEGREES 60 /* horizontal angle for a scene without frames */
 

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/pose_matrix.h"
 #include "import/poses/matrix_text.h"
-#include "import/poses/pose_matrix.h"
 #include "mcap/reader_limits.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -28,8 +28,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (count > MATRIX_NUMBERS_MOST || (wrong != NULL && wrong[0] == '\0')) {
         abort();
     }
-    for (int axes = AXES_OPENCV; wrong == NULL && count == 16 && axes <= AXES_OPENGL; axes++) {
-        if (pose_of_matrix(matrix, (camera_axes)axes, &pose) == NULL &&
+    for (int axes = T3R_AXES_OPENCV; wrong == NULL && count == 16 && axes <= T3R_AXES_OPENGL; axes++) {
+        if (pose_of_matrix(matrix, (t3r_axes)axes, &pose) == NULL &&
             !(fabs(pose.position[0]) < 1 << T3R_LIMIT_POSITION_LOG2 && fabs(pose.rotation[0]) <= 1)) {
             abort();
         }

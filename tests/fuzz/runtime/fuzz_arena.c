@@ -460,8 +460,7 @@ static void call_export(const t3r_runtime *rt)
             .frame = scene.frame, .gaussians = (t3r_gaussian *)(uintptr_t)scene.gaussians, .count = scene.count};
         const scene_rows rows = scene_rows_of(&made);
         const scene_source source = {
-            .rows = &rows,
-            .turn = scene_turn_between(SCENE_AXES_AS_THEY_ARE, SCENE_AXES_AS_THEY_ARE, SCENE_UP_UNKNOWN)};
+            .rows = &rows, .turn = scene_turn_between(SCENE_AXES_AS_THEY_ARE, SCENE_AXES_AS_THEY_ARE, T3R_UP_UNKNOWN)};
         char error[256];
         (void)ply_write(file, &source, error, sizeof error);
         REQUIRE(fclose(file) == 0);

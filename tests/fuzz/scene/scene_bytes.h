@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "reconstruction/scene_append.h"
+#include "scene/scene_append.h"
 #include "scene/scene_file.h"
 #include "trim3r.h"
 

@@ -45,9 +45,9 @@ int csv_file_close(csv_file *file, bool keep)
     }
     char error[ERROR_BYTES] = "";
     if (!keep) {
-        whole_file_abandon(&file->beside);
+        t3r_whole_file_abandon(&file->beside);
         return CLI_OK;
     }
-    return whole_file_commit(&file->beside, NULL, error, sizeof error) == 0 ? CLI_OK
-                                                                            : cli_error(CLI_BAD_INPUT, "%s", error);
+    return t3r_whole_file_commit(&file->beside, NULL, error, sizeof error) == 0 ? CLI_OK
+                                                                                : cli_error(CLI_BAD_INPUT, "%s", error);
 }

@@ -12,7 +12,7 @@
 typedef struct csv_file {
     csv_table table; /* its `file` is NULL until a table is open */
     const char *path;
-    whole_file beside; /* the new table, written next to the existing one; its stream is `table.file` */
+    t3r_whole_file beside; /* the new table, written next to the existing one; its stream is `table.file` */
 } csv_file;
 
 /* These report on stderr and return an exit status of cli.h. */

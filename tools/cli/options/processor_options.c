@@ -2,7 +2,6 @@
 #include "cli/options/processor_options.h"
 
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/options/option_values.h"
 #include "host/cpu.h"
@@ -26,8 +25,7 @@ processor_options processor_defaults(void)
 uint32_t option_threads(struct argp_state *state, const char *text)
 {
     if (strcmp(text, "all") == 0) {
-        const long processors = sysconf(_SC_NPROCESSORS_ONLN);
-        return processors < 1 ? 1 : processors > (long)T3R_MAX_WORKERS ? T3R_MAX_WORKERS : (uint32_t)processors;
+        return t3r_cpu_count();
     }
     return option_number(state, "threads", text, 1, T3R_MAX_WORKERS);
 }

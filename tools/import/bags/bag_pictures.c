@@ -121,24 +121,6 @@ static int decode(void *user, t3r_text format, const uint8_t *bytes, size_t coun
 
 /* ---- encodings that are no pixel formats ---- */
 
-/* Copies the first three of four channels, in the order red, green, blue. Returns whether any pixel is opaque by half
- * or more; these are marked as valid. */
-static bool take_colours(const t3r_ros_image *image, bool blue_first, uint8_t *out, uint8_t *valid)
-{
-    bool opaque = false;
-    for (uint32_t y = 0; y < image->height; y++) {
-        const uint8_t *in = image->data + (size_t)y * image->step;
-        for (uint32_t x = 0; x < image->width; x++, in += 4, out += 3, valid++) {
-            out[0] = in[blue_first ? 2 : 0];
-            out[1] = in[1];
-            out[2] = in[blue_first ? 0 : 2];
-            *valid = in[3] >= 128;
-            opaque = opaque || *valid != 0;
-        }
-    }
-    return opaque;
-}
-
 /* Fills in each colour of a pixel with the mean of the samples of that colour in the 3x3 pixels around it. `pattern`
  * has the colours of the first two rows: "rggb". */
 static void demosaic(const t3r_ros_image *image, const char *pattern, uint8_t *out)
@@ -218,7 +200,9 @@ static int convert(void *user, const t3r_ros_image *image, t3r_decoded_image *ou
     }
     if (bayer) {
         demosaic(image, image->encoding.chars + strlen("bayer_"), p->samples);
-    } else if (!take_colours(image, !t3r_text_is(image->encoding, "rgba8"), p->samples, p->valid)) {
+    } else if (!t3r_rgb_of_rgba(image->data, image->step, image->width, image->height,
+                                !t3r_text_is(image->encoding, "rgba8"), p->samples, (size_t)image->width * 3,
+                                p->valid)) {
         free(p->valid); /* drivers leave the fourth channel at 0 */
         p->valid = NULL;
     }

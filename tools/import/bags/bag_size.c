@@ -58,7 +58,7 @@ static void *begin(const bag_size *size, picture *out, uint32_t channels, uint32
     return out->samples;
 }
 
-static int resize_depth(bag_size *size, const import_crop *part, t3r_frame *f)
+static int resize_depth(bag_size *size, const t3r_crop *part, t3r_frame *f)
 {
     uint16_t *samples = begin(size, &size->depth, 1, 16);
     if (samples == NULL ||
@@ -77,7 +77,7 @@ static int resize_depth(bag_size *size, const import_crop *part, t3r_frame *f)
 }
 
 /* Adapts intrinsics to the part that is shown, and then to the size. Returns false if they leave their range. */
-static bool resize_camera(const bag_size *size, const import_crop *crop, t3r_capture_frame *frame)
+static bool resize_camera(const bag_size *size, const t3r_crop *crop, t3r_capture_frame *frame)
 {
     t3r_camera part = frame->camera;
     part.cx_q16 -= (int32_t)(crop->x << 16);
@@ -94,10 +94,10 @@ static bool resize_camera(const bag_size *size, const import_crop *crop, t3r_cap
 static int resize(bag_size *size, const picture *whole, t3r_capture_frame *frame, char *error, size_t error_bytes)
 {
     t3r_frame *f = &frame->frame;
-    const import_crop crop = import_largest_crop(whole->width, whole->height, size->width, size->height);
-    const import_crop part = f->depth == NULL ? crop
-                                              : import_crop_in_proportion(&crop, whole->width, whole->height,
-                                                                          f->depth_width, f->depth_height);
+    const t3r_crop crop = import_largest_crop(whole->width, whole->height, size->width, size->height);
+    const t3r_crop part = f->depth == NULL ? crop
+                                           : import_crop_in_proportion(&crop, whole->width, whole->height,
+                                                                       f->depth_width, f->depth_height);
     if (crop.width < IMPORT_LEAST_SIDE || crop.height < IMPORT_LEAST_SIDE || part.width < IMPORT_LEAST_SIDE ||
         part.height < IMPORT_LEAST_SIDE) {
         return t3r_reason(error, error_bytes, "too narrow to crop to the aspect of --size");

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "pictures/picture.h"
-#include "recording/captured_frame.h"
+#include "trim3r_capture.h"
 
 typedef struct bag_size {
     uint32_t width, height; /* 0: as the frames are */

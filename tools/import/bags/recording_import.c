@@ -78,7 +78,7 @@ static int make(void *user, uint32_t index, t3r_capture_frame *frame, char *erro
 static int write_once(const recording_import_request *r, const t3r_recording *recording, made_frames *frames,
                       posed_recording_losses *losses, posed_recording_totals *totals, char *error)
 {
-    whole_file file;
+    t3r_whole_file file;
     char reason[ERROR_BYTES / 2] = "";
     bag_frames_count_anew(frames->frames);
     if (whole_file_begin(&file, r->output, error, ERROR_BYTES) != 0) {
@@ -87,9 +87,9 @@ static int write_once(const recording_import_request *r, const t3r_recording *re
     int status = posed_recording_write(recording, r->source, r->stored, &(posed_recording_change){make, frames},
                                        file.stream, losses, totals, reason, sizeof reason);
     if (status == 0) {
-        return whole_file_commit(&file, &totals->bytes, error, ERROR_BYTES);
+        return t3r_whole_file_commit(&file, &totals->bytes, error, ERROR_BYTES);
     }
-    whole_file_abandon(&file);
+    t3r_whole_file_abandon(&file);
     if (status < 0) {
         t3r_reason(error, ERROR_BYTES, "%.400s: %s", r->input, reason);
     }

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/pose_check.h"
 #include "geometry/quaternion.h"
-#include "import/poses/pose_check.h"
 #include "mcap/reader_limits.h"
 
 void colmap_model_free(colmap_model *model)

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/pose_matrix.h"
 #include "host/file_bytes.h"
 #include "host/reason.h"
 #include "import/folders/pose_layout.h"
@@ -18,7 +19,6 @@
 #include "import/frames/frame.h"
 #include "import/frames/rejected.h"
 #include "import/poses/matrix_text.h"
-#include "import/poses/pose_matrix.h"
 #include "mcap/reader_limits.h"
 
 #define PATH_BYTES 1024
@@ -117,7 +117,7 @@ static int read_place(const char *directory, const char *const *names, rigid *ou
     if (read_matrix(directory, name, 4, matrix, error, error_bytes) != 0) {
         return -1;
     }
-    const char *wrong = pose_of_matrix(matrix, AXES_OPENCV, out);
+    const char *wrong = pose_of_matrix(matrix, T3R_AXES_OPENCV, out);
     return wrong == NULL ? 0 : t3r_reason(error, error_bytes, "%s/%s: %s", directory, name, wrong);
 }
 
@@ -166,7 +166,8 @@ static void add_frame(const char *directory, const pose_layout *layout, const ch
     for (int i = 0; i < 16; i++) {
         lost = lost || !isfinite(matrix[i]);
     }
-    const char *wrong = lost ? "is not finite: the pose was lost" : pose_of_matrix(matrix, AXES_OPENCV, &frame->pose);
+    const char *wrong =
+        lost ? "is not finite: the pose was lost" : pose_of_matrix(matrix, T3R_AXES_OPENCV, &frame->pose);
     frame->posed = wrong == NULL;
     if (wrong != NULL && !(lost && without_poses)) {
         rejected_mark(frame, lost ? "%s: %s %s" : "%s: %s: %s", frame->image, pose_name, wrong);

@@ -11,12 +11,12 @@
 #include <string.h>
 
 #include "cli/tables/json_input.h"
+#include "geometry/pose_check.h"
 #include "host/file_bytes.h"
 #include "host/reason.h"
 #include "import/depth/exr_depth.h"
 #include "import/frames/picture_folder.h"
 #include "import/frames/rejected.h"
-#include "import/poses/pose_check.h"
 #include "mcap/reader_limits.h"
 
 #define DEPTH_MAGIC_BYTES 4

@@ -10,10 +10,10 @@
 #include <string.h>
 
 #include "cli/tables/json_input.h"
+#include "geometry/pose_matrix.h"
 #include "host/reason.h"
 #include "import/depth/exr_depth.h"
 #include "import/frames/rejected.h"
-#include "import/poses/pose_matrix.h"
 #include "mcap/reader_limits.h"
 #include "messages/fixed_camera.h"
 #include "trim3r.h"
@@ -341,7 +341,7 @@ static int read_pose(reader *r, posed_frame *out)
         }
         y += 4;
     }
-    const char *wrong = pose_of_matrix(m, AXES_OPENGL, &out->pose);
+    const char *wrong = pose_of_matrix(m, T3R_AXES_OPENGL, &out->pose);
     return wrong == NULL ? 0 : fail(r, "transform_matrix", wrong);
 }
 

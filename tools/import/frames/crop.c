@@ -11,9 +11,9 @@ static uint32_t share(uint32_t a, uint32_t b, uint32_t c)
     return (2 * a * b + c) / (2 * c);
 }
 
-import_crop import_largest_crop(uint32_t picture_width, uint32_t picture_height, uint32_t width, uint32_t height)
+t3r_crop import_largest_crop(uint32_t picture_width, uint32_t picture_height, uint32_t width, uint32_t height)
 {
-    import_crop crop = {.width = picture_width, .height = picture_height};
+    t3r_crop crop = {.width = picture_width, .height = picture_height};
     if (picture_width * height > picture_height * width) {
         crop.width = share(picture_height, width, height);
     } else {
@@ -26,29 +26,16 @@ import_crop import_largest_crop(uint32_t picture_width, uint32_t picture_height,
     return crop;
 }
 
-import_crop import_crop_in_proportion(const import_crop *crop, uint32_t from_width, uint32_t from_height,
-                                      uint32_t width, uint32_t height)
+t3r_crop import_crop_in_proportion(const t3r_crop *crop, uint32_t from_width, uint32_t from_height, uint32_t width,
+                                   uint32_t height)
 {
-    import_crop out = {.x = share(crop->x, width, from_width), .y = share(crop->y, height, from_height)};
+    t3r_crop out = {.x = share(crop->x, width, from_width), .y = share(crop->y, height, from_height)};
     out.width = share(crop->x + crop->width, width, from_width) - out.x;
     out.height = share(crop->y + crop->height, height, from_height) - out.y;
     return out;
 }
 
-void import_crop_camera(t3r_recorded_camera *camera, const import_crop *crop, uint32_t width, uint32_t height)
-{
-    double scale_x = (double)width / crop->width;
-    double scale_y = (double)height / crop->height;
-    camera->fx *= scale_x;
-    camera->fy *= scale_y;
-    /* scaling keeps the corner of the top-left pixel, which is half a pixel before its centre */
-    camera->cx = (camera->cx + 0.5 - crop->x) * scale_x - 0.5;
-    camera->cy = (camera->cy + 0.5 - crop->y) * scale_y - 0.5;
-    camera->width = width;
-    camera->height = height;
-}
-
-int import_crop_colour(const picture *in, const import_crop *crop, uint32_t width, uint32_t height, uint8_t *rgb)
+int import_crop_colour(const picture *in, const t3r_crop *crop, uint32_t width, uint32_t height, uint8_t *rgb)
 {
     t3r_frame frame = {
         .format = in->channels == 3 ? T3R_PIXEL_RGB24 : T3R_PIXEL_GREY, .width = crop->width, .height = crop->height};
@@ -73,7 +60,7 @@ int import_crop_colour(const picture *in, const import_crop *crop, uint32_t widt
     return status;
 }
 
-int import_crop_depth(const void *z16, uint32_t stride_bytes, const import_crop *crop, uint32_t width, uint32_t height,
+int import_crop_depth(const void *z16, uint32_t stride_bytes, const t3r_crop *crop, uint32_t width, uint32_t height,
                       uint16_t *depth)
 {
     static const uint8_t colour[2 * 2];

@@ -16,6 +16,7 @@
 #include "import/frames/crop.h"
 #include "import/frames/straighten.h"
 #include "mcap/reader_limits.h"
+#include "messages/camera_crop.h"
 #include "messages/fixed_camera.h"
 #include "pictures/exif.h"
 #include "pictures/picture.h"
@@ -249,9 +250,9 @@ static int read_view(const char *directory, const posed_frame *frame, bool large
                           colour->width, colour->height, T3R_MAX_SIDE);
     }
     if (n > 1) {
-        const import_crop whole = {.width = colour->width / n * n, .height = colour->height / n * n};
+        const t3r_crop whole = {.width = colour->width / n * n, .height = colour->height / n * n};
         picture_reduce(colour, n);
-        import_crop_camera(camera, &whole, colour->width, colour->height);
+        t3r_crop_camera(camera, &whole, colour->width, colour->height);
     }
     if (posed_is_bent(&frame->intrinsics)) {
         *bent = posed_lens(&frame->intrinsics, camera);
@@ -267,7 +268,7 @@ static int read_view(const char *directory, const posed_frame *frame, bool large
 }
 
 /* Returns 0, or -1 with a reason. */
-static int adapt_colour(const posed_frame *frame, const picture *colour, import_crop *crop, uint32_t width,
+static int adapt_colour(const posed_frame *frame, const picture *colour, t3r_crop *crop, uint32_t width,
                         uint32_t height, import_buffers *buffers, t3r_recorded_frame *out, char *error,
                         size_t error_bytes)
 {
@@ -282,7 +283,7 @@ static int adapt_colour(const posed_frame *frame, const picture *colour, import_
     if (crop->width < IMPORT_LEAST_SIDE || crop->height < IMPORT_LEAST_SIDE) {
         return t3r_reason(error, error_bytes, "%s: too narrow to crop to that aspect", frame->image);
     }
-    import_crop_camera(&out->camera, crop, out->width, out->height);
+    t3r_crop_camera(&out->camera, crop, out->width, out->height);
     if (check_camera(&out->camera, frame->image, error, error_bytes) != 0) {
         return -1;
     }
@@ -346,12 +347,11 @@ static void forget_invalid(const picture *colour, picture *depth)
 }
 
 /* Adapts depth of the same view as colour. */
-static int adapt_depth(const posed_frame *frame, const picture *colour, const import_crop *crop, picture *depth,
+static int adapt_depth(const posed_frame *frame, const picture *colour, const t3r_crop *crop, picture *depth,
                        bool resize, import_buffers *buffers, t3r_recorded_frame *out, char *error, size_t error_bytes)
 {
     const char *name = frame->depth != NULL ? frame->depth : "pointmap";
-    const import_crop part =
-        import_crop_in_proportion(crop, colour->width, colour->height, depth->width, depth->height);
+    const t3r_crop part = import_crop_in_proportion(crop, colour->width, colour->height, depth->width, depth->height);
     if (part.width < IMPORT_LEAST_SIDE || part.height < IMPORT_LEAST_SIDE) {
         return t3r_reason(error, error_bytes, "%s: too small to crop", name);
     }
@@ -373,7 +373,7 @@ static int adapt_depth(const posed_frame *frame, const picture *colour, const im
 static int adapt(const char *directory, const posed_frame *frame, uint32_t width, uint32_t height, picture *colour,
                  picture *depth, import_buffers *buffers, t3r_recorded_frame *out, char *error, size_t error_bytes)
 {
-    import_crop crop = {0};
+    t3r_crop crop = {0};
     lens bent = {0};
     const bool made = depth->samples != NULL;
     if (read_view(directory, frame, width != 0, colour, &out->camera, &bent, error, error_bytes) != 0) {

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "host/reason.h"
-#include "import/frames/crop.h"
 #include "import/frames/frame.h"
+#include "messages/camera_crop.h"
 #include "messages/fixed_camera.h"
 #include "posing/opencv_module.h"
 
@@ -96,8 +96,8 @@ static int map_lens(const pointmap_source *source, const posed_frame *frame, con
     if (posed_frame_camera(frame, width, height, lens, reason, sizeof reason) != 0) {
         return t3r_reason(error, error_bytes, "%s: %s", frame->image, reason);
     }
-    const import_crop whole = {.width = width, .height = height};
-    import_crop_camera(lens, &whole, maps->width, maps->height);
+    const t3r_crop whole = {.width = width, .height = height};
+    t3r_crop_camera(lens, &whole, maps->width, maps->height);
     return 0;
 }
 

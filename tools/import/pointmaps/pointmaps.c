@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/pose_matrix.h"
 #include "geometry/quaternion.h"
 #include "host/reason.h"
 #include "import/pointmaps/array_file.h"
-#include "import/poses/pose_matrix.h"
 #include "mcap/reader_limits.h"
 
 #define NAMES 5
@@ -198,7 +198,7 @@ static int take_poses(const stack *s, bool inverse, const double *numbers, point
         double matrix[16] = {[15] = 1};
         rigid pose;
         memcpy(matrix, numbers + (size_t)v * rows * 4, rows * 4 * sizeof *matrix);
-        const char *wrong = pose_of_matrix(matrix, AXES_OPENCV, &pose);
+        const char *wrong = pose_of_matrix(matrix, T3R_AXES_OPENCV, &pose);
         if (wrong != NULL) {
             return fail(s, wrong, error, error_bytes);
         }

@@ -4,9 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "geometry/pose_check.h"
 #include "geometry/quaternion.h"
 #include "host/reason.h"
-#include "import/poses/pose_check.h"
 #include "import/poses/pose_lines.h"
 #include "mcap/reader_limits.h"
 

@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/pose_check.h"
 #include "geometry/quaternion.h"
 #include "host/file_bytes.h"
 #include "host/grow.h"
 #include "host/reason.h"
-#include "import/poses/pose_check.h"
 #include "import/poses/pose_list.h"
 #include "mcap/mcap_records.h"
 #include "mcap/reader_limits.h"

@@ -97,7 +97,7 @@ class Scene:
         gaussians = np.ascontiguousarray(self.gaussians)
         scene = ffi.new("t3r_scene *", {"gaussians": address(gaussians, "t3r_gaussian *"), "count": len(gaussians),
                                         "frame": self.native_frame()[0]})
-        flags = (lib.SCENE_FILE_LOCAL if local else 0) | (lib.SCENE_FILE_COMMENTS if comments else 0)
+        flags = (lib.T3R_SCENE_LOCAL if local else 0) | (lib.T3R_SCENE_COMMENTS if comments else 0)
         error = ffi.new("char[]", ERROR_BYTES)
         if lib.scene_file_write(writable(path), scene, flags, ffi.NULL, error, ERROR_BYTES) != 0:
             raise InputError(text_of(error))

@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "reconstruction/reconstruction.h"
-#include "recording/captured_frame.h"
+#include "trim3r_capture.h"
 
 typedef struct drawn_frame {
     t3r_runtime *runtime; /* develops frames: an arena that holds a scene cannot take them; NULL = closed */

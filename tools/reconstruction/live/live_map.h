@@ -12,8 +12,8 @@
 #include "reconstruction/live/live_row.h"
 #include "reconstruction/live/pass_budget.h"
 #include "reconstruction/reconstruction.h"
-#include "recording/captured_frame.h"
 #include "recording/recording.h"
+#include "trim3r_capture.h"
 
 typedef struct live_map {
     reconstruction r; /* first: hooks get the map as this */

@@ -58,7 +58,7 @@ static void put(FILE *out, const void *bytes, size_t count, uint64_t *hash)
 int live_state_write(const char *path, const live_map *map, const live_state *state)
 {
     char error[ERROR_BYTES] = "";
-    whole_file file;
+    t3r_whole_file file;
     file_head head;
     memset(&head, 0, sizeof head);
     identify(map, &head.of);
@@ -78,7 +78,8 @@ int live_state_write(const char *path, const live_map *map, const live_state *st
     put(file.stream, map->r.arena, map->r.arena_bytes, &hash);
     put(file.stream, state->more, state->more_bytes, &hash);
     fwrite(&hash, 1, sizeof hash, file.stream);
-    return whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
+    return t3r_whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK
+                                                                        : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */

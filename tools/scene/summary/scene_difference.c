@@ -21,7 +21,7 @@ typedef struct side {
 
 static int open_side(side *s, const scene_rows *rows, char *error, size_t error_bytes)
 {
-    *s = (side){.rows = *rows, .turn = scene_turn_between(rows->axes, SCENE_AXES_AS_THEY_ARE, SCENE_UP_UNKNOWN)};
+    *s = (side){.rows = *rows, .turn = scene_turn_between(rows->axes, SCENE_AXES_AS_THEY_ARE, T3R_UP_UNKNOWN)};
     return scene_file_from_rows(&s->rows, &s->scene, error, error_bytes);
 }
 

@@ -23,7 +23,7 @@ typedef struct scene_difference {
     double harmonics;  /* of a coefficient above degree 0; a degree that one file lacks is 0 there */
 } scene_difference;
 
-/* Compares two files. flags: 0 or SCENE_FILE_DROP_INVALID. Returns 0, or -1 with the reason in error[]. */
+/* Compares two files. flags: 0 or T3R_SCENE_DROP_INVALID. Returns 0, or -1 with the reason in error[]. */
 int scene_difference_of(const char *const path[2], int flags, scene_difference *out, char *error, size_t error_bytes);
 /* Whether there is no difference. */
 bool scene_difference_none(const scene_difference *difference);

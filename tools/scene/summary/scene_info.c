@@ -216,7 +216,7 @@ static void print_text(const scene_info_request *request, const scene_summaries 
 
 static int write_svg(const scene_info_request *request, const scene_summaries *summary)
 {
-    whole_file file;
+    t3r_whole_file file;
     char error[ERROR_BYTES] = "";
     scale_panel panels[SCENE_INFO_MOST];
     char names[SCENE_INFO_MOST][PANEL_NAME_BYTES];
@@ -229,7 +229,8 @@ static int write_svg(const scene_info_request *request, const scene_summaries *s
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     scale_picture_write(file.stream, panels, request->scene_count, &summary->bins, summary->pixels);
-    return whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
+    return t3r_whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK
+                                                                        : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
 int scene_info(const scene_info_request *request)

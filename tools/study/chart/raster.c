@@ -53,7 +53,7 @@ static bool store(FILE *file, const char *text, size_t bytes)
 
 int chart_raster_png(const char *path, const char *svg, size_t bytes, double scale, char *error, size_t error_bytes)
 {
-    whole_file png;
+    t3r_whole_file png;
     if (whole_file_begin(&png, path, error, error_bytes) != 0) {
         return -1;
     }
@@ -64,9 +64,9 @@ int chart_raster_png(const char *path, const char *svg, size_t bytes, double sca
         fclose(text);
     }
     if (status == 0) {
-        return whole_file_commit(&png, NULL, error, error_bytes);
+        return t3r_whole_file_commit(&png, NULL, error, error_bytes);
     }
-    whole_file_abandon(&png);
+    t3r_whole_file_abandon(&png);
     if (status > 0) {
         return t3r_reason(error, error_bytes, "%s: %s ended with status %d", path, RASTERIZER, status);
     }

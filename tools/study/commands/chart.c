@@ -243,12 +243,13 @@ static int read_tables(chart *c, options *o)
 static int write_svg(const chart *c, const char *path)
 {
     char error[ERROR_BYTES] = "";
-    whole_file file;
+    t3r_whole_file file;
     if (whole_file_begin(&file, path, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     chart_svg_write(file.stream, &c->points, &c->names, c->views, c->view_count, CHART_GROUND_READER);
-    return whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
+    return t3r_whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK
+                                                                        : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
 static int write_png(const chart *c, const char *path, bool dark)
@@ -273,15 +274,16 @@ static int write_png(const chart *c, const char *path, bool dark)
 static int write_page(const chart *c, const chart_pictures *pictures, const char *path)
 {
     char error[ERROR_BYTES] = "";
-    whole_file file;
+    t3r_whole_file file;
     if (whole_file_begin(&file, path, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     if (chart_page_write(file.stream, &c->points, &c->names, pictures, &c->views[0]) != 0) {
-        whole_file_abandon(&file);
+        t3r_whole_file_abandon(&file);
         return cli_error(CLI_BAD_INPUT, "%s: out of memory", path);
     }
-    return whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
+    return t3r_whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK
+                                                                        : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
 static int report(const chart *c, const options *o)

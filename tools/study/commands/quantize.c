@@ -218,7 +218,7 @@ static int calibrate(const options *o, float_head *head, int *calibrated)
 
 static int write_output(const options *o, const float_head *head, const uint8_t *bytes, size_t count)
 {
-    whole_file file;
+    t3r_whole_file file;
     char error[512] = "", note[64];
     if (whole_file_begin(&file, o->output, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
@@ -230,7 +230,8 @@ static int write_output(const options *o, const float_head *head, const uint8_t 
     } else {
         fwrite(bytes, 1, count, file.stream);
     }
-    return whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
+    return t3r_whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK
+                                                                        : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
 static void print_json(const options *o, const weight_info *info, int calibrated, const double *snr)

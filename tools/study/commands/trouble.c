@@ -210,7 +210,7 @@ static int write_frames(const options *o, const t3r_recording *recording, FILE *
 
 static int write_recording(const options *o, const t3r_recording *recording)
 {
-    whole_file file;
+    t3r_whole_file file;
     char error[ERROR_BYTES];
     t3r_recorder *recorder = malloc(t3r_recorder_bytes());
     if (recorder == NULL) {
@@ -222,8 +222,8 @@ static int write_recording(const options *o, const t3r_recording *recording)
     } else {
         code = write_frames(o, recording, file.stream, recorder);
         if (code != CLI_OK) {
-            whole_file_abandon(&file);
-        } else if (whole_file_commit(&file, NULL, error, sizeof error) != 0) {
+            t3r_whole_file_abandon(&file);
+        } else if (t3r_whole_file_commit(&file, NULL, error, sizeof error) != 0) {
             code = cli_error(CLI_BAD_INPUT, "%s", error);
         }
     }

@@ -68,8 +68,9 @@ static int write_page(stress_report *report)
                            report->page_file.stream) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s: out of memory for the page", report->to.page);
     }
-    return whole_file_commit(&report->page_file, NULL, error, sizeof error) != 0 ? cli_error(CLI_BAD_INPUT, "%s", error)
-                                                                                 : CLI_OK;
+    return t3r_whole_file_commit(&report->page_file, NULL, error, sizeof error) != 0
+               ? cli_error(CLI_BAD_INPUT, "%s", error)
+               : CLI_OK;
 }
 
 static int finish(stress_report *report)
@@ -97,7 +98,7 @@ int stress_report_close(stress_report *report, int code)
     }
     const int closed = csv_file_close(&report->csv, is_whole);
     code = code == CLI_OK ? closed : code;
-    whole_file_abandon(&report->page_file);
+    t3r_whole_file_abandon(&report->page_file);
     stress_album_free(&report->album);
     free(report->rows);
     return code;

@@ -18,7 +18,7 @@ typedef struct stress_report {
     stress_outputs to;
     const stress_contest *contest;
     csv_file csv;
-    whole_file page_file;
+    t3r_whole_file page_file;
     stress_album album;
     stress_row *rows; /* room for all */
     uint32_t row_count, row_total;

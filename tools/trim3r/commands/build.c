@@ -68,13 +68,13 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->output = arg;
         return 0;
     case KEY_LOCAL:
-        o->flags |= SCENE_FILE_LOCAL;
+        o->flags |= T3R_SCENE_LOCAL;
         return 0;
     case KEY_UP:
         o->flags |= scene_up_option(state, arg);
         return 0;
     case KEY_COMMENTS:
-        o->flags |= SCENE_FILE_COMMENTS;
+        o->flags |= T3R_SCENE_COMMENTS;
         return 0;
     case ARGP_KEY_ARG:
         option_argument(state, arg, (const char **[]){&o->recording}, 1);
@@ -244,7 +244,7 @@ static int write_all(const build_options *o, const t3r_recording *recording, con
         .path = o->recording,
         .scene = &r->scene,
         .account = account,
-        .local = (o->flags & SCENE_FILE_LOCAL) != 0,
+        .local = (o->flags & T3R_SCENE_LOCAL) != 0,
         .sourced = o->settings.points_of == NULL || o->settings.method->allocates,
     };
     return o->colmap != NULL ? colmap_start_write(&start, folder, o->colmap) : CLI_OK;

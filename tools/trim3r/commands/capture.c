@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "capture/capture.h"
 #include "capture/clock_offset.h"
 #include "capture/options.h"
 #include "capture/result.h"
@@ -16,6 +15,7 @@
 #include "cli/cli.h"
 #include "cli/files/part_files.h"
 #include "cli/options/file_options.h"
+#include "trim3r_capture.h"
 
 #define ERROR_BYTES 512
 #define MOST_MOTIONS 3000u           /* frames for estimating an offset */
@@ -166,7 +166,7 @@ static int run(const capture_options *o, const trajectory *poses, const clock_of
         .prints_table = !o->json && !o->quiet,
         .every = o->every,
         .scene = o->scene,
-        .scene_flags = o->local ? SCENE_FILE_LOCAL : 0,
+        .scene_flags = o->local ? T3R_SCENE_LOCAL : 0,
         .hash = o->hash,
         .stop = &stop,
         .quiet = o->quiet,

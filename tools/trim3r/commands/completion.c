@@ -61,13 +61,13 @@ static const struct argp argp = {
 
 static int write_script(const char *path, const char *script)
 {
-    whole_file file;
+    t3r_whole_file file;
     char error[512] = "";
     if (whole_file_begin(&file, path, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     fputs(script, file.stream);
-    if (whole_file_commit(&file, NULL, error, sizeof error) != 0) {
+    if (t3r_whole_file_commit(&file, NULL, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     printf("%s: completion of commands, options and files\n", path);

@@ -13,7 +13,6 @@
 #include "bench/bench_kernels.h"
 #include "bench/cpu_flags.h"
 #include "bench/self_check.h"
-#include "capture/capture.h"
 #include "cli/cli.h"
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
@@ -23,6 +22,7 @@
 #include "host/text.h"
 #include "kernels/kernels.h"
 #include "posing/opencv_module.h"
+#include "trim3r_capture.h"
 
 #define CAMERAS_FOLDER "/sys/class/video4linux"
 #define CAMERAS_MOST 64

@@ -271,7 +271,7 @@ static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, 
 
 static int write_recording(const options *o, material *m, totals *t, char *error)
 {
-    whole_file file;
+    t3r_whole_file file;
     char *source = source_name(o->directory, m->folder.kind);
     t3r_recorder *recorder = malloc(t3r_recorder_bytes());
     t3r_recording_header header = {.camera = "camera",
@@ -286,9 +286,9 @@ static int write_recording(const options *o, material *m, totals *t, char *error
     } else if (whole_file_begin(&file, o->output, error, ERROR_BYTES) == 0) {
         status = write_frames(recorder, file.stream, o, m, &header, t, error);
         if (status == 0) {
-            status = whole_file_commit(&file, &t->bytes, error, ERROR_BYTES);
+            status = t3r_whole_file_commit(&file, &t->bytes, error, ERROR_BYTES);
         } else {
-            whole_file_abandon(&file);
+            t3r_whole_file_abandon(&file);
         }
     }
     t3r_chunk_packer_close(header.packer);

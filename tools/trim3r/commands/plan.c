@@ -264,13 +264,14 @@ static void print_table(const t3r_plan_info *plan, bool markdown)
 
 static int write_svg(const char *path, const t3r_plan_info *plan)
 {
-    whole_file file;
+    t3r_whole_file file;
     char error[512] = "";
     if (whole_file_begin(&file, path, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     plan_picture_write(file.stream, plan);
-    return whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
+    return t3r_whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK
+                                                                        : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
 /* Lowers the budget to what an arena of `bytes` can hold. */

@@ -117,7 +117,7 @@ static int write_frames(t3r_recorder *recorder, const t3r_recording_header *head
 
 static int write_recording(const options *o, drawing *d, uint64_t *bytes, char *error)
 {
-    whole_file file;
+    t3r_whole_file file;
     t3r_triplet triplets[ROOM_MAX_TRIPLETS];
     t3r_recording_header header = {.camera = "camera",
                                    .source = "the built-in room",
@@ -135,10 +135,10 @@ static int write_recording(const options *o, drawing *d, uint64_t *bytes, char *
     } else if (whole_file_begin(&file, o->output, error, ERROR_BYTES) == 0) {
         status = write_frames(recorder, &header, file.stream, o, d);
         if (status == 0) {
-            status = whole_file_commit(&file, bytes, error, ERROR_BYTES);
+            status = t3r_whole_file_commit(&file, bytes, error, ERROR_BYTES);
         } else {
             t3r_reason(error, ERROR_BYTES, "%s: cannot be written", o->output);
-            whole_file_abandon(&file);
+            t3r_whole_file_abandon(&file);
         }
     }
     t3r_chunk_packer_close(header.packer);

@@ -207,15 +207,15 @@ static int write_file(const view_options *o, const viewer_page *page)
 {
     char error[ERROR_BYTES] = "";
     uint64_t bytes;
-    whole_file file;
+    t3r_whole_file file;
     if (whole_file_begin(&file, o->output, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     if (viewer_page_write(page, file.stream) != 0) {
-        whole_file_abandon(&file);
+        t3r_whole_file_abandon(&file);
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    if (whole_file_commit(&file, &bytes, error, sizeof error) != 0) {
+    if (t3r_whole_file_commit(&file, &bytes, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
     tell(o, page, "page", o->output, bytes);

@@ -119,7 +119,7 @@ static char *make_json(const scene_source *source, const glb_layout *layout)
     cJSON_AddItemToObject(item, "nodes", cJSON_CreateIntArray(&none, 1));
     item = only_item(root, "nodes");
     cJSON_AddNumberToObject(item, "mesh", 0);
-    if ((source->flags & SCENE_FILE_LOCAL) != 0 && (source->flags & SCENE_FILE_COMMENTS) != 0) {
+    if ((source->flags & T3R_SCENE_LOCAL) != 0 && (source->flags & T3R_SCENE_COMMENTS) != 0) {
         add_translation(item, source);
     }
     item = only_item(root, "buffers");

@@ -84,7 +84,7 @@ static void read_up(const char *line, ply_header *h)
     static const struct {
         const char *end;
         scene_up up;
-    } ends[] = {{" with X-axis up", SCENE_UP_X}, {" with Y-axis up", SCENE_UP_Y}, {" with Z-axis up", SCENE_UP_Z}};
+    } ends[] = {{" with X-axis up", T3R_UP_X}, {" with Y-axis up", T3R_UP_Y}, {" with Z-axis up", T3R_UP_Z}};
     const size_t length = strlen(line);
     for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
         const size_t end = strlen(ends[i].end);

@@ -46,14 +46,14 @@ static void write_header(FILE *file, const scene_source *source)
 {
     fputs("ply\nformat binary_little_endian 1.0\n", file);
     fputs(source->rows->mip ? PLY_MIP_COMMENT "\n" : "", file);
-    if (source->flags & SCENE_FILE_COMMENTS) {
+    if (source->flags & T3R_SCENE_COMMENTS) {
         fprintf(file, "comment trim3r bits_epoch %d\n", T3R_BITS_EPOCH);
         fprintf(file, "comment trim3r exponent %" PRId32 "\n", source->frame.exponent);
         int64_t origin_q32[3];
         scene_turn_origin(&source->turn, source->frame.origin_q32, origin_q32);
         fprintf(file, "comment trim3r origin_q32 %" PRId64 " %" PRId64 " %" PRId64 "\n", origin_q32[0], origin_q32[1],
                 origin_q32[2]);
-        fprintf(file, "comment trim3r local %d\n", (source->flags & SCENE_FILE_LOCAL) != 0);
+        fprintf(file, "comment trim3r local %d\n", (source->flags & T3R_SCENE_LOCAL) != 0);
         if (source->note != NULL) {
             fprintf(file, "comment trim3r %s\n", source->note);
         }

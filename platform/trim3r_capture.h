@@ -1,22 +1,49 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Capture: one interface over every source of frames: recordings (`replay`), V4L2, libcamera, OpenCV.
+/* One interface over every source of frames: recordings (`replay`), V4L2, libcamera, OpenCV. Part of the host library.
  *
  * An adapter opens a source; the caller asks for frames one after the other and closes it. A frame's memory, the
  * driver's own buffer if there is one, stays valid until the next call on the same source. Only the calls that open may
  * wait longer than the deadline (OpenCV's back ends have their own, at most 10 s). Nothing is allocated after opening,
  * except by MJPEG and OpenCV. */
-#ifndef T3R_PLATFORM_CAPTURE_H
-#define T3R_PLATFORM_CAPTURE_H
+#ifndef TRIM3R_CAPTURE_H
+#define TRIM3R_CAPTURE_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
-#include "recording/captured_frame.h"
+#include "trim3r.h"
+#include "trim3r_program.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One captured frame, ready for t3r_add_view() once pose and intrinsics are known. */
+typedef struct t3r_capture_frame {
+    uint32_t index;         /* order among the colour images of the source, from 0 */
+    uint32_t sequence;      /* the driver's count, with gaps; in recordings the index */
+    int64_t stamp_ns;       /* time of the colour image, in the source's clock */
+    int64_t depth_stamp_ns; /* time of the depth image; equal to stamp_ns if they are one image */
+    bool has_pose;          /* camera's pose is known */
+    bool has_intrinsics;    /* camera's intrinsics are known */
+    bool straightened;      /* redrawn without the lens's distortion, which `camera` cannot hold */
+    t3r_frame frame;        /* frame.depth is NULL without depth */
+    t3r_camera camera;
+} t3r_capture_frame;
+
+/* Outcomes of asking for a frame. */
+enum {
+    T3R_CAPTURE_LOST = -2,   /* the device is gone, stalled or changed its format: t3r_capture_reopen() */
+    T3R_CAPTURE_FAILED = -1, /* this frame failed; the next one may be good */
+    T3R_CAPTURE_END = 0,     /* there are no more frames */
+    T3R_CAPTURE_FRAME = 1,
+    T3R_CAPTURE_NOTHING = 2, /* no frame by the deadline, or a signal came: ask again */
+};
 
 typedef struct t3r_capture t3r_capture;
 
-/* Fetches the next frame. Returns one of the values of captured_frame.h; t3r_capture_error() has the reason for LOST
- * and FAILED. */
+/* Fetches the next frame. Returns one of the outcomes above; t3r_capture_error() has the reason for LOST and FAILED. */
 int t3r_capture_next(t3r_capture *capture, t3r_capture_frame *frame);
 /* Closes the device and opens it again with the same settings; memory of earlier frames becomes invalid. Returns
  * T3R_CAPTURE_FRAME: reopened; T3R_CAPTURE_LOST: the device is not there (yet); T3R_CAPTURE_END: this source cannot be
@@ -105,13 +132,47 @@ typedef struct t3r_capture_settings {
 /* Returns the formats of this build in the order in which they are tried: "YUYV UYVY NV12 RGB3 BGR3 GREY MJPG". */
 const char *t3r_capture_formats(void);
 
+/* Returns what a program was compiled with, for the two calls that follow. */
+#define T3R_CAPTURE_TYPES_(X)                                                                                          \
+    X(t3r_capture_frame)                                                                                               \
+    X(t3r_capture_counts)                                                                                              \
+    X(t3r_capture_event)                                                                                               \
+    X(t3r_capture_settings)
+#define T3R_CAPTURE_FIELDS_(X)                                                                                         \
+    X(t3r_capture_frame, stamp_ns)                                                                                     \
+    X(t3r_capture_frame, has_pose)                                                                                     \
+    X(t3r_capture_frame, has_intrinsics)                                                                               \
+    X(t3r_capture_frame, frame)                                                                                        \
+    X(t3r_capture_frame, camera)                                                                                       \
+    X(t3r_capture_counts, reopened)                                                                                    \
+    X(t3r_capture_event, detail)                                                                                       \
+    X(t3r_capture_settings, format)                                                                                    \
+    X(t3r_capture_settings, depth_unit_q40)                                                                            \
+    X(t3r_capture_settings, backend)
+static inline t3r_program t3r_capture_program(void)
+{
+    uint64_t digest = t3r_header_interface();
+    T3R_CAPTURE_TYPES_(T3R_DIGEST_TYPE_)
+    T3R_CAPTURE_FIELDS_(T3R_DIGEST_FIELD_)
+    return t3r_program_of(digest);
+}
+
 /* Opens "replay:FILE", "v4l2:/dev/video0", "libcamera:0" or "opencv:URL". Returns NULL with a reason in error[] on
- * failure. */
-t3r_capture *t3r_capture_open(const char *source, const t3r_capture_settings *settings, char *error,
-                              size_t error_bytes);
+ * failure, also if the program was compiled with other headers than the library. */
+t3r_capture *t3r_capture_open_as(t3r_program program, const char *source, const t3r_capture_settings *settings,
+                                 char *error, size_t error_bytes);
+static inline t3r_capture *t3r_capture_open(const char *source, const t3r_capture_settings *settings, char *error,
+                                            size_t error_bytes)
+{
+    return t3r_capture_open_as(t3r_capture_program(), source, settings, error, error_bytes);
+}
 
 /* Opens the adapter `replay`: the frames of an MCAP recording. Returns NULL with a reason in error[] on failure. */
-t3r_capture *t3r_replay_open(const char *path, char *error, size_t error_bytes);
+t3r_capture *t3r_replay_open_as(t3r_program program, const char *path, char *error, size_t error_bytes);
+static inline t3r_capture *t3r_replay_open(const char *path, char *error, size_t error_bytes)
+{
+    return t3r_replay_open_as(t3r_capture_program(), path, error, error_bytes);
+}
 
 /* An adapter, in this build or missing from it. t3r_capture_devices() passes a line for each device found to `say`. */
 typedef struct t3r_capture_adapter {
@@ -123,4 +184,7 @@ uint32_t t3r_capture_adapter_count(void);
 t3r_capture_adapter t3r_capture_adapter_of(uint32_t index);
 void t3r_capture_devices(const char *adapter, void (*say)(void *user, const char *line), void *user);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

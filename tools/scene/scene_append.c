@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "reconstruction/scene_append.h"
+#include "scene/scene_append.h"
 
 #include "scene/seen_gaussian.h"
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "scene/colmap_folder.h"
+#include "reconstruction/colmap_folder.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -139,13 +139,13 @@ static void write_points(FILE *file, const writer *w)
 
 static int write_file(const writer *w, const char *name, void (*write)(FILE *file, const writer *w))
 {
-    whole_file file;
+    t3r_whole_file file;
     const char *path = whole_folder_file(w->folder, name, w->error, w->error_bytes);
     if (path == NULL || whole_file_begin(&file, path, w->error, w->error_bytes) != 0) {
         return -1;
     }
     write(file.stream, w);
-    return whole_file_commit(&file, NULL, w->error, w->error_bytes);
+    return t3r_whole_file_commit(&file, NULL, w->error, w->error_bytes);
 }
 
 static int write_picture(const writer *w, const colmap_view *view)

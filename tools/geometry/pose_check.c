@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "import/poses/pose_check.h"
+#include "geometry/pose_check.h"
 
 #include <math.h>
 

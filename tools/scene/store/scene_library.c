@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Scene files for programs of the host library: remarks go into the caller's text. */
+#include <stdio.h>
+#include <string.h>
+
+#include "host/program_check.h"
+#include "host/reason.h"
+#include "scene/scene_append.h"
+#include "scene/store/scene_store.h"
+
+typedef struct remarks {
+    char text[1024];
+    size_t length;
+} remarks;
+
+/* Adds a remark to those before, as far as there is room. */
+static void add_remark(void *user, const char *text)
+{
+    remarks *all = user;
+    const size_t room = sizeof all->text - all->length;
+    const int length = snprintf(all->text + all->length, room, "%s%s", all->length > 0 ? "; " : "", text);
+    all->length += length > 0 && (size_t)length < room ? (size_t)length : room - 1;
+}
+
+static int begin_whole(t3r_whole_file *file, const char *path, char *error, size_t error_bytes)
+{
+    return t3r_whole_file_begin(file, path, NULL, error, error_bytes);
+}
+
+t3r_status t3r_scene_read_as(t3r_program program, const char *path, int flags, t3r_scene_file *out, char *error,
+                             size_t error_bytes)
+{
+    remarks all = {.length = 0};
+    const scene_caller caller = {.remark = add_remark, .user = &all};
+    if (!t3r_program_fits(program, t3r_host_program(), error, error_bytes)) {
+        return T3R_ERR_INTERFACE;
+    }
+    if (scene_store_read(path, flags & T3R_SCENE_DROP_INVALID, &caller, out, error, error_bytes) != 0) {
+        return T3R_HOST_ERR_FILE;
+    }
+    t3r_reason(error, error_bytes, "%s", all.text);
+    return T3R_OK;
+}
+
+void t3r_scene_free(t3r_scene_file *scene)
+{
+    scene_file_free(scene);
+}
+
+t3r_status t3r_scene_write_as(t3r_program program, const char *path, const t3r_scene *scene, int flags, char *error,
+                              size_t error_bytes)
+{
+    remarks all = {.length = 0};
+    const scene_caller caller = {.remark = add_remark, .user = &all, .begin = begin_whole};
+    if (!t3r_program_fits(program, t3r_host_program(), error, error_bytes)) {
+        return T3R_ERR_INTERFACE;
+    }
+    if (scene_store_write(path, scene, flags & (T3R_SCENE_LOCAL | T3R_SCENE_COMMENTS), NULL, &caller, error,
+                          error_bytes) != 0) {
+        return T3R_HOST_ERR_FILE;
+    }
+    t3r_reason(error, error_bytes, "%s", all.text);
+    return T3R_OK;
+}
+
+t3r_status t3r_scene_load_as(t3r_program program, t3r_runtime *runtime, const t3r_scene_file *scene,
+                             const t3r_camera *eye, uint32_t width, uint32_t height)
+{
+    const scene_eye from = {.camera = eye, .width = width, .height = height};
+    uint32_t index;
+    return t3r_program_fits(program, t3r_host_program(), NULL, 0)
+               ? scene_append_all(runtime, scene, eye != NULL ? &from : NULL, &index)
+               : T3R_ERR_INTERFACE;
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Reads and writes scene files for any caller: a command prints remarks and guards its files (scene_file.h), a library
+ * passes them on. */
+#ifndef TRIM3R_TOOLS_SCENE_STORE_H
+#define TRIM3R_TOOLS_SCENE_STORE_H
+
+#include "host/whole_file.h"
+#include "scene/scene_file.h"
+#include "scene/scene_rows.h"
+
+typedef struct scene_caller {
+    /* Takes a remark on a file that is read or written all the same: "path: what". */
+    void (*remark)(void *user, const char *text);
+    void *user;
+    /* Begins a file that is written, like t3r_whole_file_begin(). */
+    int (*begin)(t3r_whole_file *file, const char *path, char *error, size_t error_bytes);
+} scene_caller;
+
+/* These are the functions of scene_file.h and scene_rows.h of the same names, for a caller. */
+int scene_store_read(const char *path, int flags, const scene_caller *caller, scene_file *out, char *error,
+                     size_t error_bytes);
+int scene_store_take(const char *path, int flags, const scene_caller *caller, const scene_sink *sink, char *error,
+                     size_t error_bytes);
+int scene_store_write(const char *path, const t3r_scene *scene, int flags, const char *note, const scene_caller *caller,
+                      char *error, size_t error_bytes);
+int scene_store_convert(const char *from, const char *to, int flags, const scene_caller *caller, scene_conversion *out,
+                        char *error, size_t error_bytes);
+
+/* Passes a formatted remark on a file to the caller. */
+void scene_remark(const scene_caller *caller, const char *path, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Passes on that so many Gaussians of a file are far away, and what is done with them. */
+void scene_remark_far(const scene_caller *caller, const char *path, uint32_t count, const char *done);
+
+#endif
