@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include <cjson/cJSON.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/tables/json_output.h"
 #include "core/little_endian.h"
 #include "host/little_floats.h"
 #include "host/reason.h"
 #include "scene/formats/byte_codes.h"
 #include "scene/formats/glb/glb.h"
+#include "scene/formats/json_stream.h"
 
 /* One attribute after the other. COLOR_0 is last: programs that do not know Gaussians draw points from it. */
 typedef struct glb_layout {
@@ -20,7 +19,7 @@ typedef struct glb_layout {
     double low[3], high[3];
 } glb_layout;
 
-enum { SHORTS_BYTES = 8, COLOUR_BYTES = 4 };
+enum { SHORTS_BYTES = 8, COLOUR_BYTES = 4, VERTEX_ATTRIBUTES = 34962 };
 
 /* Returns an attribute's bytes: rotations are four shorts, all others floats. */
 static uint32_t bytes_of(uint32_t attribute)
@@ -37,64 +36,61 @@ static uint64_t binary_bytes(const glb_layout *layout)
     return each * layout->count;
 }
 
-static void add_numbers(cJSON *object, const char *name, const double values[3])
+/* Returns the bytes of the Gaussians' attribute in the binary part; the last one is the colour. */
+static uint64_t attribute_bytes(const glb_layout *layout, uint32_t attribute)
 {
-    cJSON *array = cJSON_AddArrayToObject(object, name);
-    for (int i = 0; i < 3; i++) {
-        cJSON_AddItemToArray(array, cJSON_CreateNumber((double)(float)values[i]));
-    }
+    return (uint64_t)(attribute == layout->attributes ? COLOUR_BYTES : bytes_of(attribute)) * layout->count;
 }
 
-static void add_attribute(cJSON *views, cJSON *accessors, cJSON *attributes, const char *name, const char *type,
-                          int component, double offset, double bytes, const glb_layout *layout)
+/* Appends the names of the attributes, which are accessors in their order. */
+static void put_names(json_stream *json, const glb_layout *layout)
 {
-    cJSON *view = cJSON_CreateObject(), *accessor = cJSON_CreateObject();
-    cJSON_AddNumberToObject(view, "buffer", 0);
-    cJSON_AddNumberToObject(view, "byteOffset", offset);
-    cJSON_AddNumberToObject(view, "byteLength", bytes);
-    cJSON_AddNumberToObject(view, "target", 34962); /* vertex attributes */
-    cJSON_AddNumberToObject(accessor, "bufferView", cJSON_GetArraySize(views));
-    cJSON_AddNumberToObject(accessor, "componentType", component);
-    cJSON_AddNumberToObject(accessor, "count", layout->count);
-    cJSON_AddStringToObject(accessor, "type", type);
-    if (component != GLB_FLOAT) {
-        cJSON_AddTrueToObject(accessor, "normalized");
-    }
-    if (strcmp(name, "POSITION") == 0) {
-        add_numbers(accessor, "min", layout->low);
-        add_numbers(accessor, "max", layout->high);
-    }
-    cJSON_AddNumberToObject(attributes, name, cJSON_GetArraySize(accessors));
-    cJSON_AddItemToArray(views, view);
-    cJSON_AddItemToArray(accessors, accessor);
-}
-
-static void add_attributes(cJSON *root, cJSON *attributes, const glb_layout *layout)
-{
-    static const char *const types[] = {[1] = "SCALAR", [3] = "VEC3", [4] = "VEC4"};
-    cJSON *views = cJSON_AddArrayToObject(root, "bufferViews"), *accessors = cJSON_AddArrayToObject(root, "accessors");
-    double offset = 0;
+    char name[GLB_NAME_BYTES];
     for (uint32_t i = 0; i < layout->attributes; i++) {
-        char name[GLB_NAME_BYTES];
-        const double bytes = (double)bytes_of(i) * layout->count;
-        add_attribute(views, accessors, attributes, glb_attribute_name(i, name), types[glb_components(i)],
-                      i == GLB_ROTATION ? GLB_SHORT : GLB_FLOAT, offset, bytes, layout);
+        json_stream_put(json, "\"%s\":%" PRIu32 ",", glb_attribute_name(i, name), i);
+    }
+    json_stream_put(json, "\"COLOR_0\":%" PRIu32, layout->attributes);
+}
+
+static void put_views(json_stream *json, const glb_layout *layout)
+{
+    uint64_t offset = 0;
+    for (uint32_t i = 0; i <= layout->attributes; i++) {
+        const uint64_t bytes = attribute_bytes(layout, i);
+        json_stream_put(json, "%s{\"buffer\":0,\"byteOffset\":%" PRIu64 ",\"byteLength\":%" PRIu64 ",\"target\":%d}",
+                        i > 0 ? "," : "", offset, bytes, VERTEX_ATTRIBUTES);
         offset += bytes;
     }
-    add_attribute(views, accessors, attributes, "COLOR_0", "VEC4", GLB_UBYTE, offset,
-                  (double)COLOUR_BYTES * layout->count, layout);
 }
 
-/* Adds an array of one object, and returns the object. */
-static cJSON *only_item(cJSON *object, const char *array)
+/* Appends ,"name":[x,y,z], each the float that is nearest. */
+static void put_floats(json_stream *json, const char *name, const double values[3])
 {
-    cJSON *item = cJSON_CreateObject();
-    cJSON_AddItemToArray(cJSON_AddArrayToObject(object, array), item);
-    return item;
+    const double floats[3] = {(double)(float)values[0], (double)(float)values[1], (double)(float)values[2]};
+    json_stream_put(json, ",");
+    json_stream_numbers(json, name, floats, 3);
+}
+
+static void put_accessors(json_stream *json, const glb_layout *layout)
+{
+    static const char *const types[] = {[1] = "SCALAR", [3] = "VEC3", [4] = "VEC4"};
+    for (uint32_t i = 0; i <= layout->attributes; i++) {
+        const bool colour = i == layout->attributes;
+        const int component = colour ? GLB_UBYTE : i == GLB_ROTATION ? GLB_SHORT : GLB_FLOAT;
+        json_stream_put(json,
+                        "%s{\"bufferView\":%" PRIu32 ",\"componentType\":%d,\"count\":%" PRIu32 ",\"type\":\"%s\"%s",
+                        i > 0 ? "," : "", i, component, layout->count, types[colour ? 4 : glb_components(i)],
+                        component != GLB_FLOAT ? ",\"normalized\":true" : "");
+        if (i == GLB_POSITION) {
+            put_floats(json, "min", layout->low);
+            put_floats(json, "max", layout->high);
+        }
+        json_stream_put(json, "}");
+    }
 }
 
 /* Puts the scene's origin where it is in the world. */
-static void add_translation(cJSON *node, const scene_source *source)
+static void put_translation(json_stream *json, const scene_source *source)
 {
     int64_t turned_q32[3];
     double origin[3];
@@ -102,36 +98,33 @@ static void add_translation(cJSON *node, const scene_source *source)
     for (int axis = 0; axis < 3; axis++) {
         origin[axis] = ldexp((double)turned_q32[axis], -32);
     }
-    cJSON_AddItemToObject(node, "translation", cJSON_CreateDoubleArray(origin, 3));
+    json_stream_put(json, ",");
+    json_stream_numbers(json, "translation", origin, 3);
 }
 
 /* Returns NULL when out of memory. */
 static char *make_json(const scene_source *source, const glb_layout *layout)
 {
-    const int none = 0;
-    json_watch_memory();
-    cJSON *root = cJSON_CreateObject(), *item = cJSON_AddObjectToObject(root, "asset");
-    cJSON_AddStringToObject(item, "version", "2.0");
-    cJSON_AddStringToObject(item, "generator", "trim3r");
-    cJSON_AddItemToArray(cJSON_AddArrayToObject(root, "extensionsUsed"), cJSON_CreateString(GLB_EXTENSION));
-    cJSON_AddNumberToObject(root, "scene", 0);
-    item = only_item(root, "scenes");
-    cJSON_AddItemToObject(item, "nodes", cJSON_CreateIntArray(&none, 1));
-    item = only_item(root, "nodes");
-    cJSON_AddNumberToObject(item, "mesh", 0);
+    json_stream json;
+    json_stream_begin(&json);
+    json_stream_put(&json,
+                    "{\"asset\":{\"version\":\"2.0\",\"generator\":\"trim3r\"},\"extensionsUsed\":[\"" GLB_EXTENSION
+                    "\"],\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0");
     if ((source->flags & T3R_SCENE_LOCAL) != 0 && (source->flags & T3R_SCENE_COMMENTS) != 0) {
-        add_translation(item, source);
+        put_translation(&json, source);
     }
-    item = only_item(root, "buffers");
-    cJSON_AddNumberToObject(item, "byteLength", (double)binary_bytes(layout));
-    item = only_item(root, "meshes");
-    item = only_item(item, "primitives");
-    cJSON_AddNumberToObject(item, "mode", 0); /* points */
-    add_attributes(root, cJSON_AddObjectToObject(item, "attributes"), layout);
-    item = cJSON_AddObjectToObject(cJSON_AddObjectToObject(item, "extensions"), GLB_EXTENSION);
-    cJSON_AddStringToObject(item, "kernel", "ellipse");
-    cJSON_AddStringToObject(item, "colorSpace", "srgb_rec709_display");
-    return json_text(root);
+    json_stream_put(&json,
+                    "}],\"buffers\":[{\"byteLength\":%" PRIu64
+                    "}],\"meshes\":[{\"primitives\":[{\"mode\":0,\"attributes\":{",
+                    binary_bytes(layout)); /* mode 0: points */
+    put_names(&json, layout);
+    json_stream_put(&json, "},\"extensions\":{\"" GLB_EXTENSION
+                           "\":{\"kernel\":\"ellipse\",\"colorSpace\":\"srgb_rec709_display\"}}}]}],\"bufferViews\":[");
+    put_views(&json, layout);
+    json_stream_put(&json, "],\"accessors\":[");
+    put_accessors(&json, layout);
+    json_stream_put(&json, "]}");
+    return json_stream_end(&json);
 }
 
 static void put_attribute(const scene_row *row, uint32_t attribute, uint8_t *out)

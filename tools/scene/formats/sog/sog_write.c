@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Orders Gaussians along a Z-order curve, so that neighbours in the pictures are neighbours in the scene. */
-#include <cjson/cJSON.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zip.h>
 
-#include "cli/tables/json_output.h"
 #include "host/reason.h"
 #include "scene/formats/byte_codes.h"
+#include "scene/formats/json_stream.h"
 #include "scene/formats/sog/codebook.h"
 #include "scene/formats/sog/sog.h"
 #include "scene/formats/sog/sog_harmonics.h"
@@ -125,46 +124,50 @@ static int fill_pictures(const scene_source *source, sog_file *sog)
     return result;
 }
 
-static void add_files(cJSON *object, const char *const *first, int count)
+/* Appends ,"files":["...",...]. */
+static void put_files(json_stream *json, const char *const *first, int count)
 {
-    cJSON_AddItemToObject(object, "files", cJSON_CreateStringArray(first, count));
+    json_stream_put(json, ",\"files\":[");
+    for (int i = 0; i < count; i++) {
+        json_stream_put(json, "%s\"%s\"", i > 0 ? "," : "", first[i]);
+    }
+    json_stream_put(json, "]");
 }
 
-static void add_codebook(cJSON *object, const double values[CODEBOOK_VALUES])
+static void put_codebook(json_stream *json, const double values[CODEBOOK_VALUES])
 {
-    cJSON_AddItemToObject(object, "codebook", cJSON_CreateDoubleArray(values, CODEBOOK_VALUES));
+    json_stream_numbers(json, "codebook", values, CODEBOOK_VALUES);
 }
 
 /* Returns meta.json; free() it. NULL: out of memory. */
 static char *make_meta(const sog_file *sog, uint32_t count)
 {
-    json_watch_memory();
-    cJSON *root = cJSON_CreateObject(), *item = cJSON_AddObjectToObject(root, "asset");
-    cJSON_AddStringToObject(item, "generator", "trim3r");
-    cJSON_AddNumberToObject(root, "version", SOG_VERSION);
-    cJSON_AddNumberToObject(root, "count", count);
+    json_stream json;
+    json_stream_begin(&json);
+    json_stream_put(&json, "{\"asset\":{\"generator\":\"trim3r\"},\"version\":%d,\"count\":%" PRIu32, SOG_VERSION,
+                    count);
     if (sog->mip) {
-        cJSON_AddStringToObject(root, "model", SOG_MODEL_MIP);
+        json_stream_put(&json, ",\"model\":\"%s\"", SOG_MODEL_MIP);
     }
-    item = cJSON_AddObjectToObject(root, "means");
-    cJSON_AddItemToObject(item, "mins", cJSON_CreateDoubleArray(sog->low, 3));
-    cJSON_AddItemToObject(item, "maxs", cJSON_CreateDoubleArray(sog->high, 3));
-    add_files(item, &names[SOG_MEANS_LOW], 2);
-    item = cJSON_AddObjectToObject(root, "scales");
-    add_codebook(item, sog->scales);
-    add_files(item, &names[SOG_SCALES], 1);
-    add_files(cJSON_AddObjectToObject(root, "quats"), &names[SOG_ROTATIONS], 1);
-    item = cJSON_AddObjectToObject(root, "sh0");
-    add_codebook(item, sog->colours);
-    add_files(item, &names[SOG_COLOURS], 1);
+    json_stream_put(&json, ",\"means\":{");
+    json_stream_numbers(&json, "mins", sog->low, 3);
+    json_stream_put(&json, ",");
+    json_stream_numbers(&json, "maxs", sog->high, 3);
+    put_files(&json, &names[SOG_MEANS_LOW], 2);
+    json_stream_put(&json, "},\"scales\":{");
+    put_codebook(&json, sog->scales);
+    put_files(&json, &names[SOG_SCALES], 1);
+    json_stream_put(&json, "},\"quats\":{\"files\":[\"%s\"]},\"sh0\":{", names[SOG_ROTATIONS]);
+    put_codebook(&json, sog->colours);
+    put_files(&json, &names[SOG_COLOURS], 1);
     if (sog->degree > 0) {
-        item = cJSON_AddObjectToObject(root, "shN");
-        cJSON_AddNumberToObject(item, "count", sog->harmonics.count);
-        cJSON_AddNumberToObject(item, "bands", sog->degree);
-        add_codebook(item, sog->harmonics.codebook);
-        add_files(item, harmonics_names, 2);
+        json_stream_put(&json, "},\"shN\":{\"count\":%" PRIu32 ",\"bands\":%" PRIu32 ",", sog->harmonics.count,
+                        sog->degree);
+        put_codebook(&json, sog->harmonics.codebook);
+        put_files(&json, harmonics_names, 2);
     }
-    return json_text(root);
+    json_stream_put(&json, "}}");
+    return json_stream_end(&json);
 }
 
 /* The archive's members, which libzip reads when it closes the archive. They stay ours: where it fails to take one, it
