@@ -10,9 +10,8 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "host/cpu.h"
-#include "trim3r_capture.h"
 #include "trim3r_heads.h"
+#include "trim3r_host.h"
 
 enum { SIDE = 256, GAUSSIANS = 6000 };
 

@@ -8,8 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "host/cpu.h"
-#include "trim3r_capture.h"
+#include "trim3r_host.h"
 
 enum { SIDE = 128, VIEWS = 2, GAUSSIANS = 2000 };
 

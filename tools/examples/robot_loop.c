@@ -7,8 +7,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "host/cpu.h"
-#include "trim3r_capture.h"
+#include "trim3r_host.h"
 
 #ifndef ROBOT_BYTES
 #define ROBOT_BYTES (1 << 20)

@@ -7,7 +7,7 @@ if(NOT CMAKE_READELF)
 endif()
 
 # FILE|NAME|VERSION of each library that may be loaded
-set(known)
+set(known "libtrim3r|trim3r|${PROJECT_VERSION}")
 foreach(found CJSON JPEG LZ4 OPENEXR PNG T3R_LIBCAMERA_LIB WEBP ZIP ZLIB ZSTD)
   foreach(library ${${found}_LIBRARIES})
     list(APPEND known "lib${library}|${${found}_MODULE_NAME}|${${found}_VERSION}")
@@ -35,7 +35,8 @@ if(CMAKE_C_COMPILER_ID STREQUAL GNU) # the libraries of its C++
 endif()
 
 # t3r_bill(COMPONENT PACKAGE [HEADS heads...] [TARGETS targets...] [NEEDS names...]): share/sbom/PACKAGE.spdx.json.
-# NEEDS: besides the libraries that the targets load. Each package except the modules' contains the runtime.
+# NEEDS: besides the libraries that the targets load. Packages contain the
+# runtime, except those of the host library and of modules.
 set(bills)
 function(t3r_bill component package)
   cmake_parse_arguments(B "" "" "HEADS;TARGETS;NEEDS" ${ARGN})
@@ -61,6 +62,12 @@ set(heads tiny small)
 t3r_bill(dev libtrim3r-dev HEADS ${heads} TARGETS trim3r_runtime trim3r_heads)
 if(TARGET trim3r_shared)
   t3r_bill(shared ${shared_package} TARGETS trim3r_shared)
+endif()
+if(TARGET trim3r_host)
+  t3r_bill(host_dev libtrim3r-host-dev TARGETS trim3r_host)
+endif()
+if(TARGET trim3r_host_shared)
+  t3r_bill(host ${host_package} TARGETS trim3r_host_shared)
 endif()
 if(TARGET trim3r)
   t3r_bill(program trim3r HEADS ${heads} TARGETS trim3r)

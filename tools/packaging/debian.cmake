@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Debian packages, by `cpack` in the build folder: the shared library, what builds programs, the program, its modules for
+# Debian packages, by `cpack` in the build folder: the shared libraries, what builds programs, the program, its modules for
 # cameras and for poses, which need much and are therefore apart, and the Python package.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME trim3r)
@@ -13,6 +13,9 @@ set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_COMPONENTS_ALL dev)
 if(TARGET trim3r_shared)
   list(APPEND CPACK_COMPONENTS_ALL shared)
+endif()
+if(TARGET trim3r_host_shared)
+  list(APPEND CPACK_COMPONENTS_ALL host host_dev)
 endif()
 if(TARGET trim3r)
   list(APPEND CPACK_COMPONENTS_ALL program)
@@ -36,6 +39,15 @@ set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
 if(TARGET trim3r_shared)
   set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "${shared_package} (= ${PROJECT_VERSION})")
 endif()
+set(host_package libtrim3r-host${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(CPACK_DEBIAN_HOST_PACKAGE_NAME ${host_package})
+set(CPACK_DEBIAN_HOST_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_HOST_PACKAGE_DEPENDS "${shared_package} (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_HOST_DEV_PACKAGE_NAME libtrim3r-host-dev)
+set(CPACK_DEBIAN_HOST_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_HOST_DEV_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_HOST_DEV_PACKAGE_DEPENDS "libtrim3r-dev (= ${PROJECT_VERSION}), ${host_package} (= ${PROJECT_VERSION}), \
+libcjson-dev, libjpeg-dev, liblz4-dev, libwebp-dev, libzip-dev, libzstd-dev, zlib1g-dev")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME trim3r)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
 foreach(component ${module_components})

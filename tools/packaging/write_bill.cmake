@@ -30,7 +30,7 @@ set(others "\"licenseConcluded\": \"NOASSERTION\"" "\"licenseDeclared\": \"NOASS
   "\"copyrightText\": \"NOASSERTION\"")
 t3r_package(Package ${PACKAGE} ${VERSION} ${licence})
 t3r_relation(DOCUMENT DESCRIBES SPDXRef-Package)
-if(NOT COMPONENT MATCHES "^(cameras|poses)$")
+if(NOT COMPONENT MATCHES "^(cameras|poses|host|host_dev)$")
   t3r_package(runtime trim3r-runtime ${VERSION} ${licence})
   t3r_relation(Package CONTAINS SPDXRef-runtime)
   t3r_relation(runtime DEPENDS_ON NONE)
