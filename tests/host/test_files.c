@@ -1,0 +1,182 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Scenes and files of the host library, and pixels of four channels. */
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "scratch.h"
+#include "test.h"
+#include "trim3r_host.h"
+
+enum { GAUSSIANS = 5 };
+
+/* Gaussians along a line, of different sizes and colours. */
+static t3r_scene line_of(t3r_gaussian *gaussians)
+{
+    for (int i = 0; i < GAUSSIANS; i++) {
+        gaussians[i] = (t3r_gaussian){.position_q20 = {(i - 2) << 19, i << 16, 3 << 20},
+                                      .factor = {[0] = 8192, [4] = 8192, [8] = 4096},
+                                      .factor_exponent = -19,
+                                      .colour_q7 = {(uint16_t)(6000 * i), 12000, 30000},
+                                      .opacity_q15 = (uint16_t)(20000 + 2000 * i),
+                                      .confidence = 255};
+    }
+    return (t3r_scene){.gaussians = gaussians, .count = GAUSSIANS, .frame = {.exponent = 1}};
+}
+
+static bool exists(const char *path)
+{
+    struct stat about;
+    return stat(path, &about) == 0;
+}
+
+/* Returns the number of files in the folder. */
+static int files_in(const char *folder)
+{
+    DIR *all = opendir(folder);
+    int count = 0;
+    assert_non_null(all);
+    for (struct dirent *entry; (entry = readdir(all)) != NULL;) {
+        count += entry->d_name[0] != '.';
+    }
+    closedir(all);
+    return count;
+}
+
+TEST_WITH(a_scene_is_read_as_it_was_written, scratch_setup, scratch_teardown)
+{
+    static const char *const names[] = {"line.ply", "line.compressed.ply", "line.splat", "line.spz", "line.glb"};
+    t3r_gaussian gaussians[GAUSSIANS];
+    const t3r_scene scene = line_of(gaussians);
+    char error[256];
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        const char *path = scratch_path(*state, names[i]);
+        t3r_scene_file back;
+        assert_int_equal(t3r_scene_write(path, &scene, T3R_SCENE_COMMENTS, error, sizeof error), T3R_OK);
+        assert_string_equal(error, "");
+        assert_int_equal(t3r_scene_read(path, 0, &back, error, sizeof error), T3R_OK);
+        assert_string_equal(error, "");
+        assert_int_equal(back.count, GAUSSIANS);
+        if (i == 0) { /* its comments hold the frame */
+            assert_memory_equal(&back.frame, &scene.frame, sizeof back.frame);
+            assert_memory_equal(back.gaussians[4].position_q20, gaussians[4].position_q20,
+                                sizeof gaussians[4].position_q20);
+        }
+        t3r_scene_free(&back);
+    }
+    assert_int_equal(files_in(((scratch *)*state)->directory), sizeof names / sizeof names[0]);
+}
+
+TEST_WITH(a_scene_of_a_file_is_loaded_and_drawn, scratch_setup, scratch_teardown)
+{
+    enum { SIDE = 32 };
+    static uint8_t rgb[SIDE][SIDE][3];
+    t3r_gaussian gaussians[GAUSSIANS];
+    const t3r_scene scene = line_of(gaussians);
+    const char *path = scratch_path(*state, "line.ply");
+    const t3r_target view = {SIDE, SIDE, .rgb = &rgb[0][0][0], .rgb_stride_bytes = sizeof rgb[0]};
+    const t3r_camera eye = {SIDE << 16, SIDE << 16, (SIDE - 1) << 15, (SIDE - 1) << 15, .rotation_q30 = {1 << 30}};
+    t3r_config config = t3r_default_config(SIDE, SIDE, 0, GAUSSIANS);
+    t3r_scene_file file;
+    t3r_host *host;
+    assert_int_equal(t3r_scene_write(path, &scene, 0, NULL, 0), T3R_OK);
+    assert_int_equal(t3r_scene_read(path, 0, &file, NULL, 0), T3R_OK);
+    assert_int_equal(t3r_host_open(&host, &config, 1, NULL, 0), T3R_OK);
+    assert_int_equal(t3r_scene_load(t3r_host_runtime(host), &file, &eye, SIDE, SIDE), T3R_OK);
+    assert_int_equal(t3r_render(t3r_host_runtime(host), &eye, &view), T3R_OK);
+    assert_true(rgb[SIDE / 2][SIDE / 2][2] > 0);
+    t3r_host_close(host);
+    /* an arena for fewer Gaussians */
+    config = t3r_default_config(SIDE, SIDE, 0, GAUSSIANS - 1);
+    assert_int_equal(t3r_host_open(&host, &config, 1, NULL, 0), T3R_OK);
+    assert_int_equal(t3r_scene_load(t3r_host_runtime(host), &file, NULL, 0, 0), T3R_ERR_FULL);
+    t3r_host_close(host);
+    t3r_scene_free(&file);
+}
+
+TEST_WITH(a_file_that_fails_says_why_and_leaves_the_old_one, scratch_setup, scratch_teardown)
+{
+    t3r_gaussian gaussians[GAUSSIANS];
+    t3r_scene scene = line_of(gaussians);
+    t3r_scene_file file;
+    char error[256];
+    assert_int_equal(t3r_scene_read(scratch_path(*state, "none.ply"), 0, &file, error, sizeof error),
+                     T3R_HOST_ERR_FILE);
+    assert_non_null(strstr(error, "none.ply: "));
+    scratch_write(*state, "bad.ply", "ply\nrubbish", 11);
+    assert_int_equal(t3r_scene_read(scratch_path(*state, "bad.ply"), 0, &file, error, sizeof error), T3R_HOST_ERR_FILE);
+    assert_non_null(strstr(error, "bad.ply: "));
+    assert_int_equal(t3r_scene_write(scratch_path(*state, "line.obj"), &scene, 0, error, sizeof error),
+                     T3R_HOST_ERR_FILE);
+    assert_non_null(strstr(error, ".spz"));
+    scene.count = 0;
+    assert_int_equal(t3r_scene_write(scratch_path(*state, "bad.ply"), &scene, 0, error, sizeof error),
+                     T3R_HOST_ERR_FILE);
+    assert_true(exists(scratch_path(*state, "bad.ply")));
+    assert_int_equal(files_in(((scratch *)*state)->directory), 1);
+}
+
+/* A scene far from the world's origin is written relative to its own, and the caller hears of it. */
+TEST_WITH(what_a_file_cannot_hold_is_said, scratch_setup, scratch_teardown)
+{
+    t3r_gaussian gaussians[GAUSSIANS];
+    t3r_scene scene = line_of(gaussians);
+    char error[512];
+    scene.frame.origin_q32[0] = INT64_C(1000000) << 32;
+    assert_int_equal(t3r_scene_write(scratch_path(*state, "far.splat"), &scene, 0, error, sizeof error), T3R_OK);
+    assert_non_null(strstr(error, "far.splat: floats would lose"));
+    assert_non_null(strstr(error, "1000000"));
+}
+
+TEST_WITH(a_whole_file_replaces_or_leaves, scratch_setup, scratch_teardown)
+{
+    const char *path = scratch_path(*state, "settings.bin");
+    char read[8] = "", error[256];
+    assert_int_equal(t3r_write_whole(path, "first", 5, error, sizeof error), T3R_OK);
+    assert_int_equal(t3r_write_whole(path, "later", 5, error, sizeof error), T3R_OK);
+    assert_string_equal(error, "");
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    assert_int_equal(fread(read, 1, sizeof read, file), 5);
+    fclose(file);
+    assert_string_equal(read, "later");
+    assert_int_equal(files_in(((scratch *)*state)->directory), 1);
+    assert_int_equal(t3r_write_whole("/nonexistent/x", "x", 1, error, sizeof error), T3R_HOST_ERR_FILE);
+    assert_non_null(strstr(error, "/nonexistent/x: "));
+    assert_int_equal(t3r_write_whole("/dev/full", "x", 1, error, sizeof error), T3R_HOST_ERR_FILE);
+}
+
+TEST(four_channels_become_three)
+{
+    enum { WIDTH = 2, HEIGHT = 2, STRIDE = 11 };
+    uint8_t rgba[HEIGHT][STRIDE] = {{1, 2, 3, 255, 4, 5, 6, 127}, {7, 8, 9, 128, 10, 11, 12, 0}};
+    uint8_t rgb[HEIGHT][8], opaque[HEIGHT * WIDTH];
+    static const uint8_t first[] = {1, 2, 3, 4, 5, 6}, blue[] = {9, 8, 7, 12, 11, 10}, mask[] = {1, 0, 1, 0};
+    assert_true(t3r_rgb_of_rgba(rgba[0], STRIDE, WIDTH, HEIGHT, false, rgb[0], sizeof rgb[0], opaque));
+    assert_memory_equal(rgb[0], first, sizeof first);
+    assert_memory_equal(opaque, mask, sizeof mask);
+    assert_true(t3r_rgb_of_rgba(rgba[0], STRIDE, WIDTH, HEIGHT, true, rgb[0], sizeof rgb[0], NULL));
+    assert_memory_equal(rgb[1], blue, sizeof blue);
+    rgba[0][3] = rgba[1][3] = 0;
+    assert_false(t3r_rgb_of_rgba(rgba[0], STRIDE, WIDTH, HEIGHT, false, rgb[0], sizeof rgb[0], NULL));
+}
+
+TEST(a_view_has_its_coverage_as_alpha)
+{
+    uint8_t rgb[2][6] = {{1, 2, 3, 4, 5, 6}, {7, 8, 9, 10, 11, 12}}, rgba[2][8];
+    uint16_t alpha[2][2] = {{0, 32767}, {16384, 64}};
+    const t3r_target view = {.width = 2,
+                             .height = 2,
+                             .rgb = rgb[0],
+                             .rgb_stride_bytes = sizeof rgb[0],
+                             .alpha_q15 = alpha[0],
+                             .alpha_stride_bytes = sizeof alpha[0]};
+    static const uint8_t with[] = {1, 2, 3, 0, 4, 5, 6, 255, 7, 8, 9, 128, 10, 11, 12, 0};
+    t3r_target opaque = view;
+    t3r_rgba_of_view(&view, rgba[0], sizeof rgba[0]);
+    assert_memory_equal(rgba, with, sizeof with);
+    opaque.alpha_q15 = NULL;
+    t3r_rgba_of_view(&opaque, rgba[0], sizeof rgba[0]);
+    assert_int_equal(rgba[0][3], 255);
+}
