@@ -16,7 +16,8 @@ static void *load_beside(const char *beside, const char *file, bool *there)
 {
     char path[1024];
     const char *slash = strrchr(beside, '/');
-    const int length = snprintf(path, sizeof path, "%.*s%s", slash == NULL ? 0 : (int)(slash - beside) + 1, beside, file);
+    const int length =
+        snprintf(path, sizeof path, "%.*s%s", slash == NULL ? 0 : (int)(slash - beside) + 1, beside, file);
     *there = slash != NULL && length > 0 && (size_t)length < sizeof path && access(path, F_OK) == 0;
     return *there ? dlopen(path, RTLD_NOW | RTLD_LOCAL) : NULL;
 }

@@ -21,7 +21,7 @@ def check(header, folder):
         if shutil.which(compiler) is None:
             print(f"without {compiler}: not here")
             continue
-        result = proof.run([compiler, "-x", language, standard, *STRICT, "-I", header.parent, user])
+        result = proof.run([compiler, "-x", language, standard, *STRICT, "-I", header.parent, "-I", proof.RUNTIME / "include", user])
         if result.returncode != 0:
             findings.append(f"{header.name} as {standard} by {compiler}: {result.stderr.strip()}")
     return findings

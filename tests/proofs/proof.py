@@ -111,7 +111,8 @@ def runtime_sources():
 
 
 def public_headers():
-    return sorted((RUNTIME / "include").glob("*.h")) + [ROOT / "quant" / "heads" / "trim3r_heads.h"]
+    return [*sorted((RUNTIME / "include").glob("*.h")), ROOT / "quant" / "heads" / "trim3r_heads.h",
+            *sorted((ROOT / "platform").glob("trim3r_*.h"))]
 
 
 def public_functions():

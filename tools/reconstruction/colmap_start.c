@@ -4,8 +4,8 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "reconstruction/developed_frame.h"
 #include "reconstruction/colmap_folder.h"
+#include "reconstruction/developed_frame.h"
 
 #define ERROR_BYTES 512
 
