@@ -11,20 +11,27 @@ from library import CONSUMERS, HASH, SERIES, VERSION, there
 
 from checks import check, done, run
 
-SHARED = f"libtrim3r{SERIES}"
+SHARED, HOST = f"libtrim3r{SERIES}", f"libtrim3r-host{SERIES}"
 FILES = {
     SHARED: [f"lib/libtrim3r.so.{SERIES}", f"lib/libtrim3r.so.{VERSION}", f"share/sbom/{SHARED}.spdx.json"],
     "libtrim3r-dev": ["include/trim3r.h", "include/trim3r_arena.h", "include/trim3r_features.h", "include/trim3r_heads.h",
                       "include/trim3r_interface.h", "include/trim3r_settings.h",
-                      "lib/cmake/trim3r/trim3r-config-release.cmake", "lib/cmake/trim3r/trim3r-config-version.cmake",
-                      "lib/cmake/trim3r/trim3r-config.cmake", "lib/libtrim3r.a", "lib/libtrim3r.so",
+                      "lib/cmake/trim3r/trim3r-config-version.cmake", "lib/cmake/trim3r/trim3r-config.cmake",
+                      "lib/cmake/trim3r/trim3r-targets-release.cmake", "lib/cmake/trim3r/trim3r-targets.cmake", "lib/libtrim3r.a", "lib/libtrim3r.so",
                       "lib/libtrim3r_heads.a", "lib/pkgconfig/trim3r-heads.pc", "lib/pkgconfig/trim3r.pc",
                       "share/sbom/libtrim3r-dev.spdx.json"],
+    HOST: [f"lib/libtrim3r_host.so.{SERIES}", f"lib/libtrim3r_host.so.{VERSION}", f"share/sbom/{HOST}.spdx.json"],
+    "libtrim3r-host-dev": ["include/trim3r_capture.h", "include/trim3r_host.h", "include/trim3r_program.h",
+                           "lib/cmake/trim3r/trim3r-host-targets-release.cmake",
+                           "lib/cmake/trim3r/trim3r-host-targets.cmake", "lib/libtrim3r_host.a", "lib/libtrim3r_host.so",
+                           "lib/pkgconfig/trim3r-host.pc", "share/sbom/libtrim3r-host-dev.spdx.json"],
     "trim3r": ["bin/trim3r", "share/bash-completion/completions/trim3r", "share/fish/vendor_completions.d/trim3r.fish",
                "share/man/man1/trim3r.1", "share/sbom/trim3r.spdx.json", "share/zsh/site-functions/_trim3r",
                "share/zsh/vendor-completions/_trim3r"],
 }
-NEEDS = {SHARED: ["libc6"], "libtrim3r-dev": [f"{SHARED} (= {VERSION})"],
+NEEDS = {HOST: [f"{SHARED} (= {VERSION})", "libc6", "libzip4"],
+         "libtrim3r-host-dev": [f"libtrim3r-dev (= {VERSION})", f"{HOST} (= {VERSION})", "libzip-dev"],
+         SHARED: ["libc6"], "libtrim3r-dev": [f"{SHARED} (= {VERSION})"],
          "trim3r": ["libc6", "libcjson1", "libjpeg", "liblz4-1", "libpng16-16", "libzip4", "libzstd1"]}
 if any(pathlib.Path(sys.argv[1]).glob("python/trim3r/*.so")): # where the Python package was built
     FILES["python3-trim3r"] = sorted(f"lib/python3/dist-packages/trim3r/{path.name}"
