@@ -15,7 +15,7 @@ enum { GAUSSIANS = 5 };
 static t3r_scene line_of(t3r_gaussian *gaussians)
 {
     for (int i = 0; i < GAUSSIANS; i++) {
-        gaussians[i] = (t3r_gaussian){.position_q20 = {(i - 2) << 19, i << 16, 3 << 20},
+        gaussians[i] = (t3r_gaussian){.position_q20 = {(i - 2) * (1 << 19), i << 16, 3 << 20},
                                       .factor = {[0] = 8192, [4] = 8192, [8] = 4096},
                                       .factor_exponent = -19,
                                       .colour_q7 = {(uint16_t)(6000 * i), 12000, 30000},
