@@ -76,7 +76,11 @@ TEST_WITH(a_scene_of_a_file_is_loaded_and_drawn, scratch_setup, scratch_teardown
     const t3r_scene scene = line_of(gaussians);
     const char *path = scratch_path(*state, "line.ply");
     const t3r_target view = {SIDE, SIDE, .rgb = &rgb[0][0][0], .rgb_stride_bytes = sizeof rgb[0]};
-    const t3r_camera eye = {SIDE << 16, SIDE << 16, (SIDE - 1) << 15, (SIDE - 1) << 15, .rotation_q30 = {1 << 30}};
+    const t3r_camera eye = {.fx_q16 = SIDE << 16,
+                            .fy_q16 = SIDE << 16,
+                            .cx_q16 = (SIDE - 1) << 15,
+                            .cy_q16 = (SIDE - 1) << 15,
+                            .rotation_q30 = {1 << 30}};
     t3r_config config = t3r_default_config(SIDE, SIDE, 0, GAUSSIANS);
     t3r_scene_file file;
     t3r_host *host;
