@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a program was compiled with. The host library compares it with itself, as the runtime compares its digest
+/* States the headers that a program was compiled with. The host library compares them with its own, as the runtime does
  * (trim3r_interface.h). */
 #ifndef TRIM3R_PROGRAM_H
 #define TRIM3R_PROGRAM_H

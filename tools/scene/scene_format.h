@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A format of scene files. A new one needs a source file in formats/ with its row, and the row's name in
- * scene_file.c. */
+ * store/scene_formats.c. */
 #ifndef TRIM3R_TOOLS_SCENE_FORMAT_H
 #define TRIM3R_TOOLS_SCENE_FORMAT_H
 
