@@ -28,7 +28,7 @@
 extern "C" {
 #endif
 
-/* Values of t3r_status besides those of trim3r.h. */
+/* Values of t3r_status besides those of trim3r.h; only error[] has a text for them. */
 enum {
     T3R_HOST_ERR_FILE = -100,  /* a file cannot be read, understood or written */
     T3R_HOST_ERR_SYSTEM = -101 /* the system refuses memory or a thread */
@@ -257,9 +257,9 @@ static inline t3r_status t3r_scene_read(const char *path, int flags, t3r_scene_f
 }
 void t3r_scene_free(t3r_scene_file *scene);
 
-/* Writes a scene in the format of the path's suffix, in the world of its cameras. The file appears when it is whole.
- * After T3R_OK error[] holds what the format could not hold, "" for nothing. T3R_HOST_ERR_FILE: an earlier file stays.
- */
+/* Writes a scene in the format of the path's suffix, in the world of its cameras. The file appears when it is whole; a
+ * .sog is first read back by a child of fork(). After T3R_OK error[] holds what the format could not hold, "" for
+ * nothing. T3R_HOST_ERR_FILE: an earlier file stays. */
 t3r_status t3r_scene_write_as(t3r_program program, const char *path, const t3r_scene *scene, int flags, char *error,
                               size_t error_bytes);
 static inline t3r_status t3r_scene_write(const char *path, const t3r_scene *scene, int flags, char *error,

@@ -57,8 +57,8 @@ int scene_file_parse(const char *name, const uint8_t *bytes, size_t count, int f
 /* Writes in the recording's world frame, in the format of the path's suffix; flags: a sum of T3R_SCENE_LOCAL,
  * T3R_SCENE_COMMENTS and SCENE_FILE_UP. `note` (NULL: none), one line, becomes another comment. Floats lose the detail
  * of a scene that is small and far from the world's origin: it is written as by T3R_SCENE_LOCAL, with the origin in the
- * file if the format has a place for it, and a warning. Refused are scenes that could not be read again: empty ones, fields out of range, an extent outside
- * 2^-24..2^24 units. Returns 0, or -1 with the reason in error[]. */
+ * file if the format has a place for it, and a warning. Refused are scenes that could not be read again: empty ones,
+ * fields out of range, an extent outside 2^-24..2^24 units. Returns 0, or -1 with the reason in error[]. */
 int scene_file_write(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
                      size_t error_bytes);
 
