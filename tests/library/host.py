@@ -3,6 +3,7 @@
 """host.py BUILD TRIM3R: the host library is installed and moved, and the programs of tools/examples are built with it: by
 find_package and by pkg-config, with its static and its shared form. All write the same scene. Both forms show exactly what
 the headers declare. A program compiled for other features is refused, and so is a component that is not installed."""
+import json
 import os
 import pathlib
 import re
@@ -12,7 +13,7 @@ import tempfile
 
 from library import ROOT, SERIES, VERSION, ended, there, without
 
-from checks import check, done, run
+from checks import check, done, near, run
 
 EXAMPLES = ROOT / "tools" / "examples"
 HEADERS = [ROOT / "platform" / f"trim3r_{name}.h" for name in ("host", "capture", "program")]
@@ -36,6 +37,32 @@ int main(int count, char **words)
     return 0;
 }
 """
+
+# A program with the numbers of its user's language, which reads a scene and writes it again.
+GERMAN = """#include <locale.h>
+#include <stdio.h>
+#include "trim3r_host.h"
+int main(int count, char **words)
+{
+    char error[256], comma[8];
+    t3r_scene_file read;
+    if (count != 3 || setlocale(LC_ALL, "") == NULL || snprintf(comma, sizeof comma, "%.1f", 0.5) != 3 || comma[1] != ',') {
+        return 2;
+    }
+    if (t3r_scene_read(words[1], 0, &read, error, sizeof error) != T3R_OK) {
+        return 1;
+    }
+    const t3r_scene scene = {.frame = read.frame, .gaussians = read.gaussians, .count = read.count};
+    const t3r_status status = t3r_scene_write(words[2], &scene, 0, error, sizeof error);
+    t3r_scene_free(&read);
+    return status != T3R_OK || snprintf(comma, sizeof comma, "%.1f", 0.5) != 3 || comma[1] != ',';
+}
+"""
+# A scene as text, whose numbers are no whole ones.
+FIELDS = ("x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2",
+          "rot_3")
+TEXT = "".join(["ply\nformat ascii 1.0\nelement vertex 3\n", *(f"property float {name}\n" for name in FIELDS), "end_header\n",
+                *(f"0.2{i} 1.{i}5 2.5 0.1 0.2 0.3 1.5 -2.5 -2.25 -3.5 1 0 0 0\n" for i in range(3))])
 
 
 def declared(text):
@@ -107,6 +134,25 @@ def check_program(installed, folder, source, *options):
     return folder / "program"
 
 
+def check_language(installed, folder):
+    """Checks that a program whose numbers have commas reads and writes those of the files."""
+    made = shutil.which("localedef") and ended("localedef", "-i", "de_DE", "-f", "UTF-8", folder / "de_DE.UTF-8")
+    if not made or made.returncode != 0:
+        print("without a locale whose numbers have commas: not here")
+        return
+    (folder / "german.c").write_text(GERMAN)
+    (folder / "text.ply").write_text(TEXT)
+    program = check_program(installed, folder, folder / "german.c")
+    environment = {**os.environ, "LOCPATH": str(folder), "LC_ALL": "de_DE.UTF-8"}
+    failed = ended(program, folder / "text.ply", folder / "german.glb", env=environment)
+    check(failed.returncode == 0, f"in German: {failed.returncode}")
+    failed = ended(program, folder / "text.ply", folder / "english.glb", env={**environment, "LC_ALL": "C"})
+    check(failed.returncode == 2, "blind: the locale of C has commas")
+    data = (folder / "german.glb").read_bytes()
+    found = json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])["accessors"][0]
+    near(found["max"][0], 0.22, 1e-6, "a number with a comma, read from text and written to JSON")
+
+
 def check_absent(build, folder):
     """Checks that a component that is not installed is missed by its name."""
     install(build, folder / "bare", "dev", "shared")
@@ -134,6 +180,7 @@ def main():
         (folder / "clash.c").write_text(CLASH)
         said = run(check_program(installed, folder, folder / "clash.c"), scene).stdout.split()
         check(len(said) == 2 and int(said[0]) > 0 and said[1] == "21", f"names of a program: {said}")
+        check_language(installed, folder)
         other = check_program(installed, folder, EXAMPLES / "two_threads.c", without("stereo"))
         failed = ended(other, folder / "room.mcap")
         check(failed.returncode == 1 and f"trim3r {VERSION} without stereo" in failed.stderr, f"features: {failed.stderr}")

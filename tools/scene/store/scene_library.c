@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Scene files for programs of the host library: remarks go into the caller's text. */
+#include <locale.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -22,6 +24,28 @@ static void add_remark(void *user, const char *text)
     all->length += length > 0 && (size_t)length < room ? (size_t)length : room - 1;
 }
 
+/* The locale of the thread while a file is read or written: a program's may have a comma in its numbers. */
+typedef struct file_locale {
+    locale_t plain, before;
+} file_locale;
+
+static bool enter(file_locale *locale, char *error, size_t error_bytes)
+{
+    locale->plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    if (locale->plain == (locale_t)0) {
+        t3r_reason(error, error_bytes, "out of memory");
+        return false;
+    }
+    locale->before = uselocale(locale->plain);
+    return true;
+}
+
+static void leave(const file_locale *locale)
+{
+    uselocale(locale->before);
+    freelocale(locale->plain);
+}
+
 static int begin_whole(t3r_whole_file *file, const char *path, char *error, size_t error_bytes)
 {
     return t3r_whole_file_begin(file, path, NULL, error, error_bytes);
@@ -35,7 +59,13 @@ t3r_status t3r_scene_read_as(t3r_program program, const char *path, int flags, t
     if (!t3r_program_fits(program, t3r_host_program(), error, error_bytes)) {
         return T3R_ERR_INTERFACE;
     }
-    if (scene_store_read(path, flags & T3R_SCENE_DROP_INVALID, &caller, out, error, error_bytes) != 0) {
+    file_locale locale;
+    if (!enter(&locale, error, error_bytes)) {
+        return T3R_HOST_ERR_SYSTEM;
+    }
+    const int read = scene_store_read(path, flags & T3R_SCENE_DROP_INVALID, &caller, out, error, error_bytes);
+    leave(&locale);
+    if (read != 0) {
         return T3R_HOST_ERR_FILE;
     }
     t3r_reason(error, error_bytes, "%s", all.text);
@@ -55,8 +85,14 @@ t3r_status t3r_scene_write_as(t3r_program program, const char *path, const t3r_s
     if (!t3r_program_fits(program, t3r_host_program(), error, error_bytes)) {
         return T3R_ERR_INTERFACE;
     }
-    if (scene_store_write(path, scene, flags & (T3R_SCENE_LOCAL | T3R_SCENE_COMMENTS), NULL, &caller, error,
-                          error_bytes) != 0) {
+    file_locale locale;
+    if (!enter(&locale, error, error_bytes)) {
+        return T3R_HOST_ERR_SYSTEM;
+    }
+    const int written = scene_store_write(path, scene, flags & (T3R_SCENE_LOCAL | T3R_SCENE_COMMENTS), NULL, &caller,
+                                          error, error_bytes);
+    leave(&locale);
+    if (written != 0) {
         return T3R_HOST_ERR_FILE;
     }
     t3r_reason(error, error_bytes, "%s", all.text);
