@@ -29,7 +29,7 @@ typedef struct t3r_capture_frame {
     bool has_intrinsics;    /* camera's intrinsics are known */
     bool straightened;      /* redrawn without the lens's distortion, which `camera` cannot hold */
     t3r_frame frame;        /* frame.depth is NULL without depth */
-    t3r_camera camera;
+    t3r_camera camera;      /* with intrinsics, for the frame's size */
 } t3r_capture_frame;
 
 /* Outcomes of asking for a frame. */

@@ -67,8 +67,8 @@ void t3r_threads_run(void *threads, uint32_t count, t3r_thread_task *task, void 
 
 /* A camera before fixed point. */
 typedef struct t3r_recorded_camera {
-    uint32_t width, height;
-    double fx, fy, cx, cy; /* pixels; pixel (0, 0) is the centre of the top-left pixel */
+    uint32_t width, height; /* of the picture that the intrinsics are for; 0 x 0: any, as in t3r_camera */
+    double fx, fy, cx, cy;  /* pixels; pixel (0, 0) is the centre of the top-left pixel */
     t3r_distortion distortion;
     double coefficients[5];
     double position[3]; /* world units */
@@ -192,9 +192,10 @@ void t3r_host_close(t3r_host *host);
 
 /* ---- cameras ------------------------------------------------------------------------------------------------ */
 
-/* Adapts the intrinsics to a picture that is cropped and then resized to width x height. A crop from (0, 0) of the
- * whole picture only resizes. Lengths are measured from the corner of the top-left pixel, half a pixel before its
- * centre. T3R_ERR_CAMERA: the crop is empty or not inside the picture, or a side is 0. */
+/* Adapts the intrinsics to a picture that is cropped and then resized to width x height, which becomes the camera's
+ * size. A crop from (0, 0) of the whole picture only resizes. Lengths are measured from the corner of the top-left
+ * pixel, half a pixel before its centre. T3R_ERR_CAMERA: the crop is empty or not inside the picture, the camera has no
+ * size, or a side is 0. */
 t3r_status t3r_camera_crop_as(t3r_program program, t3r_recorded_camera *camera, const t3r_crop *crop, uint32_t width,
                               uint32_t height, char *error, size_t error_bytes);
 static inline t3r_status t3r_camera_crop(t3r_recorded_camera *camera, const t3r_crop *crop, uint32_t width,
@@ -224,7 +225,8 @@ static inline t3r_status t3r_camera_pose_quaternion(t3r_recorded_camera *camera,
     return t3r_camera_pose_quaternion_as(t3r_host_program(), camera, translation, rotation, axes, error, error_bytes);
 }
 
-/* Converts to the runtime's fixed point. T3R_ERR_CAMERA: a number is out of its range; error[] says which. */
+/* Converts to the runtime's fixed point. The size stays: the runtime refuses a frame or target of another one.
+ * T3R_ERR_CAMERA: a number is out of its range; error[] says which. */
 t3r_status t3r_camera_fixed_as(t3r_program program, const t3r_recorded_camera *camera, t3r_camera *out, char *error,
                                size_t error_bytes);
 static inline t3r_status t3r_camera_fixed(const t3r_recorded_camera *camera, t3r_camera *out, char *error,
@@ -270,7 +272,7 @@ static inline t3r_status t3r_scene_write(const char *path, const t3r_scene *scen
 
 /* Replaces the scene in the arena by one of a file, as a picture of width x height by `eye` sees it: colours of
  * harmonics, opacities of mip-splatting. NULL: colours of degree 0 and opacities as they are. Returns the statuses of
- * t3r_scene_begin(), t3r_scene_append() and, with an eye, T3R_ERR_CAMERA. */
+ * t3r_scene_begin(), t3r_scene_append() and, with an eye, T3R_ERR_CAMERA: it is for another size, or out of range. */
 t3r_status t3r_scene_load_as(t3r_program program, t3r_runtime *runtime, const t3r_scene_file *scene,
                              const t3r_camera *eye, uint32_t width, uint32_t height);
 static inline t3r_status t3r_scene_load(t3r_runtime *runtime, const t3r_scene_file *scene, const t3r_camera *eye,

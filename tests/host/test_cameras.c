@@ -145,6 +145,8 @@ TEST(a_crop_outside_the_picture_is_refused)
     }
     assert_int_equal(t3r_camera_crop(&camera, &(t3r_crop){0, 0, 640, 480}, 64, 0, error, sizeof error), T3R_ERR_CAMERA);
     assert_memory_equal(&camera, &lens, sizeof camera);
+    camera.width = camera.height = 0;
+    assert_int_equal(t3r_camera_crop(&camera, &(t3r_crop){0, 0, 640, 480}, 64, 64, NULL, 0), T3R_ERR_CAMERA);
 }
 
 TEST(fixed_point_rounds_and_names_what_is_out_of_range)
@@ -155,6 +157,7 @@ TEST(fixed_point_rounds_and_names_what_is_out_of_range)
     camera.position[1] = -0.25;
     assert_int_equal(t3r_camera_fixed(&camera, &fixed, error, sizeof error), T3R_OK);
     assert_string_equal(error, "");
+    assert_true(fixed.width == 640 && fixed.height == 480);
     assert_int_equal(fixed.fx_q16, 500 << 16);
     assert_int_equal(fixed.cx_q16, 639 << 15);
     assert_int_equal(fixed.position_q32[1], -(INT64_C(1) << 30));

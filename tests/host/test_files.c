@@ -76,7 +76,9 @@ TEST_WITH(a_scene_of_a_file_is_loaded_and_drawn, scratch_setup, scratch_teardown
     const t3r_scene scene = line_of(gaussians);
     const char *path = scratch_path(*state, "line.ply");
     const t3r_target view = {SIDE, SIDE, .rgb = &rgb[0][0][0], .rgb_stride_bytes = sizeof rgb[0]};
-    const t3r_camera eye = {.fx_q16 = SIDE << 16,
+    const t3r_camera eye = {.width = SIDE,
+                            .height = SIDE,
+                            .fx_q16 = SIDE << 16,
                             .fy_q16 = SIDE << 16,
                             .cx_q16 = (SIDE - 1) << 15,
                             .cy_q16 = (SIDE - 1) << 15,
@@ -90,6 +92,7 @@ TEST_WITH(a_scene_of_a_file_is_loaded_and_drawn, scratch_setup, scratch_teardown
     assert_int_equal(t3r_scene_load(t3r_host_runtime(host), &file, &eye, SIDE, SIDE), T3R_OK);
     assert_int_equal(t3r_render(t3r_host_runtime(host), &eye, &view), T3R_OK);
     assert_true(rgb[SIDE / 2][SIDE / 2][2] > 0);
+    assert_int_equal(t3r_scene_load(t3r_host_runtime(host), &file, &eye, SIDE, 2 * SIDE), T3R_ERR_CAMERA);
     t3r_host_close(host);
     /* an arena for fewer Gaussians */
     config = t3r_default_config(SIDE, SIDE, 0, GAUSSIANS - 1);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/camera.h"
 #include "host/program_check.h"
 #include "host/reason.h"
 #include "scene/scene_append.h"
@@ -104,7 +105,9 @@ t3r_status t3r_scene_load_as(t3r_program program, t3r_runtime *runtime, const t3
 {
     const scene_eye from = {.camera = eye, .width = width, .height = height};
     uint32_t index;
-    return t3r_program_fits(program, t3r_host_program(), NULL, 0)
-               ? scene_append_all(runtime, scene, eye != NULL ? &from : NULL, &index)
-               : T3R_ERR_INTERFACE;
+    if (!t3r_program_fits(program, t3r_host_program(), NULL, 0)) {
+        return T3R_ERR_INTERFACE;
+    }
+    const t3r_status status = eye != NULL ? t3r_camera_check(eye, width, height) : T3R_OK;
+    return status == T3R_OK ? scene_append_all(runtime, scene, eye != NULL ? &from : NULL, &index) : status;
 }
