@@ -18,7 +18,8 @@ def main():
         sys.exit(77)
     build, trim3r = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
     user = build / "subproject"
-    options = [f"-DTRIM3R={ROOT}", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_C_FLAGS_DEBUG=-O0"]
+    quick = "-O0 -U__SSE2__" # without SSE2 the runtime has no vectors, which take half of the time
+    options = [f"-DTRIM3R={ROOT}", "-DCMAKE_BUILD_TYPE=Debug", f"-DCMAKE_C_FLAGS_DEBUG={quick}"]
     if shutil.which("ninja"):
         options.append("-GNinja")
     if shutil.which("ccache"):
