@@ -52,6 +52,7 @@
 #define T3R_WANTED_BYTES 4096         /* a tile that refinement compares with its view */
 #define T3R_REMEMBERED_HEAD_BYTES 128 /* before the pixels of a remembered keyframe: its camera and gains */
 #define T3R_MAP_RECORD_BYTES 12       /* what a stream notes about a Gaussian of its map */
+#define T3R_MAP_DISC_BYTES 16         /* the surface around it in a keyframe */
 #define T3R_TILE_SIDE 16
 #define T3R_GRID_STEP 8 /* undistortion grid, pixels */
 
@@ -303,7 +304,9 @@
       T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * (T3R_CLUSTERS_(shape) + 1) * T3R_GROUP_COUNT_BYTES, T3R_AT_BUDGET,    \
       T3R_AT_BUDGET)                                                                                                   \
     X(with, MAP_DENSITY, "density of the map", T3R_STREAMS_(shape) * T3R_VIEW_PIXELS_(shape) * 4, T3R_AT_BUDGET,       \
-      T3R_AT_BUDGET)
+      T3R_AT_BUDGET)                                                                                                   \
+    X(with, MAP_DISCS, "surfaces of the map", T3R_STREAMS_(shape) * T3R_GAUSSIANS_(shape) * T3R_MAP_DISC_BYTES,        \
+      T3R_AT_BUDGET, T3R_AT_BUDGET)
 #define T3R_BUFFERS_IN_HEAD_(X, with, shape)                                                                           \
     X(with, HEAD_WORK, "head work",                                                                                    \
       T3R_BUILDS_(shape) * T3R_WORKERS_(shape) * T3R_UP_(T3R_HEAD_WORK_(T3R_WIDTH_(shape), T3R_COLUMN_BYTES_(shape))), \

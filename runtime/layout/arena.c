@@ -8,6 +8,7 @@
 #include "refine/refine.h"
 #include "refine/refine_tile.h"
 #include "state/state.h"
+#include "stream/stream_discs.h"
 #include "stream/stream_map.h"
 #include "superclusters/superclusters.h"
 
@@ -20,6 +21,7 @@ _Static_assert(sizeof(t3r_wanted) == T3R_WANTED_BYTES, "trim3r_arena.h knows the
 _Static_assert(T3R_KEPT_LEAST * sizeof(uint32_t) == T3R_KEPT_LEAST_BYTES,
                "trim3r_arena.h knows what a splat of a tile keeps");
 _Static_assert(sizeof(t3r_map_record) == T3R_MAP_RECORD_BYTES, "trim3r_arena.h knows the map record's size");
+_Static_assert(sizeof(t3r_map_disc) == T3R_MAP_DISC_BYTES, "trim3r_arena.h knows the disc's size");
 _Static_assert(sizeof(t3r_correction) == T3R_CORRECTION_BYTES, "trim3r_arena.h knows the correction's size");
 
 typedef struct buffer_row {

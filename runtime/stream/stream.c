@@ -161,14 +161,15 @@ static t3r_status join_map(t3r_runtime *rt, t3r_view *views, uint32_t slot, t3r_
     t3r_remembered_hold(rt, &map);
     rt->gaussians = map.count;
 
-    const t3r_map_density density = {&map, &keyframe, &work.workers, t3r_buffer_at(rt, T3R_BUFFER_MAP_DENSITY)};
+    const t3r_map_density density = {&map, &keyframe, &work.workers, t3r_buffer_at(rt, T3R_BUFFER_MAP_DISCS),
+                                     t3r_buffer_at(rt, T3R_BUFFER_MAP_DENSITY)};
     const t3r_budget_settings settings = t3r_budget_settings_of(rt, views);
     t3r_map_density_find(&density);
     t3r_map_density_fit(&density);
     report->removed += t3r_map_drop(&map);
     rt->gaussians = map.count;
     t3r_budget_keys(view, 1, &settings, &work);
-    t3r_map_density_raise_keys(&density, &settings);
+    t3r_map_density_raise_keys(&density, &settings, work.kernels);
     const t3r_map_cut cut = t3r_map_compete(&map, view, &settings, rt->config.gaussians);
     report->shown = t3r_map_density_mark(&density, cut.threshold);
     report->crowded = map.count - cut.kept;

@@ -15,6 +15,7 @@ typedef struct site {
     t3r_map map;
     uint8_t validity[PIXELS];
     uint16_t depth[PIXELS], texture[PIXELS], key[PIXELS];
+    t3r_map_disc discs[MOST];
     uint32_t plane[PIXELS];
     t3r_view view;
     t3r_pointmap keyframe;
@@ -45,7 +46,7 @@ static void open_site(site *s)
     s->keyframe = t3r_pointmap_of(&s->view, 0);
     s->workers = (t3r_workers){NULL, 1};
     s->map = (t3r_map){s->gaussians, s->records, 0};
-    s->density = (t3r_map_density){&s->map, &s->keyframe, &s->workers, s->plane};
+    s->density = (t3r_map_density){&s->map, &s->keyframe, &s->workers, s->discs, s->plane};
 }
 
 /* Adds a Gaussian of the keyframe's own grain at a pixel, as wide as its spacing. */
@@ -186,7 +187,7 @@ TEST(no_key_is_below_the_least)
     open_site(&s);
     s.key[9] = 60000;
     t3r_map_density_find(&s.density);
-    t3r_map_density_raise_keys(&s.density, &settings);
+    t3r_map_density_raise_keys(&s.density, &settings, &t3r_kernels_c);
     for (int i = 0; i < PIXELS; i++) {
         assert_int_equal(s.key[i], i == 9 ? 60000 : T3R_MAP_KEY_LEAST);
     }
@@ -202,7 +203,7 @@ TEST(keys_are_raised)
     s.key[PIXELS / 2] = 60000;
     s.key[3] = 7; /* a sure point */
     t3r_map_density_find(&s.density);
-    t3r_map_density_raise_keys(&s.density, &settings);
+    t3r_map_density_raise_keys(&s.density, &settings, &t3r_kernels_c);
     const int key = T3R_KEY_ZERO + (int)lround(log2(4.0 / 9) * 1024) - texture_q10;
     for (int i = 0; i < PIXELS; i++) {
         assert_true(s.validity[i] == T3R_MEASURED);
@@ -212,7 +213,7 @@ TEST(keys_are_raised)
     assert_int_equal(t3r_map_density_mark(&s.density, (uint32_t)key - 400), PIXELS);
     (void)fill_wall(&s, 1, 0);
     t3r_map_density_find(&s.density);
-    t3r_map_density_raise_keys(&s.density, &settings);
+    t3r_map_density_raise_keys(&s.density, &settings, &t3r_kernels_c);
     for (int i = 0; i < PIXELS; i++) {
         assert_true(s.plane[i] > UINT16_MAX || s.plane[i] == 0 || s.validity[i] == T3R_MEASURED);
         assert_true(s.plane[i] <= UINT16_MAX || t3r_is_covered(s.validity[i]));
