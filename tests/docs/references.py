@@ -89,7 +89,7 @@ def names(name, text):
 @functools.cache
 def known_names():
     known = set(NAME.findall((ROOT / "CMakeLists.txt").read_text()))
-    for folder in ("runtime", "quant", "platform"):
+    for folder in ("runtime", "quant", "platform", "tools/planning"):  # planning: of the header that it writes
         for path in (ROOT / folder).rglob("*"):
             if path.suffix in (".h", ".c", ".cmake"):
                 known |= set(NAME.findall(path.read_text()))

@@ -19,6 +19,7 @@ CONTENT = {
     "a page": b"<!DOCTYPE html>\n<html></html>", "a table": b"scene,context,psnr\nroom,0,1\n",
     "a weight file": b"T3RW" + bytes(99), "the C source of a head": b"/* The head `x` as a weight file */\n",
     "lines of a stream": b'{"frame":0}\n', "the state of a stream": b"T3RSTATE" + bytes(99),
+    "the C header of a plan": b"/* The settings and the static memory of one runtime */\n",
     "a file of another kind": b'{"a": 1, "b": 2}\n'}
 
 
@@ -26,7 +27,7 @@ CONTENT = {
 SUFFIXES = {
     "a recording": (".mcap",), "a scene": (".ply", ".splat", ".spz", ".glb", ".sog"), "a PNG picture": (".png",),
     "an SVG picture": (".svg",), "a page": (".html",), "a table": (".csv",), "a weight file": (".t3w",),
-    "the C source of a head": (".c",), "a file of another kind": (".jpg", ".pdf", ".json")}
+    "the C source of a head": (".c",), "the C header of a plan": (".h",), "a file of another kind": (".jpg", ".pdf", ".json")}
 
 
 def commands():

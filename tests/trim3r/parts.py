@@ -29,7 +29,7 @@ LINES = {
     "trouble": (["room.mcap", "--with", "black", "--at", "1", "--for", "1", "-o", "out.mcap"], ["out.mcap"]),
     "replay": (["room.mcap"], []),
     "diff": (["scene.ply", "scene.ply"], []),
-    "plan": ([*SIZE, "--gaussians", "9", "--svg", "out.svg"], ["out.svg"]),
+    "plan": ([*SIZE, "--gaussians", "9", "--svg", "out.svg", "--header", "out.h"], ["out.svg", "out.h"]),
     "bench": (["--runs", "1", "--stages", "texture_ns_per_pixel"], []),
     "doctor": ([], []),
     "quantize": ([os.path.join(HEADS, "small.safetensors"), "--calibrate", "room.mcap", "-o", "out.t3w"], ["out.t3w"]),

@@ -64,7 +64,7 @@ def sizes_of_ram():
         check(all(f" {found[part]}\n" in told for part in PARTS), f"--ram {text}: a line a part: {told}")
         check(f"arena[{found['arena_bytes']}];" in told
               and f"t3r_default_config({found['width']}, {found['height']}, {found['views']}, {found['gaussians']});" in told
-              and f"t3r_head_{found['head']} " in told and f"head_column_bytes = {found['head_column_bytes']};" in told
+              and f"the weights of {found['head']} " in told and f"head_column_bytes = {found['head_column_bytes']};" in told
               and f"refine = {found['refine']};" in told, f"--ram {text}: lines for a firmware: {told}")
     between = expect_json("plan", "--ram", "255K")
     check(between["ram_bytes"] == SIZES["192K"] and sum(between[part] for part in PARTS) == 255 << 10, "between two rows")

@@ -6,6 +6,7 @@
 
 #include "cli/cli.h"
 #include "cli/tables/json_output.h"
+#include "planning/plan_code.h"
 #include "planning/ram_rows.h"
 #include "planning/work.h"
 #include "reconstruction/chosen_head.h"
@@ -103,15 +104,8 @@ static void print_json(const ram_plan *plan)
 /* Prints what a firmware writes for these settings. */
 static void print_code(const ram_plan *plan)
 {
-    const t3r_config *c = &plan->config;
     printf("\nin a firmware\n  static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[%" PRIu64 "];\n", plan->part[ARENA]);
-    printf("  t3r_config config = t3r_default_config(%" PRIu32 ", %" PRIu32 ", %" PRIu32 ", %" PRIu32 ");\n", c->width,
-           c->height, c->views, c->gaussians);
-    if (c->head == T3R_HEAD_LEARNED) {
-        printf("  config.head = T3R_HEAD_LEARNED; /* t3r_bind_head() of t3r_head_%s */\n", plan->row->head);
-    }
-    printf("  config.head_column_bytes = %" PRIu32 ";\n", c->head_column_bytes);
-    printf("  config.refine = %" PRIu32 ";\n  config.fit_passes = 0;\n", c->refine);
+    plan_code_settings(stdout, &plan->config, plan->row->head, "  ");
 }
 
 static void print_text(const ram_plan *plan)

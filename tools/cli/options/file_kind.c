@@ -31,6 +31,7 @@ static const struct {
     {FILE_SOURCE, "the C source of a head", ".c", "/* The head `", false},
     {FILE_LINES, "lines of a stream", ".jsonl", "{\"frame\":", false},
     {FILE_STATE, "the state of a stream", ".t3s", "T3RSTATE", false},
+    {FILE_HEADER, "the C header of a plan", ".h", "/* The settings and the static memory", false},
     {FILE_TABLE, "a table", ".csv", NULL, false},
     {FILE_OTHER, "a file of another kind", NULL, NULL, false},
 };

@@ -15,10 +15,11 @@ typedef enum file_kind {
     FILE_SOURCE = 128, /* a head as C source */
     FILE_LINES = 256,  /* JSON objects of a stream's frames, one a line */
     FILE_STATE = 512,  /* of a stream */
-    FILE_OTHER = 1024, /* none of these */
+    FILE_HEADER = 1024, /* a plan as C */
+    FILE_OTHER = 2048,  /* none of these */
 } file_kind;
 
-#define FILE_KINDS 11
+#define FILE_KINDS 12
 
 /* Returns the kind of an existing file; 0 = no file or an empty one, which fits any kind. */
 file_kind file_kind_of(const char *path);

@@ -17,6 +17,7 @@
 #include "pictures/plan_picture.h"
 #include "planning/choices.h"
 #include "planning/fitting.h"
+#include "planning/plan_code.h"
 #include "planning/ram.h"
 #include "planning/work_table.h"
 #include "reconstruction/options/head_option.h"
@@ -32,7 +33,7 @@ typedef struct plan_options {
     double keep;       /* the budget as percent of the points; 0 = as a count */
     fitting_options fitting;
     bool json, markdown;
-    const char *svg, *head; /* head: NULL = the default, or in a list each */
+    const char *svg, *header, *head; /* head: NULL = the default, or in a list each */
 } plan_options;
 
 #define LISTED_SIDE 256u /* default width and height of a list: what its expected losses were measured at */
@@ -47,6 +48,7 @@ enum {
     KEY_RENDER,
     KEY_KEEP,
     KEY_KEEP_ANALYSIS,
+    KEY_STREAM,
     KEY_ARENA,
     KEY_TIME,
     KEY_THREADS
@@ -71,10 +73,14 @@ static const struct argp_option options[] = {
     {"render", KEY_RENDER, "WxH", 0, "largest picture to draw (the working size)", 0},
     {"keep-analysis", KEY_KEEP_ANALYSIS, NULL, 0, "keep the analysis after the build, so that the budget can change",
      0},
+    {"stream", KEY_STREAM, NULL, 0,
+     "a map of --gaussians that follows a camera, with --views newest keyframes, instead of builds", 0},
     {"threads", KEY_THREADS, "N|all", 0,
      "number of threads that share the arena's work, 1..16, or all: one for each processor (1)", 0},
     {"svg", OPTION_TO(plan_options, svg), "FILE", OPTION_WRITES(FILE_SVG),
      "picture of the arena to write: stages across, bytes upwards", 0},
+    {"header", OPTION_TO(plan_options, header), "FILE.h", OPTION_WRITES(FILE_HEADER),
+     "header in C to write for a firmware: the arena's bytes, and a function that returns the settings", 0},
     {"markdown", OPTION_TO(plan_options, markdown), NULL, 0, "print the table of the arena, or the list, in Markdown",
      0},
     {"json", OPTION_TO(plan_options, json), NULL, 0, "print one JSON object on stdout", 0},
@@ -84,6 +90,16 @@ static const struct argp_option options[] = {
 static bool lists(const plan_options *o)
 {
     return o->fitting.bytes != 0 || o->fitting.nanoseconds != 0;
+}
+
+/* Returns the first option given that asks for one arena; NULL: none. */
+static const char *of_one_arena(const plan_options *o)
+{
+    return o->svg != NULL          ? "svg"
+           : o->header != NULL     ? "header"
+           : o->config.stream != 0 ? "stream"
+           : o->within != 0        ? "within"
+                                   : NULL;
 }
 
 static t3r_config unset(void)
@@ -99,7 +115,7 @@ static void check_options(struct argp_state *state, plan_options *o)
     if (o->ram != 0) {
         const t3r_config as_before = unset();
         if (memcmp(c, &as_before, sizeof *c) != 0 || o->within != 0 || o->keep > 0 || lists(o) || o->svg != NULL ||
-            o->markdown || o->head != NULL || o->fitting.machine != NULL) {
+            o->header != NULL || o->markdown || o->head != NULL || o->fitting.machine != NULL) {
             argp_error(state, "--ram chooses the settings: --json alone goes with it");
         }
         return;
@@ -113,8 +129,10 @@ static void check_options(struct argp_state *state, plan_options *o)
         argp_error(state, "--gaussians Z, --keep P%%, --within BYTES, --arena BYTES or --time TIME is missing");
     } else if (c->gaussians != 0 && o->keep > 0) {
         argp_error(state, "--gaussians and --keep exclude each other");
-    } else if (lists(o) && (o->within != 0 || o->svg != NULL)) {
-        argp_error(state, "--%s belongs to one arena, not to a list of settings", o->svg != NULL ? "svg" : "within");
+    } else if (lists(o) && of_one_arena(o) != NULL) {
+        argp_error(state, "--%s belongs to one arena, not to a list of settings", of_one_arena(o));
+    } else if (c->stream == 0 && stream_setting_given(c) != NULL) {
+        argp_error(state, "--%s belongs to --stream", stream_setting_given(c));
     } else if (lists(o) && c->views == 0) {
         argp_error(state, "--views 0 builds nothing that could fit a time or an arena");
     } else if (o->json && o->markdown) {
@@ -134,7 +152,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = c;
-        state->child_inputs[1] = &o->head;
+        state->child_inputs[1] = c;
+        state->child_inputs[2] = &o->head;
         return 0;
     case KEY_SIZE:
         option_size(state, "size", arg, T3R_MIN_SIDE, &c->width, &c->height);
@@ -169,6 +188,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_KEEP_ANALYSIS:
         c->keep_analysis = 1;
         return 0;
+    case KEY_STREAM:
+        c->stream = 1;
+        return 0;
     case KEY_THREADS:
         c->workers = option_threads(state, arg);
         return 0;
@@ -183,7 +205,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-static const struct argp_child children[] = {{.argp = &settings_argp}, {.argp = &head_argp}, {0}};
+static const struct argp_child children[] = {
+    {.argp = &settings_argp}, {.argp = &stream_settings_argp}, {.argp = &head_argp}, {0}};
 static const struct argp argp = {
     .options = options,
     .parser = parse,
@@ -198,6 +221,8 @@ static const struct argp argp = {
         "  trim3r plan --arena 2M --time 100ms\n"
         "  trim3r plan --arena 2M --time 0.5s --head small --machine board.json\n"
         "  trim3r plan --size 96x96 --gaussians 900 --clusters 64 --svg arena.svg\n"
+        "  trim3r plan --size 64x64 --gaussians 400 --head tiny --header planned.h\n"
+        "  trim3r plan --size 320x240 --views 4 --gaussians 4000 --stream\n"
         "  trim3r plan --size 256x256 --gaussians 13107 --json\n\n"
         "A list has one row for each choice of head, budget and passes that no other beats in loss, bytes and time. "
         "--head, --gaussians, --keep and --refine fix theirs. The expected loss is against the best settings "
@@ -224,7 +249,9 @@ static void print_json(const t3r_config *config, const t3r_plan_info *plan, cons
     json_add_integer(root, "min_bytes", (int64_t)plan->min_bytes);
     json_add_integer(root, "arena_bytes", (int64_t)plan->bytes);
     json_add_integer(root, "most_blends", (int64_t)plan->most_blends);
-    work_table_add_json(root, work, prices);
+    if (work != NULL) {
+        work_table_add_json(root, work, prices);
+    }
     cJSON *buffers = cJSON_AddArrayToObject(root, "buffers");
     for (uint32_t i = 0; i < plan->buffer_count; i++) {
         const t3r_plan_buffer *b = &plan->buffers[i];
@@ -262,16 +289,29 @@ static void print_table(const t3r_plan_info *plan, bool markdown)
     }
 }
 
-static int write_svg(const char *path, const t3r_plan_info *plan)
+/* Writes the picture and the header that are asked for. */
+static int write_files(const plan_options *o, const t3r_config *config, const t3r_plan_info *plan, const char *head)
 {
-    t3r_whole_file file;
-    char error[512] = "";
-    if (whole_file_begin(&file, path, error, sizeof error) != 0) {
-        return cli_error(CLI_BAD_INPUT, "%s", error);
+    const char *const paths[] = {o->svg, o->header};
+    for (int i = 0; i < 2; i++) {
+        t3r_whole_file file;
+        char error[512] = "";
+        if (paths[i] == NULL) {
+            continue;
+        }
+        if (whole_file_begin(&file, paths[i], error, sizeof error) != 0) {
+            return cli_error(CLI_BAD_INPUT, "%s", error);
+        }
+        if (paths[i] == o->svg) {
+            plan_picture_write(file.stream, plan);
+        } else {
+            plan_code_header(file.stream, config, plan, head);
+        }
+        if (t3r_whole_file_commit(&file, NULL, error, sizeof error) != 0) {
+            return cli_error(CLI_BAD_INPUT, "%s", error);
+        }
     }
-    plan_picture_write(file.stream, plan);
-    return t3r_whole_file_commit(&file, NULL, error, sizeof error) == 0 ? CLI_OK
-                                                                        : cli_error(CLI_BAD_INPUT, "%s", error);
+    return CLI_OK;
 }
 
 /* Lowers the budget to what an arena of `bytes` can hold. */
@@ -296,35 +336,36 @@ static int lower_budget(t3r_config *config, uint64_t bytes)
 static int print_plan(const plan_options *o, const t3r_config *config, const chosen_head *head)
 {
     t3r_plan_info plan;
-    work_counts work;
+    work_counts counts;
+    const work_counts *work = config->stream == 0 ? &counts : NULL; /* of builds alone */
     machine m;
     t3r_status status = t3r_plan(config, &plan);
-    if (status == T3R_OK) {
+    if (status == T3R_OK && work != NULL) {
         const size_t bytes = o->within != 0 ? (size_t)o->within : plan.bytes;
-        status = work_count(config, bytes, head->weights, &work);
+        status = work_count(config, bytes, head->weights, &counts);
     }
     if (status != T3R_OK) {
         return reconstruction_error(status, "settings", config, 0);
     }
     const work_prices *prices = o->fitting.machine != NULL ? &m.prices : NULL;
     int code = prices != NULL ? fitting_machine(&o->fitting, config->workers, &m) : CLI_OK;
-    if (code == CLI_OK && o->svg != NULL) {
-        code = write_svg(o->svg, &plan);
+    if (code == CLI_OK) {
+        code = write_files(o, config, &plan, head->name);
     }
     if (code != CLI_OK) {
         return code;
     }
     if (o->json) {
-        print_json(config, &plan, &work, prices);
+        print_json(config, &plan, work, prices);
         return CLI_OK;
     }
     if (o->within != 0) {
         printf("%" PRIu32 " Gaussians fit into %" PRIu64 " bytes\n\n", config->gaussians, o->within);
     }
     print_table(&plan, o->markdown);
-    if (!o->markdown) {
+    if (!o->markdown && work != NULL) {
         putchar('\n');
-        work_table_print(&work, prices);
+        work_table_print(work, prices);
     }
     return CLI_OK;
 }
