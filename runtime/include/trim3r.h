@@ -72,7 +72,8 @@ extern "C" {
 #define T3R_STREAM_REFINE 4u /* most passes for a keyframe whose number of passes is fitted */
 #define T3R_MAX_LEVELS 5     /* most wavelet levels */
 #define T3R_MAX_HEAD_COLUMN_BYTES 65536
-#define T3R_MAX_LOSS_Q8 2560u /* 10 dB */
+#define T3R_MAX_LOSS_Q8 2560u  /* 10 dB */
+#define T3R_MAX_PSNR_Q8 25600u /* 100 dB, also where nothing differs */
 #define T3R_MAX_WORKERS 16
 
 /* Enumerations have 32 bits, here and below, because the width of an enum type depends on the compiler and its
@@ -258,6 +259,14 @@ typedef struct t3r_request {
     /* The bytes from row to row of every importance plane, even and at least 2 x width. Ignored without planes. */
     uint32_t importance_stride_bytes;
 } t3r_request;
+
+/* What t3r_rebuild_least() found. */
+typedef struct t3r_least {
+    /* The PSNR of the context view that the scene draws worst, in 1/256 dB, 0..T3R_MAX_PSNR_Q8. */
+    uint32_t psnr_q8;
+    /* The number of scenes that were built. */
+    uint32_t builds;
+} t3r_least;
 
 /* The scene's fixed-point frame in the world: world = origin + scene x 2^exponent. */
 typedef struct t3r_scene_frame {
@@ -615,6 +624,19 @@ t3r_status t3r_reconstruct(t3r_runtime *rt, const t3r_request *request, t3r_scen
  * t3r_reconstruct(). T3R_ERR_STATE also if there is no analysis. T3R_ERR_CANCELLED: there is no scene, and the
  * analysis stays. */
 t3r_status t3r_rebuild(t3r_runtime *rt, const t3r_request *request, t3r_scene *scene);
+
+/* Builds the fewest Gaussians that draw every context view at least_psnr_q8 or more, 1..T3R_MAX_PSNR_Q8, of the views
+ * analysed last. That is measured: each scene that is tried draws all context views into `picture`, and is compared
+ * with the views as they were analysed, over all their pixels, black where it shows nothing. It promises nothing of
+ * other views. The budget is the most. Numbers from 1/128 of it are doubled, then the gap to the last number that is
+ * too small is halved, to 1/64: at most 16 builds. If none is enough, the scene of the number that draws them best is
+ * returned, and found->psnr_q8 is below least_psnr_q8.
+ *
+ * picture: memory for `rgb`, of the working size; it holds a context view afterwards. Statuses are those of
+ * t3r_rebuild(). T3R_ERR_ARGUMENT also: NULL for anything except `request`, a PSNR out of range, a picture of another
+ * size, or a bounded loss in the request. T3R_ERR_UNSUPPORTED also: built without bounded losses. */
+t3r_status t3r_rebuild_least(t3r_runtime *rt, const t3r_request *request, uint32_t least_psnr_q8,
+                             const t3r_target *picture, t3r_scene *scene, t3r_least *found);
 
 /* Returns how context view `view` got its depth with T3R_DEPTH_STEREO, also after T3R_ERR_STEREO. T3R_PAIR_OK:
  * *partner is the view that most of it came from. Any other: the view has no depth and adds no points, and the value

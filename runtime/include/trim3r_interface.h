@@ -42,6 +42,7 @@ T3R_STATIC_ASSERT_(offsetof(struct t3r_unpacked_, number) % T3R_ALIGNOF_(uint64_
     X(t3r_camera)                                                                                                      \
     X(t3r_config)                                                                                                      \
     X(t3r_request)                                                                                                     \
+    X(t3r_least)                                                                                                       \
     X(t3r_scene_frame)                                                                                                 \
     X(t3r_gaussian)                                                                                                    \
     X(t3r_scene)                                                                                                       \
@@ -79,6 +80,8 @@ T3R_STATIC_ASSERT_(offsetof(struct t3r_unpacked_, number) % T3R_ALIGNOF_(uint64_
     X(t3r_request, head)                                                                                               \
     X(t3r_request, importance)                                                                                         \
     X(t3r_request, importance_stride_bytes)                                                                            \
+    X(t3r_least, psnr_q8)                                                                                              \
+    X(t3r_least, builds)                                                                                               \
     X(t3r_scene_frame, origin_q32)                                                                                     \
     X(t3r_scene_frame, exponent)                                                                                       \
     X(t3r_gaussian, position_q20)                                                                                      \

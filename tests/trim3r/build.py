@@ -74,6 +74,12 @@ def built():
           "eval --auto does not take what build --auto takes")
     most = expect_json(*auto, "--gaussians", 50, "-o", "most.ply")
     check(most["gaussians"] == 50, "--gaussians is not the most of --auto")
+    least = ["build", "room.mcap", "--context", "0,2", "--working", "64x64", "--min-psnr"]
+    dull, sharp = (expect_json(*least, psnr, "-o", "least.ply") for psnr in (20, 26))
+    check(20 <= dull["context_psnr"] and 26 <= sharp["context_psnr"] and dull["gaussians"] < sharp["gaussians"],
+          f"--min-psnr: {dull['gaussians']}, {sharp['gaussians']}")
+    expect(0, *least, 26, "--gaussians", 40, "-o", "least.ply", out="the best of the numbers that were tried")
+    expect(2, *least, 26, "--auto", "-o", "least.ply", err="exclude each other")
     for command in (["build", "-o", "all.ply"], ["build", "-o", "all.ply", "--json"], ["replay"]):
         expect(0, *command, "room.mcap", "--working", "32x32", "--gaussians", 100000,
                err="100000 Gaussians are more than the views have: all ")

@@ -215,7 +215,7 @@ static void check(struct argp_state *state, capture_options *o)
         return;
     }
     scene_output_option(state, "--build", o->scene);
-    bool budget = o->build.gaussians != 0 || o->build.keep_percent > 0 || o->build.automatic;
+    bool budget = o->build.gaussians != 0 || o->build.keep_percent > 0 || reconstruction_chooses(&o->build);
     if (o->source == NULL) {
         argp_error(state, "--source is missing (--list shows what there is)");
     } else if (o->output == NULL && o->scene == NULL && !o->hash) {
@@ -226,9 +226,10 @@ static void check(struct argp_state *state, capture_options *o)
         argp_error(state, "--allocate given needs a recording: trim3r build");
     } else if (o->build.config.depth == T3R_DEPTH_STEREO) {
         argp_error(state, "--depth stereo needs a recording: trim3r build");
-    } else if (o->streams && (o->scene == NULL || o->local || o->build.context_count > 0 || o->build.automatic ||
-                              o->build.keep_percent > 0)) {
-        argp_error(state, "--stream needs --build SCENE.ply, and takes no --local, --context, --auto or --keep");
+    } else if (o->streams && (o->scene == NULL || o->local || o->build.context_count > 0 ||
+                              reconstruction_chooses(&o->build) || o->build.keep_percent > 0)) {
+        argp_error(state,
+                   "--stream needs --build SCENE.ply, and takes no --local, --context, --auto, --min-psnr or --keep");
     } else if (!o->streams && live_options_given(&o->live, &o->build.config) != NULL) {
         argp_error(state, "--%s belongs to --stream", live_options_given(&o->live, &o->build.config));
     } else if (o->every > 0 && o->build.context_count > 0) {

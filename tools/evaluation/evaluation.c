@@ -185,6 +185,7 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     options.gaussians = 0;
     options.keep_percent = 100;
     options.automatic = false;
+    options.min_psnr = 0;
     options.config.fill_radius = options.config.bridge_radius = 0;
     options.head = "analytic";
     options.config.allocate = T3R_ALLOCATE_UNIFORM;

@@ -40,11 +40,11 @@ static void parse_heads(struct argp_state *state, evaluation_options *o, const c
 static void check_scene(struct argp_state *state, const evaluation_options *o)
 {
     if (o->planar || o->from_file || o->head_count > 0 || o->keep_count > 0 || o->gaussians_count > 0 ||
-        o->settings.automatic || o->settings.points_of != NULL || o->settings.poses != POSES_GIVEN) {
+        reconstruction_chooses(&o->settings) || o->settings.points_of != NULL || o->settings.poses != POSES_GIVEN) {
         argp_error(
             state,
             "--scene is scored as it is: it excludes --planar, --from-file, --heads, --keep, --gaussians, --auto, "
-            "--prune and --poses");
+            "--min-psnr, --prune and --poses");
     }
 }
 
@@ -89,11 +89,11 @@ static void check_options(struct argp_state *state, evaluation_options *o)
         check_scene(state, o);
     }
     const bool budgeted = o->keep_count > 0 || o->gaussians_count > 0 || o->settings.scene != NULL;
-    if (!budgeted && o->settings.automatic) {
+    if (!budgeted && reconstruction_chooses(&o->settings)) {
         o->keep[o->keep_count++] = 100;
     }
     if (!budgeted && o->keep_count == 0) {
-        argp_error(state, "the budget is missing: --keep P, --gaussians Z or --auto");
+        argp_error(state, "the budget is missing: --keep P, --gaussians Z, --auto or --min-psnr DB");
     }
     if (o->head_count > 0 && o->settings.head != NULL) {
         argp_error(state, "--head and --heads exclude each other");

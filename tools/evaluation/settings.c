@@ -84,6 +84,9 @@ static void add_rest(words *w, const reconstruction_options *s, const reconstruc
     if (s->automatic) {
         add(w, "max-loss-%.4g", s->max_loss);
     }
+    if (s->min_psnr > 0) {
+        add(w, "min-psnr-%.4g", s->min_psnr);
+    }
     add_settings(w, false, &s->config, &usual->config);
     add_number(w, "views", s->context_views, usual->context_views);
     if (s->poses != POSES_GIVEN) {

@@ -34,7 +34,7 @@ void reconstruction_defaults(reconstruction_options *options)
 
 void reconstruction_warn_of_budget(const reconstruction_options *options, uint32_t requested, uint32_t count)
 {
-    if (requested > count && !options->automatic) {
+    if (requested > count && !reconstruction_chooses(options)) {
         (void)cli_error(CLI_OK,
                         "warning: %" PRIu32 " Gaussians are more than the views have: all %" PRIu32
                         " valid points are used",
@@ -342,6 +342,26 @@ static int bind_head(reconstruction *r, const reconstruction_options *options)
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, r->head.name, &r->config, r->arena_bytes);
 }
 
+/* Builds the fewest Gaussians that draw the context views at options->min_psnr. */
+static t3r_status make_least(reconstruction *r, const reconstruction_options *options, t3r_request request)
+{
+    const uint32_t width = r->config.width, height = r->config.height;
+    uint8_t *rgb = malloc((size_t)width * height * 3);
+    const t3r_target picture = {.width = width, .height = height, .rgb = rgb, .rgb_stride_bytes = 3 * width};
+    t3r_status status = T3R_ERR_ARENA;
+    if (rgb != NULL) {
+        request.gaussians = 1; /* for the analysis alone */
+        status = t3r_reconstruct(r->runtime, &request, &r->scene);
+        request.gaussians = 0;
+    }
+    if (status == T3R_OK) {
+        status = t3r_rebuild_least(r->runtime, &request, (uint32_t)(options->min_psnr * 256 + 0.5), &picture, &r->scene,
+                                   &r->least);
+    }
+    free(rgb);
+    return status;
+}
+
 t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes)
 {
     const t3r_request request = {
@@ -349,7 +369,7 @@ t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *
         .importance = planes,
         .importance_stride_bytes = r->config.width * 2,
     };
-    return t3r_reconstruct(r->runtime, &request, &r->scene);
+    return options->min_psnr > 0 ? make_least(r, options, request) : t3r_reconstruct(r->runtime, &request, &r->scene);
 }
 
 void reconstruction_configure(reconstruction *r, const reconstruction_options *options)
@@ -364,7 +384,7 @@ void reconstruction_configure(reconstruction *r, const reconstruction_options *o
         r->config.render_height = height;
     }
     chosen_head_configure(&r->head, &r->config);
-    r->config.keep_analysis |= options->automatic;
+    r->config.keep_analysis |= reconstruction_chooses(options);
 }
 
 void reconstruction_request(reconstruction *r, const reconstruction_options *options)

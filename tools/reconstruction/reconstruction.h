@@ -37,6 +37,7 @@ typedef struct reconstruction_options {
     double keep_percent;             /* budget as percent of the valid points, (0, 100]; 0 = not given */
     bool automatic;                  /* fewer than the budget if they lose less than max_loss */
     double max_loss;                 /* dB, relative to all points; 0 unless automatic */
+    double min_psnr;                 /* dB of the context views: the fewest that reach it; 0 = exactly the budget */
     const struct method *method;     /* for callers that build by several methods (method.h); NULL = none given */
     uint32_t finetune_iterations;    /* of methods that fine-tune; 0 = their own number */
     const char
@@ -57,6 +58,12 @@ typedef struct reconstruction_options {
 } reconstruction_options;
 
 void reconstruction_defaults(reconstruction_options *options);
+
+/* Whether the budget is only the most, and the build chooses the number of Gaussians. */
+static inline bool reconstruction_chooses(const reconstruction_options *options)
+{
+    return options->automatic || options->min_psnr > 0;
+}
 
 /* argp children; each parent's parser passes a reconstruction_options * in state->child_inputs[]. `settings`: --auto
  * --allocate --head --wavelet ... --arena --threads; `budget`: --context --gaussians --keep. */
@@ -83,6 +90,7 @@ typedef struct reconstruction {
     uint32_t requested;       /* the requested budget, without max_loss; more than valid_points when all are used */
     double add_views_seconds; /* time of the image stage */
     double build_seconds;     /* time of t3r_reconstruct() */
+    t3r_least least;          /* for min_psnr; else all zero */
     stage_times stages;       /* of both, if hashes are collected */
     double give_up_at;        /* cli_now() at which the run is cancelled; 0 = never */
     uint64_t stage_hash[T3R_STAGE_COUNT]; /* the reports of a stage that reports several times are chained */

@@ -12,7 +12,7 @@
 #include "reconstruction/options/option_names.h"
 #include "reconstruction/options/settings.h"
 
-enum { KEY_GAUSSIANS = 256, KEY_KEEP, KEY_CONTEXT, KEY_MAX_LOSS, KEY_WORKING, KEY_ARENA, KEY_PRESET };
+enum { KEY_GAUSSIANS = 256, KEY_KEEP, KEY_CONTEXT, KEY_MAX_LOSS, KEY_MIN_PSNR, KEY_WORKING, KEY_ARENA, KEY_PRESET };
 
 static const struct argp_option settings[] = {
     {NULL, 0, NULL, 0, "Settings:", 20},
@@ -24,6 +24,10 @@ static const struct argp_option settings[] = {
      0},
     {"max-loss", KEY_MAX_LOSS, "DB", 0,
      "decibels that --auto may lose on new views, against a scene of all valid points; 0.01..10 (0.5)", 0},
+    {"min-psnr", KEY_MIN_PSNR, "DB", 0,
+     "take the fewest Gaussians that draw each context view at so many decibels, measured over the whole picture, and "
+     "at most the budget (all valid points); 0.01..100",
+     0},
     {"importance", OPTION_TO(reconstruction_options, importance), "PNG,PNG,...",
      OPTION_READS | OPTION_LIST | OPTION_FOLDER,
      "importance of each pixel, for --allocate given: a grey picture for each context view, in their order and of the "
@@ -66,6 +70,9 @@ static void check_settings(struct argp_state *state, reconstruction_options *o)
     if (o->max_loss > 0 && !o->automatic) {
         argp_error(state, "--max-loss belongs to --auto");
     }
+    if (o->min_psnr > 0 && o->automatic) {
+        argp_error(state, "--auto and --min-psnr exclude each other");
+    }
     if (!o->automatic) {
         return;
     }
@@ -97,6 +104,9 @@ static error_t parse_setting(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_MAX_LOSS:
         o->max_loss = option_decimal(state, "max-loss", arg, 0.01, 10);
+        return 0;
+    case KEY_MIN_PSNR:
+        o->min_psnr = option_decimal(state, "min-psnr", arg, 0.01, 100);
         return 0;
     case ARGP_KEY_END:
         check_settings(state, o);

@@ -309,8 +309,9 @@ int rival_build(method_source *shared, const t3r_recording *recording, const cha
                 const reconstruction_options *options, reconstruction *made, reconstruction_account *account)
 {
     const method *m = options->method;
-    if (options->automatic) {
-        return cli_error(CLI_BAD_USAGE, "--auto chooses for the method trim3r alone, not for %s", m->name);
+    if (reconstruction_chooses(options)) {
+        return cli_error(CLI_BAD_USAGE, "%s chooses for the method trim3r alone, not for %s",
+                         options->automatic ? "--auto" : "--min-psnr", m->name);
     }
     rival_source *source = open_source(shared, recording, path, options);
     if (source == NULL) {

@@ -93,7 +93,7 @@ static int measure_row(const cell *it, stress_run *run, uint32_t keep, uint32_t 
     const bool stereo = options.config.depth == T3R_DEPTH_STEREO;
     uint32_t valid = stereo ? account.valid_points : stress_capture_valid(&run->capture);
     uint32_t expected = T3R_MIN(options.gaussians, valid);
-    const char *broken = stress_broken_invariant(&built.scene, expected, options.automatic);
+    const char *broken = stress_broken_invariant(&built.scene, expected, reconstruction_chooses(&options));
     if (broken != NULL) {
         set_status(row, STRESS_BROKEN, broken);
     }

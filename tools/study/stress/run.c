@@ -99,6 +99,7 @@ reconstruction_options stress_run_options(const stress_run *run, const stress_ca
     options.gaussians = keep < contest->keep_count ? c->budget[keep] : 0;
     options.keep_percent = keep < contest->keep_count ? 0 : 100;
     options.automatic &= keep < contest->keep_count;
+    options.min_psnr = keep < contest->keep_count ? options.min_psnr : 0;
     options.hash = false;
     options.config.width = c->base.width;
     options.config.height = c->base.height;

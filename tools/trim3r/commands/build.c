@@ -85,8 +85,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "REC.mcap is missing");
         } else if (o->output == NULL && o->colmap == NULL) {
             argp_error(state, "-o SCENE.ply is missing");
-        } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
-            argp_error(state, "the budget is missing: --gaussians Z, --keep P%% or --auto");
+        } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 &&
+                   !reconstruction_chooses(&o->settings)) {
+            argp_error(state, "the budget is missing: --gaussians Z, --keep P%%, --auto or --min-psnr DB");
         }
         return 0;
     default:
@@ -100,13 +101,14 @@ const struct argp build_argp = {
     .options = options,
     .parser = parse,
     .args_doc = "REC.mcap",
-    .doc = "Make exactly Z Gaussians of a recording's context frames, or with --auto as few as they need."
+    .doc = "Make exactly Z Gaussians of a recording's context frames, or with --auto or --min-psnr as few as they need."
            "\vExamples:\n"
            "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
            "  trim3r build room.mcap --gaussians 13107 --head analytic -o scene.ply\n"
            "  trim3r build room.mcap --head tiny --refine 4 --fit-passes off -o s.ply\n"
            "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
            "  trim3r build room.mcap --auto --max-loss 0.5 -o scene.ply\n"
+           "  trim3r build room.mcap --min-psnr 28 -o scene.ply\n"
            "  trim3r build room.mcap --keep 5% --allocate given --importance dir -o s.ply\n"
            "  trim3r build room.mcap --prune theirs.ply --context 0,2 --keep 20% -o s.ply\n"
            "  trim3r build room.mcap --keep 10% --colmap start\n"
@@ -170,6 +172,11 @@ static void print_json(const build_options *o, const reconstruction_account *acc
     json_add_integer(root, "requested", account->requested);
     if (o->settings.automatic) {
         cJSON_AddNumberToObject(root, "max_loss", o->settings.max_loss);
+    }
+    if (o->settings.min_psnr > 0) {
+        cJSON_AddNumberToObject(root, "min_psnr", o->settings.min_psnr);
+        cJSON_AddNumberToObject(root, "context_psnr", r->least.psnr_q8 / 256.0);
+        json_add_integer(root, "builds", r->least.builds);
     }
     json_add_integer(root, "valid_points", account->valid_points);
     if (refines(o)) {
@@ -281,6 +288,20 @@ static void print_lists(const tile_lists *lists)
     }
 }
 
+/* Prints how well the context views are drawn, for --min-psnr. */
+static void print_least(const reconstruction_options *settings, const t3r_least *least)
+{
+    if (settings->min_psnr <= 0) {
+        return;
+    }
+    printf("each context view is drawn at %.2f dB or more, in the last of %" PRIu32 " builds\n", least->psnr_q8 / 256.0,
+           least->builds);
+    if (least->psnr_q8 < settings->min_psnr * 256) {
+        printf("%swarning:%s that is less than --min-psnr %g, the best of the numbers that were tried\n",
+               style_begin(stdout, STYLE_WARNING), style_end(stdout), settings->min_psnr);
+    }
+}
+
 static void print_text(const build_options *o, const reconstruction_account *account, const reconstruction *r,
                        const found *f, const work_times *times)
 {
@@ -296,6 +317,7 @@ static void print_text(const build_options *o, const reconstruction_account *acc
         printf("refined in %" PRIu32 " of at most %" PRIu32 " passes\n", t3r_refinement_passes(r->runtime),
                o->settings.config.refine);
     }
+    print_least(&o->settings, &r->least);
     for (uint32_t v = 0; v < account->context_count; v++) {
         uint32_t partner;
         t3r_pair pair = t3r_stereo_pair(r->runtime, v, &partner);

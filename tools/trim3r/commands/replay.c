@@ -91,9 +91,9 @@ static void check_stream(struct argp_state *state, const replay_options *o)
     scene_output_option(state, "-o", live->scene);
     live_options_check(state, live);
     if (o->streams &&
-        (o->settings.context_count > 0 || o->settings.automatic || o->settings.config.depth == T3R_DEPTH_STEREO ||
-         o->settings.config.allocate == T3R_ALLOCATE_GIVEN)) {
-        argp_error(state, "--stream takes no --context, --auto, --allocate given or --depth stereo");
+        (o->settings.context_count > 0 || reconstruction_chooses(&o->settings) ||
+         o->settings.config.depth == T3R_DEPTH_STEREO || o->settings.config.allocate == T3R_ALLOCATE_GIVEN)) {
+        argp_error(state, "--stream takes no --context, --auto, --min-psnr, --allocate given or --depth stereo");
     }
     if (o->stream.no_hash && o->expect != NULL) {
         argp_error(state, "--no-hash and --expect exclude each other");
@@ -143,7 +143,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         if (o->recording == NULL) {
             argp_error(state, "REC.mcap is missing");
         }
-        if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
+        if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !reconstruction_chooses(&o->settings)) {
             o->settings.keep_percent = 10;
         }
         check_stream(state, o);

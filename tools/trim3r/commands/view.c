@@ -99,7 +99,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case ARGP_KEY_END:
         check_options(state, o);
-        if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !o->settings.automatic) {
+        if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 && !reconstruction_chooses(&o->settings)) {
             o->settings.keep_percent = 10;
         }
         return 0;
