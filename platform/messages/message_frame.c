@@ -238,16 +238,16 @@ static const char *const no_direction = "a rotation has no direction: it is zero
 /* Whether a quaternion's largest part is between 2^-20 and 2^19, so that it can be normalised. */
 static bool has_direction(const uint64_t rotation_f64[4])
 {
-    int64_t largest = 0;
+    const int64_t least = INT64_C(1) << 10, most = INT64_C(1) << 49;
+    bool any = false;
     for (uint32_t i = 0; i < 4; i++) {
         int64_t part;
-        if (t3r_fixed_from_double(rotation_f64[i], 30, &part) != 0) {
+        if (t3r_fixed_from_double(rotation_f64[i], 30, &part) != 0 || part > most || part < -most) {
             return false;
         }
-        part = part < 0 ? -part : part;
-        largest = part > largest ? part : largest;
+        any = any || part >= least || part <= -least;
     }
-    return largest >= INT64_C(1) << 10 && largest <= INT64_C(1) << 49;
+    return any;
 }
 
 /* Converts a quaternion to fixed point. Returns -1 or 1 if its norm is below 1/2 or above 3/2, the range of t3r_camera,
@@ -304,12 +304,10 @@ const char *t3r_message_pose(const t3r_ros_pose *pose, t3r_camera *camera)
     }
     int32_t xyzw[4] = {0};
     uint32_t fraction_bits = 30; /* others scale by powers of two, since only the direction counts */
-    for (uint32_t steps = 0; steps < 32; steps++) {
-        const int order = convert_rotation(pose->rotation_f64, fraction_bits, xyzw);
-        if (order == 0) {
-            break;
-        }
+    int order = convert_rotation(pose->rotation_f64, fraction_bits, xyzw);
+    for (uint32_t steps = 0; order != 0 && steps < 20; steps++) { /* 2^20 is the most that has_direction() allows */
         fraction_bits = order > 0 ? fraction_bits - 1 : fraction_bits + 1;
+        order = convert_rotation(pose->rotation_f64, fraction_bits, xyzw);
     }
     for (uint32_t i = 0; i < 4; i++) {
         camera->rotation_q30[(i + 1) % 4] = xyzw[i];

@@ -105,7 +105,8 @@ static __attribute__((noinline)) uint32_t least_needed(const t3r_runtime *rt, co
             const uint16_t *pixels = t3r_remembered_pixels(t3r_remembered_at(rt, k));
             shown_by |= (uint32_t)shows(&views[k], pixels, g, &map.records[i]) << k;
         }
-        shown_by |= (uint32_t)(stands && shows(&replaced, NULL, g, &map.records[i])) << rt->remembered;
+        const bool old_shows = stands && shows(&replaced, NULL, g, &map.records[i]);
+        shown_by |= (old_shows ? 1u : 0u) << rt->remembered;
         const uint32_t part_q8 = 256 / T3R_MAX(t3r_ones(shown_by), 1u);
         for (uint32_t k = 0; k < rt->remembered; k++) {
             need_q8[k] += (shown_by >> k & 1) * part_q8;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* platform/messages/fixed_double.c: all doubles and floats, to the fractions that readers use; one exponent at a time
- * where it decides a shift. */
+/* platform/messages/fixed_double.c: all doubles to 10..50 bits of fraction, and floats to those of depth; one exponent
+ * at a time where it decides a shift. */
 #include "messages/fixed_double.h"
 
 static void doubles(uint64_t low, uint64_t high, uint32_t fraction_bits)
@@ -17,16 +17,15 @@ static void floats(uint32_t low, uint32_t high)
 
 int main(void)
 {
-    static const uint32_t fractions[] = {16, 24, 30, 32, 40};
-    for (uint32_t i = 0; i < sizeof fractions / sizeof fractions[0]; i++) {
+    for (uint32_t fraction_bits = 10; fraction_bits <= 50; fraction_bits++) {
         for (uint32_t sign = 0; sign <= 2048; sign += 2048) {
-            doubles(sign, sign, fractions[i]);
-            doubles(sign + 1, sign + 970, fractions[i]); /* below a quarter of the last bit */
+            doubles(sign, sign, fraction_bits);
+            doubles(sign + 1, sign + 970, fraction_bits); /* below a quarter of the last bit */
             for (uint32_t exponent = sign + 971; exponent < sign + 1130; exponent++) {
-                doubles(exponent, exponent, fractions[i]);
+                doubles(exponent, exponent, fraction_bits);
             }
-            doubles(sign + 1130, sign + 2046, fractions[i]); /* beyond every fraction */
-            doubles(sign + 2047, sign + 2047, fractions[i]);
+            doubles(sign + 1130, sign + 2046, fraction_bits); /* beyond every fraction */
+            doubles(sign + 2047, sign + 2047, fraction_bits);
         }
     }
     for (uint32_t exponent = 0; exponent < 512; exponent++) {

@@ -5,8 +5,8 @@
 #include "messages/fixed_double.h"
 #include "messages/message_frame.h"
 
-/* double.c proves this contract for a camera's fractions. */
-/*@ requires fraction: fraction_bits == 16 || fraction_bits == 24 || fraction_bits == 30 || fraction_bits == 32;
+/* double.c proves this contract. */
+/*@ requires fraction: 10 <= fraction_bits <= 50;
     assigns *fixed, \result \from bits, fraction_bits;
     ensures \result == 0 || \result == -1;
     ensures \initialized(fixed); */
