@@ -5,16 +5,17 @@
 
 #include "core/hash.h"
 #include "core/little_endian.h"
+#include "core/memory.h"
 #include "kernels/hash_bytes.h"
 
-/* Bytes of a run; a multiple of the longest value. */
+/* Bytes of a run, which kernels hash fastest, and the most that are written at once */
 #define T3R_HASH_RUN 512u
 
 typedef struct t3r_hash_writer {
     t3r_hash_bytes_kernel *hash_bytes;
     uint64_t hash;  /* of all bytes before the buffered ones */
     uint32_t count; /* number of buffered bytes */
-    uint8_t bytes[T3R_HASH_RUN];
+    uint8_t bytes[2 * T3R_HASH_RUN];
 } t3r_hash_writer;
 
 static inline void t3r_hash_begin(t3r_hash_writer *w, t3r_hash_bytes_kernel *hash_bytes)
@@ -35,8 +36,10 @@ static inline uint64_t t3r_hash_end(t3r_hash_writer *w)
 /* Returns room for `bytes` more bytes, at most a run. */
 static inline uint8_t *t3r_hash_room(t3r_hash_writer *w, uint32_t bytes)
 {
-    if (bytes > T3R_HASH_RUN - w->count) {
-        (void)t3r_hash_end(w);
+    if (w->count >= T3R_HASH_RUN) {
+        w->hash = w->hash_bytes(w->hash, w->bytes, T3R_HASH_RUN);
+        w->count -= T3R_HASH_RUN;
+        memcpy(w->bytes, w->bytes + T3R_HASH_RUN, w->count);
     }
     uint8_t *room = w->bytes + w->count;
     w->count += bytes;

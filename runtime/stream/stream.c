@@ -157,12 +157,13 @@ static t3r_status join_map(t3r_runtime *rt, t3r_view *views, uint32_t slot, t3r_
     }
     measure_points(rt, view, &work.workers, report);
     t3r_map map = t3r_map_of(rt);
-    report->removed = t3r_map_see(&map, &keyframe, rt->keyframes, rt->config.half_life);
+    t3r_map_disc *discs = t3r_buffer_at(rt, T3R_BUFFER_MAP_DISCS);
+    report->removed =
+        t3r_map_see(&map, &keyframe, rt->keyframes, rt->config.half_life, &work.workers, (uint8_t *)discs);
     t3r_remembered_hold(rt, &map);
     rt->gaussians = map.count;
 
-    const t3r_map_density density = {&map, &keyframe, &work.workers, t3r_buffer_at(rt, T3R_BUFFER_MAP_DISCS),
-                                     t3r_buffer_at(rt, T3R_BUFFER_MAP_DENSITY)};
+    const t3r_map_density density = {&map, &keyframe, &work.workers, discs, t3r_buffer_at(rt, T3R_BUFFER_MAP_DENSITY)};
     const t3r_budget_settings settings = t3r_budget_settings_of(rt, views);
     t3r_map_density_find(&density);
     t3r_map_density_fit(&density);

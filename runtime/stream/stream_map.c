@@ -64,8 +64,10 @@ static look look_at(const t3r_gaussian *g, const t3r_map_record *record, const t
 
 static void move_to(t3r_map *map, uint32_t from, uint32_t to)
 {
-    map->gaussians[to] = map->gaussians[from];
-    map->records[to] = map->records[from];
+    if (from != to) {
+        map->gaussians[to] = map->gaussians[from];
+        map->records[to] = map->records[from];
+    }
 }
 
 /* Returns the current keyframe's part of an octave spread over `half_life` keyframes. */
@@ -78,13 +80,31 @@ static uint32_t fade_q10(uint32_t keyframes, uint32_t half_life)
     return ((at + 1) << 10) / half_life - (at << 10) / half_life;
 }
 
-uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyframes, uint32_t half_life)
+typedef struct look_job {
+    const t3r_map *map;
+    const t3r_pointmap *keyframe;
+    uint8_t *looks;
+} look_job;
+
+static void look_at_some(void *context, uint32_t begin, uint32_t end, uint32_t worker)
+{
+    (void)worker;
+    const look_job *job = context;
+    for (uint32_t i = begin; i < end; i++) {
+        job->looks[i] = (uint8_t)look_at(&job->map->gaussians[i], &job->map->records[i], job->keyframe);
+    }
+}
+
+uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyframes, uint32_t half_life,
+                     const t3r_workers *workers, uint8_t *looks)
 {
     const uint32_t fade = fade_q10(keyframes, half_life);
+    look_job job = {.map = map, .keyframe = keyframe, .looks = looks};
+    t3r_run_rows(workers, map->count, look_at_some, &job);
     uint32_t kept = 0;
     for (uint32_t i = 0; i < map->count; i++) {
         t3r_map_record *record = &map->records[i];
-        look seen = look_at(&map->gaussians[i], record, keyframe);
+        const look seen = (look)looks[i];
         if (seen == CONTRADICTED || seen == COARSE || (seen == HIDDEN && record->faded_q10 >= LOST_Q10)) {
             continue;
         }

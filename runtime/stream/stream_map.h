@@ -8,6 +8,7 @@
 
 #include "budget/budget.h"
 #include "core/map_record.h"
+#include "core/workers.h"
 #include "pointmap/pointmap.h"
 #include "state/views.h"
 #include "trim3r.h"
@@ -37,8 +38,9 @@ bool t3r_map_is_alike(const t3r_gaussian *g, const t3r_view *view, size_t pixel)
 
 /* Updates every Gaussian from a keyframe: removes those that it sees through or sees far finer, and fades those that
  * it does not see to half the density in `half_life` keyframes (0: never, else up to 1,024). `keyframes`: number of
- * earlier ones. Returns the number removed. */
-uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyframes, uint32_t half_life);
+ * earlier ones. looks: work, a byte for each Gaussian. Returns the number removed. */
+uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyframes, uint32_t half_life,
+                     const t3r_workers *workers, uint8_t *looks);
 
 /* Removes the Gaussians that leave. Returns their number. */
 uint32_t t3r_map_drop(t3r_map *map);

@@ -167,6 +167,13 @@ TEST(nothing_widens_where_all_stay)
     assert_int_equal(s.records[0].density_q10, -1000);
 }
 
+static uint32_t see(site *s, const t3r_pointmap *keyframe, uint32_t keyframes, uint32_t half_life)
+{
+    const t3r_workers alone = {NULL, 1};
+    uint8_t looks[MOST];
+    return t3r_map_see(&s->map, keyframe, keyframes, half_life, &alone, looks);
+}
+
 /* The density halves, an octave, in every `half_life` consecutive keyframes, evenly. */
 TEST(fades_by_half_life)
 {
@@ -182,7 +189,7 @@ TEST(fades_by_half_life)
         s.view.depth_unit_q40 = UINT64_C(1) << 30;
         const t3r_pointmap keyframe = t3r_pointmap_of(&s.view, 0);
         for (uint32_t n = 1; n <= 2 * half_lives[h]; n++) {
-            assert_int_equal(t3r_map_see(&s.map, &keyframe, 7 * half_lives[h] + n - 1, half_lives[h]), 0);
+            assert_int_equal(see(&s, &keyframe, 7 * half_lives[h] + n - 1, half_lives[h]), 0);
             assert_int_equal(s.records[0].faded_q10, n * 1024 / half_lives[h]);
             assert_int_equal(s.records[0].idle, T3R_MIN(n, 255u));
         }
@@ -203,7 +210,7 @@ TEST(counts_are_held)
     s.view.depth_unit_q40 = UINT64_C(1) << 30;
     const t3r_pointmap keyframe = t3r_pointmap_of(&s.view, 0);
     for (int n = 0; n < 3; n++) {
-        assert_int_equal(t3r_map_see(&s.map, &keyframe, 0, 1), 0);
+        assert_int_equal(see(&s, &keyframe, 0, 1), 0);
         assert_int_equal(s.records[0].idle, UINT8_MAX);
         assert_int_equal(s.records[0].faded_q10, UINT16_MAX);
     }
