@@ -1,15 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """page.py TRIM3R [FOLDER]: the viewer in a headless Chromium: its hashes are the native ones, in one thread and in
-several, the slider rebuilds, every overlay differs, mouse and keyboard move the camera, windows of all sizes; no errors,
-no requests. With FOLDER, screenshots go there."""
+several, the slider rebuilds, every overlay differs, mouse, touch and keyboard move the camera, a crop is drawn and saved,
+files are opened, windows of all sizes; no errors, no requests. With FOLDER, screenshots go there."""
+import base64
 import contextlib
+import gzip
 import json
+import math
+import os
 import re
 import struct
 import subprocess
 import sys
 import tempfile
+import time
 
 import browser
 from checks import check, done, run, skip
@@ -108,6 +113,52 @@ def motion(page):
     check(page.value("document.querySelector('#frames [aria-pressed=true]').textContent") == "frame 2", "frames by number")
 
 
+def touch(page):
+    """Two fingers pinch and drag; one orbits."""
+    x, y = page.place("#picture")
+
+    def fingers(*moves):
+        for kind, points in zip(("touchStart", *("touchMove" for _ in moves[1:]), "touchEnd"), (*moves, ())):
+            page.call("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": x + dx, "y": y + dy, "id": i} for i, (dx, dy) in enumerate(points)])
+
+    page.value("goTo(0)")
+    far = page.value("camera.distance")
+    fingers(((-40, 0), (40, 0)), ((-80, 0), (80, 0)))
+    check(abs(page.value("camera.distance") / far - 0.5) < 0.01, "two fingers twice as far apart: half the distance")
+    page.value("goTo(0)")
+    axes = page.value("JSON.stringify(camera.axes)")
+    place = page.value("camera.position")
+    fingers(((-40, 0), (40, 0)), ((-40, 50), (40, 50)))
+    moved = [b - a for a, b in zip(place, page.value("camera.position"))]
+    check(page.value("JSON.stringify(camera.axes)") == axes and max(map(abs, moved)) > 0, "two fingers drag it sideways")
+    fingers(((0, 0),), ((30, 0),))
+    check(page.value("JSON.stringify(camera.axes)") != axes, "one finger orbits")
+    page.value("goTo(0)")
+
+
+def keys_are_listed(page):
+    page.value("document.getElementById('picture').focus()")
+    for is_open in (True, False):
+        page.key("?", 191, "?")
+        check(page.value("document.getElementById('how').open") == is_open, f"? opens and closes the list of keys: {is_open}")
+
+
+def along_the_recording(page):
+    """The slider stands at each recorded place; playing goes on to the last one."""
+    count = page.value("data.path.length")
+    check(count > 2 and page.value("document.getElementById('along').max") == str(count - 1), f"{count} places")
+    at = "(() => { const p = data.path[PLACE]; return camera.position.every((x, i) => x === p[i]); })()"
+    page.value("(() => { const s = document.getElementById('along'); s.value = 1; s.dispatchEvent(new Event('input')); })()")
+    check(page.value(at.replace("PLACE", "1")), "the second place")
+    plain = drawn(page, lambda: page.value("approach(3), moved()"))
+    check(drawn(page, lambda: page.click("#trace")) != plain, "the path is drawn")
+    page.click("#trace")
+    page.click("#play")
+    page.wait("path.playing === 0")
+    check(page.value(at.replace("PLACE", f"{count - 1}")), "played to the last place")
+    page.wait("isStill()")
+
+
 def accessible(page):
     unnamed = page.value("""[...document.querySelectorAll('input, button, canvas, progress')].filter((e) =>
         !e.getAttribute('aria-label') && !e.textContent && !(e.labels && e.labels.length)).length""")
@@ -151,7 +202,7 @@ def same_pictures(page, scene, room):
 
 def fits(page, looks_as):
     """The picture and the lines below it are in the window, without scrolling."""
-    for width, height in ((1280, 800), (2560, 1440)):
+    for width, height in ((320, 640), (1280, 800), (2560, 1440), (3840, 2160)):
         page.size(width, height)
         page.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
         low = page.value("document.getElementById('drawn').getBoundingClientRect().bottom")
@@ -195,6 +246,107 @@ def narrower_than_the_recording(page, folder):
     fits(page, "view")
 
 
+def set_slider(page, label, value):
+    page.value(f"""(() => {{ const s = document.querySelector('#crop input[aria-label="{label}"]');
+        s.value = {value}; s.dispatchEvent(new Event('input')); }})()""")
+
+
+def rows_of(path):
+    """Returns the rows of a .ply of floats, by name."""
+    with open(path, "rb") as file:
+        head, body = file.read().split(b"end_header\n", 1)
+    names = re.findall(r"property float (\w+)", head.decode())
+    count = int(re.search(r"element vertex (\d+)", head.decode())[1])
+    check(len(body) == count * len(names) * 4, f"{path}: {count} rows")
+    return [dict(zip(names, row)) for row in struct.iter_unpack(f"<{len(names)}f", body)]
+
+
+def crops(page, scene, folder):
+    """A box and a least opacity leave out the same Gaussians in the picture, in the count and in the file that is
+    saved."""
+    page.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=folder)
+    whole = drawn(page, lambda: page.value("draw()"))
+    page.value("document.getElementById('crop').open = true")
+    page.wait("crop.table !== null && isStill()")
+    cropped = drawn(page, lambda: set_slider(page, "x, to", 500))
+    least = 0.5
+    set_slider(page, "Least opacity", round(100 * least))
+    page.wait("isStill()")
+    browser.look(page, looks, "view-crop")
+    limit = page.value("endsOf(0)[1]")
+    rows = rows_of(scene)
+    wanted = [row for row in rows if row["x"] <= limit + 1e-6 and 1 / (1 + math.exp(-row["opacity"])) >= least - 1e-5]
+    check(cropped != whole and 0 < len(wanted) < len(rows) / 2, f"{len(wanted)} of {len(rows)} are left")
+    left = page.value("document.getElementById('kept').textContent")
+    check(left == f"{len(wanted):,} of {len(rows):,} Gaussians are left.", f"{left} {len(wanted)} are wanted")
+    page.click("#save")
+    page.wait("document.getElementById('remark').textContent.includes('-kept.ply')")
+    saved = os.path.join(folder, page.value("document.getElementById('remark').textContent").split(":")[0])
+    until = time.monotonic() + 30
+    while not os.path.exists(saved) and time.monotonic() < until:
+        time.sleep(0.05)
+    for row, want in zip(rows_of(saved), wanted, strict=True):
+        worst = max(abs(row[name] - want[name]) for name in ("x", "y", "z", "f_dc_0", "opacity", "scale_0"))
+        check(worst < 2e-3, f"a row that is {worst} off")
+    page.click("#uncrop")
+    page.wait("isStill()")
+    check(page.value(PICTURE) == whole and page.value("document.getElementById('kept').textContent").startswith("All "), "and all of it again")
+    return saved
+
+
+def choose(page, path):
+    """Opens a file as the button does."""
+    root = page.call("DOM.getDocument")["root"]["nodeId"]
+    node = page.call("DOM.querySelector", nodeId=root, selector="#open")["nodeId"]
+    page.call("DOM.setFileInputFiles", nodeId=node, files=[path])
+
+
+def opens(page, scene, folder):
+    """Files of other programs are read by the program's own readers; others are refused with the command that converts
+    them."""
+    native = json.loads(run(TRIM3R, "view", scene, "-o", f"{folder}/native.html", "--json").stdout)
+    packed, splat, spz = (f"{folder}/{name}" for name in ("packed.compressed.ply", "s.splat", "s.spz"))
+    for path in (packed, splat, spz):
+        run(TRIM3R, "convert", scene, "-o", path)
+    for name in ("s.sog", "s.glb"):
+        with open(f"{folder}/{name}", "wb") as file:
+            file.write(b"?")
+    with open(f"{folder}/old.spz", "wb") as file:
+        file.write(gzip.compress(old_spz(50)))
+    with open(f"{folder}/cut.ply", "wb") as out, open(scene, "rb") as whole:
+        out.write(whole.read()[:-5])
+    with open(f"{folder}/bomb.spz", "wb") as file:
+        file.write(gzip.compress(bytes(160 << 20)))
+    gaussians = native["gaussians"]
+    for path, wanted in ((scene, gaussians), (packed, gaussians), (splat, gaussians), (f"{folder}/old.spz", 50)):
+        choose(page, path)
+        name = os.path.basename(path)
+        page.wait(f"document.title.startsWith({json.dumps(name)}) && document.body.dataset.gaussians === '{wanted}' && isStill()")
+    for path, words in ((spz, "a browser does not unpack"), (spz, "trim3r convert s.spz -o s.ply"),
+                        (f"{folder}/s.sog", "trim3r convert s.sog -o s.ply"), (f"{folder}/s.glb", "trim3r convert s.glb -o s.ply"),
+                        (f"{folder}/room.mcap", "trim3r view room.mcap"), (f"{folder}/cut.ply", "byte "),
+                        (f"{folder}/bomb.spz", "unpacks to more than")):
+        choose(page, path)
+        page.wait(f"document.getElementById('status').textContent.includes({json.dumps(words)})")
+        check(page.value("document.getElementById('status').classList.contains('bad')"), f"{path} is refused")
+    with open(scene, "rb") as file:
+        dropped = base64.b64encode(file.read()).decode()
+    page.value(f"""(() => {{ const d = new DataTransfer(), b = Uint8Array.from(atob('{dropped}'), (c) => c.charCodeAt(0));
+        d.items.add(new File([b], 'dropped.ply')); document.dispatchEvent(new DragEvent('drop', {{ dataTransfer: d, bubbles: true }})); }})()""")
+    page.wait(f"document.title.startsWith('dropped') && document.body.dataset.gaussians === '{gaussians}' && isStill()")
+    dropped = page.value(PICTURE)
+    opened(page, f"{folder}/native.html")
+    page.wait("isStill()")
+    check(page.value(PICTURE) == dropped, "a scene that is dropped is seen as the native program shows it")
+
+
+def old_spz(count):
+    """Returns an .spz of version 2: points on a grid, all equal but for their places."""
+    places = b"".join(struct.pack("<i", round((i % 5 if axis == 0 else i // 5) * 1000))[:3] for i in range(count) for axis in range(3))
+    return (struct.pack("<4sIIBBBB", b"NGSP", 2, count, 0, 12, 0, 0) + places + bytes([200] * count) + bytes([128] * 3 * count)
+            + bytes([100] * 3 * count) + bytes([128] * 3 * count))
+
+
 def on_a_phone(page):
     page.size(390, 844, True)
     check(page.value("document.documentElement.scrollWidth") <= 390, "nothing is wider than a phone")
@@ -233,6 +385,9 @@ with tempfile.TemporaryDirectory() as scratch:
         accessible(page)
         shows(page)
         motion(page)
+        touch(page)
+        keys_are_listed(page)
+        along_the_recording(page)
         budget(page, recording)
         on_a_phone(page)
         opened(page, f"{scratch}/page.html")
@@ -240,6 +395,7 @@ with tempfile.TemporaryDirectory() as scratch:
         check("Gaussians" in page.value(STATUS), f"it is drawn: {page.value(STATUS)}")
         check(page.value("document.body.dataset.threads") == "1", "a page in a file has one thread")
         browser.look(page, looks, "view-scene")
+        crops(page, scene, scratch)
         run(TRIM3R, "view", scene, recording, "--context", "0,2", "-o", f"{scratch}/pair.html")
         opened(page, f"{scratch}/pair.html")
         of_file = page.value("document.body.dataset.gaussians")
@@ -251,6 +407,7 @@ with tempfile.TemporaryDirectory() as scratch:
         same_pictures(page, scene, recording)
         harmonics(page, recording, scratch)
         narrower_than_the_recording(page, scratch)
+        opens(page, scene, scratch)
         check(all(url.startswith(("file:", "blob:", "data:")) for url in page.requested), f"requests: {page.requested}")
         in_threads(page, recording)
         check(page.logged == [], f"nothing on the console: {page.logged}")

@@ -49,16 +49,6 @@ static int set_pose(t3r_camera *camera, const double position[3], const double r
     return t3r_camera_check(camera, camera->width, camera->height) == T3R_OK ? 0 : -1;
 }
 
-int viewpoint_from_angle(double degrees, uint32_t width, uint32_t height, t3r_camera *out)
-{
-    double focal = width / 2.0 / tan(degrees * M_PI / 360);
-    *out = (t3r_camera){.width = width, .height = height};
-    out->fx_q16 = out->fy_q16 = to_q(focal, 16);
-    out->cx_q16 = to_q((width - 1) / 2.0, 16);
-    out->cy_q16 = to_q((height - 1) / 2.0, 16);
-    return set_pose(out, (double[3]){0}, (double[4]){1, 0, 0, 0});
-}
-
 /* ---- pose files --------------------------------------------------------------------------------------------- */
 
 /* Returns 0, or -1 with a reason why the frame gives no view. */

@@ -10,11 +10,11 @@
 #include "cli/text/markup.h"
 #include "viewer/first_picture.h"
 
-/* Embedded by the build: page/view.html with marks for the others, such as <!--style-->. The module is empty if there
- * was no compiler for it. */
-extern const char viewer_html[], viewer_css[], viewer_js[], viewer_follow_js[], viewer_worker_js[], viewer_wasm[],
-    viewer_threads_wasm[];
-extern const unsigned viewer_wasm_bytes, viewer_threads_wasm_bytes;
+/* Embedded by the build: page/view.html with marks for the others, such as <!--style-->. The modules are empty if
+ * there was no compiler for them. */
+extern const char viewer_html[], viewer_css[], viewer_js[], viewer_follow_js[], viewer_worker_js[], viewer_files_js[],
+    viewer_wasm[], viewer_threads_wasm[], viewer_files_wasm[];
+extern const unsigned viewer_wasm_bytes, viewer_threads_wasm_bytes, viewer_files_wasm_bytes;
 
 bool viewer_page_is_built(void)
 {
@@ -26,25 +26,31 @@ static void add_numbers(cJSON *object, const char *key, const double *values, in
     cJSON_AddItemToObject(object, key, cJSON_CreateDoubleArray(values, count));
 }
 
+/* Stores the position and the rotation w x y z. */
+static void pose_of(const t3r_camera *camera, double pose[7])
+{
+    for (int i = 0; i < 3; i++) {
+        pose[i] = (double)camera->position_q32[i] / 4294967296.0;
+    }
+    for (int i = 0; i < 4; i++) {
+        pose[3 + i] = camera->rotation_q30[i] / 1073741824.0;
+    }
+}
+
 static cJSON *frame_json(const viewer_page *page, uint32_t index)
 {
     const t3r_camera *c = &page->viewpoints[index].camera;
     const double focal[] = {c->fx_q16 / 65536.0, c->fy_q16 / 65536.0};
     const double centre[] = {c->cx_q16 / 65536.0, c->cy_q16 / 65536.0};
-    double position[3], rotation[4];
-    for (int i = 0; i < 3; i++) {
-        position[i] = (double)c->position_q32[i] / 4294967296.0;
-    }
-    for (int i = 0; i < 4; i++) {
-        rotation[i] = c->rotation_q30[i] / 1073741824.0;
-    }
+    double pose[7];
+    pose_of(c, pose);
     cJSON *frame = cJSON_CreateObject();
     cJSON_AddStringToObject(frame, "name", page->names[index]);
     cJSON_AddBoolToObject(frame, "recorded", page->viewpoints[index].rgb != NULL);
     add_numbers(frame, "focal", focal, 2);
     add_numbers(frame, "centre", centre, 2);
-    add_numbers(frame, "position", position, 3);
-    add_numbers(frame, "rotation", rotation, 4);
+    add_numbers(frame, "position", pose, 3);
+    add_numbers(frame, "rotation", pose + 3, 4);
     return frame;
 }
 
@@ -72,6 +78,12 @@ static char *json_of(const viewer_page *page)
     cJSON *frames = cJSON_AddArrayToObject(root, "frames");
     for (uint32_t i = 0; i < page->viewpoint_count; i++) {
         cJSON_AddItemToArray(frames, frame_json(page, i));
+    }
+    cJSON *path = cJSON_AddArrayToObject(root, "path");
+    for (uint32_t i = 0; i < page->path_count; i++) {
+        double pose[7];
+        pose_of(&page->path[i], pose);
+        cJSON_AddItemToArray(path, cJSON_CreateDoubleArray(pose, 7));
     }
     char *text = cJSON_PrintUnformatted(root);
     cJSON_Delete(root);
@@ -116,6 +128,10 @@ static void write_part(FILE *out, const char *mark, const parts *p)
         markup_base64(out, p->picture, p->picture_bytes);
     } else if (strncmp(mark, "<!--worker-->", 13) == 0) {
         fputs(viewer_worker_js, out);
+    } else if (strncmp(mark, "<!--files-->", 12) == 0) {
+        fputs(viewer_files_js, out);
+    } else if (strncmp(mark, "<!--files-wasm-->", 17) == 0) {
+        markup_base64(out, (const uint8_t *)viewer_files_wasm, viewer_files_wasm_bytes);
     } else if (strncmp(mark, "<!--script-->", 13) == 0) {
         fputs(viewer_js, out);
     } else if (strncmp(mark, "<!--follow-->", 13) == 0 && p->follows) {

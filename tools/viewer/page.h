@@ -18,6 +18,8 @@ typedef struct viewer_page {
     const bundle_frame *viewpoints; /* places to look from, at least one; the page starts at the first */
     char (*names)[PAGE_NAME_BYTES]; /* of the viewpoints */
     uint32_t viewpoint_count;
+    const t3r_camera *path; /* where the recording's camera was */
+    uint32_t path_count;
     uint32_t valid_points; /* of the context views; 0 = the page cannot build */
     uint32_t gaussians;    /* the initial budget */
     bool is_file;          /* the scene is that of a file; else the one that the page builds first */

@@ -2,17 +2,13 @@
 #include "viewer/viewpoints.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
-#include "import/viewpoint.h"
 #include "reconstruction/developed_frame.h"
-#include "scene/scene_turn.h"
-
-#define DEGREES 60 /* horizontal angle for a scene without frames */
+#include "viewer/start_view.h"
 
 int viewpoints_add(viewpoints *v, const t3r_recording *recording, const char *path, uint32_t index, uint32_t width,
                    uint32_t height, bool with_depth)
@@ -39,54 +35,13 @@ int viewpoints_add(viewpoints *v, const t3r_recording *recording, const char *pa
     return developed_frame(recording, path, index, width, height, frame->rgb, frame->depth, &frame->camera);
 }
 
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* Finds the middle and half the size of the scene along an axis, in scene units: of the range without a twentieth of
- * the Gaussians at each end, widened by a quarter. */
-static void find_range(const scene_file *scene, const double axis[3], double *values, double *middle, double *half)
-{
-    for (uint32_t i = 0; i < scene->count; i++) {
-        const int32_t *at = scene->gaussians[i].position_q20;
-        values[i] = ldexp(axis[0] * at[0] + axis[1] * at[1] + axis[2] * at[2], -20);
-    }
-    qsort(values, scene->count, sizeof *values, compare);
-    const double low = values[scene->count / 20], high = values[scene->count - 1 - scene->count / 20];
-    *middle = (low + high) / 2;
-    *half = (high - low) / 2 * 1.25;
-}
-
 int viewpoints_add_before(viewpoints *v, const scene_file *scene, uint32_t width, uint32_t height)
 {
-    t3r_camera lens;
-    (void)viewpoint_from_angle(DEGREES, width, height, &lens);
-    const scene_turn upright = scene_turn_between(SCENE_AXES_AS_THEY_ARE, SCENE_AXES_RDF, scene->up);
-    double middle[3], half[3], *values = malloc(scene->count * sizeof *values);
-    if (values == NULL) {
+    t3r_camera start;
+    if (start_view(scene, width, height, &start) != 0) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    for (int axis = 0; axis < 3; axis++) { /* right, down and forward of the camera */
-        find_range(scene, upright.matrix + 3 * axis, values, &middle[axis], &half[axis]);
-    }
-    free(values);
-    const double wide = half[0] * lens.fx_q16 / (width << 15);
-    const double high = half[1] * lens.fy_q16 / (height << 15);
-    middle[2] -= half[2] + fmax(wide, high);
-    for (int axis = 0; axis < 3; axis++) {
-        double at = 0;
-        for (int i = 0; i < 3; i++) { /* the inverse of the turn */
-            at += upright.matrix[3 * i + axis] * middle[i];
-        }
-        lens.position_q32[axis] = scene->frame.origin_q32[axis] + llround(ldexp(at, scene->frame.exponent + 32));
-    }
-    for (int i = 0; i < 4; i++) {
-        const double turned = i == 0 ? upright.rotation[0] : -upright.rotation[i];
-        lens.rotation_q30[i] = (int32_t)llround(ldexp(turned, 30));
-    }
-    v->frames[v->count] = (bundle_frame){.camera = lens};
+    v->frames[v->count] = (bundle_frame){.camera = start};
     snprintf(v->names[v->count], PAGE_NAME_BYTES, "the start");
     v->count++;
     return CLI_OK;

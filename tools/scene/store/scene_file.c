@@ -37,7 +37,8 @@ int scene_file_take(const char *path, int flags, const scene_sink *sink, char *e
 int scene_file_write(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
                      size_t error_bytes)
 {
-    return scene_store_write(path, scene, flags, note, &command, error, error_bytes);
+    const scene_file made = scene_store_scene(scene);
+    return scene_store_write(path, &made, flags, note, &command, error, error_bytes);
 }
 
 int scene_file_convert(const char *from, const char *to, int flags, scene_conversion *out, char *error,

@@ -5,13 +5,18 @@
 #include <string.h>
 #include <strings.h>
 
-/* All formats. Of two with one suffix the first is written; `ply` is used for files that no format recognises. */
+/* All formats, and those that need no library, for a module in a page. Of two with one suffix the first is written;
+ * `ply` is used for files that no format recognises. */
 #ifdef T3R_WEBP
 #define FORMATS_OF_WEBP FORMAT(sog)
 #else
 #define FORMATS_OF_WEBP
 #endif
+#ifdef T3R_BARE_FORMATS
+#define FORMATS FORMAT(ply) FORMAT(packed_ply) FORMAT(splat) FORMAT(spz_bare)
+#else
 #define FORMATS FORMAT(ply) FORMAT(packed_ply) FORMAT(splat) FORMAT(spz) FORMAT(spz_gzip) FORMAT(glb) FORMATS_OF_WEBP
+#endif
 
 #define FORMAT(name) extern const scene_format scene_format_##name;
 FORMATS

@@ -90,7 +90,8 @@ t3r_status t3r_scene_write_as(t3r_program program, const char *path, const t3r_s
     if (!enter(&locale, error, error_bytes)) {
         return T3R_HOST_ERR_SYSTEM;
     }
-    const int written = scene_store_write(path, scene, flags & (T3R_SCENE_LOCAL | T3R_SCENE_COMMENTS), NULL, &caller,
+    const scene_file made = scene_store_scene(scene);
+    const int written = scene_store_write(path, &made, flags & (T3R_SCENE_LOCAL | T3R_SCENE_COMMENTS), NULL, &caller,
                                           error, error_bytes);
     leave(&locale);
     if (written != 0) {

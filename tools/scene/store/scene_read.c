@@ -83,7 +83,7 @@ static void remark_dropped(const scene_caller *caller, const char *path, uint32_
     }
 }
 
-static void remark_all(const scene_caller *caller, const char *path, const scene_remarks *remarks)
+void scene_store_remark(const scene_caller *caller, const char *path, const scene_remarks *remarks)
 {
     if (remarks->text[0] != '\0') {
         scene_remark(caller, path, "%s", remarks->text);
@@ -114,7 +114,7 @@ int scene_store_read(const char *path, int flags, const scene_caller *caller, sc
     }
     free(bytes);
     if ((flags & SCENE_FILE_QUIET) == 0) {
-        remark_all(caller, path, &out->remarks);
+        scene_store_remark(caller, path, &out->remarks);
     }
     return result;
 }

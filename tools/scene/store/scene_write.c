@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "api/checks.h"
@@ -159,7 +160,7 @@ static int write_rows(const char *path, const scene_rows *rows, const scene_exte
 #define FARTHEST 12
 
 /* Checks that a file of the scene can be read again. */
-static int check_scene(const t3r_scene *scene, const scene_rows *rows, char *error, size_t error_bytes)
+static int check_scene(const scene_file *scene, const scene_rows *rows, char *error, size_t error_bytes)
 {
     if (scene->count == 0 || scene->count > T3R_MAX_GAUSSIANS) {
         return t3r_reason(error, error_bytes, "%" PRIu32 " Gaussians: a file has 1..%d", scene->count,
@@ -186,20 +187,32 @@ static int check_scene(const t3r_scene *scene, const scene_rows *rows, char *err
     return scene_rows_choose_frame(rows, &as_they_are, &chosen, error, error_bytes);
 }
 
-int scene_store_write(const char *path, const t3r_scene *scene, int flags, const char *note, const scene_caller *caller,
-                      char *error, size_t error_bytes)
+/* Returns the largest harmonic above degree 0. */
+static double largest_harmonic(const scene_file *scene)
+{
+    int32_t largest = 0;
+    const size_t numbers = scene_file_harmonics_count(scene);
+    for (size_t i = 0; scene->degree > 0 && i < scene->count * numbers; i++) {
+        const int32_t size = i % numbers < 3 ? 0 : abs(scene->harmonics_q12[i]);
+        largest = size > largest ? size : largest;
+    }
+    return ldexp(largest, -12);
+}
+
+int scene_store_write(const char *path, const scene_file *scene, int flags, const char *note,
+                      const scene_caller *caller, char *error, size_t error_bytes)
 {
     scene_conversion written;
-    /* only read */
-    const scene_file made = {
-        .frame = scene->frame, .gaussians = (t3r_gaussian *)(uintptr_t)scene->gaussians, .count = scene->count};
-    const scene_rows rows = scene_rows_of(&made);
+    const scene_rows rows = scene_rows_of(scene);
     const scene_bounds any = {-INFINITY, INFINITY};
-    const scene_extent extent = {.typical = ldexp(1, scene->frame.exponent), .colour = any, .log_scale = any};
     char reason[256] = "";
     if (check_scene(scene, &rows, reason, sizeof reason) != 0) {
         return t3r_reason(error, error_bytes, "%s: %s", path, reason);
     }
+    const scene_extent extent = {.typical = ldexp(1, scene->frame.exponent),
+                                 .harmonics = largest_harmonic(scene),
+                                 .colour = any,
+                                 .log_scale = any};
     return write_rows(path, &rows, &extent, flags, note, caller, &written, error, error_bytes);
 }
 

@@ -19,9 +19,11 @@
 #include "reconstruction/reconstruction.h"
 #include "scene/scene_file.h"
 #include "scene/scene_options.h"
+#include "viewer/camera_path.h"
 #include "viewer/follow.h"
 #include "viewer/page.h"
 #include "viewer/server.h"
+#include "viewer/start_view.h"
 #include "viewer/viewpoints.h"
 
 #define ERROR_BYTES 512
@@ -151,7 +153,8 @@ static int add_frames(viewpoints *v, const view_options *o, const t3r_recording 
 }
 
 /* Builds what the page builds first, so that the page can compare. */
-static int prepare_recording(const view_options *o, reconstruction *r, viewpoints *v, viewer_page *page)
+static int prepare_recording(const view_options *o, reconstruction *r, viewpoints *v, camera_path *path,
+                             viewer_page *page)
 {
     t3r_recording *recording = import_source_open(o->recording);
     if (recording == NULL) {
@@ -160,6 +163,9 @@ static int prepare_recording(const view_options *o, reconstruction *r, viewpoint
     int code = reconstruction_build(r, recording, o->recording, &o->settings);
     if (code == CLI_OK) {
         code = add_frames(v, o, recording, r);
+        camera_path_read(recording, path);
+        page->path = path->places;
+        page->path_count = path->count;
         page->data.config = r->config;
         page->data.config.workers = 1;
         page->data.weights = r->head.weights;
@@ -177,9 +183,8 @@ static int prepare_recording(const view_options *o, reconstruction *r, viewpoint
 
 static int prepare_scene(const scene_file *scene, viewpoints *v, viewer_page *page)
 {
-    enum { WIDTH = 640, HEIGHT = 480 };
-    page->data.config = t3r_default_config(WIDTH, HEIGHT, 0, 1);
-    return viewpoints_add_before(v, scene, WIDTH, HEIGHT);
+    page->data.config = t3r_default_config(START_VIEW_WIDTH, START_VIEW_HEIGHT, 0, 1);
+    return viewpoints_add_before(v, scene, START_VIEW_WIDTH, START_VIEW_HEIGHT);
 }
 
 /* ---- output ---------------------------------------------------------------------------------------------------- */
@@ -274,6 +279,7 @@ static int show(const view_options *o, const scene_file *scene, reconstruction *
 {
     char title[256];
     viewpoints v = {.count = 0};
+    camera_path path;
     scene_file built;
     viewer_page page = {.title = title,
                         .names = v.names,
@@ -285,7 +291,7 @@ static int show(const view_options *o, const scene_file *scene, reconstruction *
              o->inputs[1] != NULL ? last_part(o->inputs[1]) : "");
     int code = CLI_OK;
     if (o->recording != NULL) {
-        code = prepare_recording(o, r, &v, &page);
+        code = prepare_recording(o, r, &v, &path, &page);
     } else {
         code = prepare_scene(scene, &v, &page);
         page.gaussians = scene->count;
@@ -311,8 +317,10 @@ int command_view(int argc, char **argv)
     o.settings.config.keep_analysis = 1; /* as the page's own builds: the slider takes the analysis over */
     file_options_parse(&argp, argc, argv, &o);
     if (!viewer_page_is_built()) {
-        return cli_error(CLI_BAD_INPUT,
-                         "this program was built without the page: install clang and lld, and build again");
+        return cli_error(
+            CLI_BAD_INPUT,
+            "this program was built without the page: install clang, lld and wasi-libc (tools/setup --viewer), and "
+            "build again");
     }
     char error[ERROR_BYTES] = "";
     scene_file scene = {0};

@@ -5,9 +5,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "bundle_layout.h"
 #include "core/hash.h"
-#include "core/memory.h"
+#include "module/bundle_read.h"
+#include "module/carried.h"
 #include "scene/seen_gaussian.h"
 #include "state/state.h"
 #include "state/views.h"
@@ -28,140 +28,29 @@ EXPORT(run) void module_run(task *work, void *context, uint32_t index, uint32_t 
     work(context, index, worker);
 }
 
-/* ---- reading the bundle ------------------------------------------------------------------------------------------ */
+/* The origin of the scene in the arena. */
+typedef enum source_kind { SCENE_BUILT, SCENE_OF_BUNDLE, SCENE_TAKEN } source_kind;
 
-typedef struct frame_data {
-    t3r_camera camera;
-    uint64_t depth_unit_q40;
-    const uint8_t *rgb, *depth; /* depth: NULL = none */
-} frame_data;
+/* The Gaussians that are drawn and written: those whose centres are in a box, and that are opaque enough. */
+typedef struct kept_part {
+    uint32_t opacity_least_q15;
+    int32_t low_q20[3], high_q20[3];
+} kept_part;
 
-typedef struct reading {
-    const uint8_t *start;
-    size_t at, count;
-    int32_t broken; /* 1 = the bundle ended too early */
-} reading;
+static const kept_part everything = {.low_q20 = {INT32_MIN, INT32_MIN, INT32_MIN},
+                                     .high_q20 = {INT32_MAX, INT32_MAX, INT32_MAX}};
 
 /* The module keeps one bundle and one runtime: a page shows one scene. */
 static struct {
-    t3r_config config;
-    uint32_t frames;
-    frame_data frame[BUNDLE_MOST_FRAMES];
-    const uint8_t *weights, *gaussians, *harmonics;
-    uint32_t weight_bytes, gaussian_count;
-    t3r_scene_frame scene_frame;
-    seen_traits traits;
+    bundle_data bundle;
     t3r_runtime *runtime;
-    t3r_scene scene;
+    source_kind source;
+    const carried *taken; /* the whole scene, if it was taken */
+    kept_part kept;
+    t3r_scene scene; /* in the arena: the kept part */
     uint64_t hash[T3R_STAGE_COUNT];
     uint8_t hashed[T3R_STAGE_COUNT];
-    bool loaded; /* the scene in the arena is the bundle's, not one that was built */
 } module;
-
-static const uint8_t *take(reading *in, size_t bytes)
-{
-    if (bytes > in->count - in->at) {
-        in->broken = 1;
-        in->at = in->count;
-        return in->start;
-    }
-    const uint8_t *taken = in->start + in->at;
-    in->at += bytes;
-    return taken;
-}
-
-static uint64_t take_number(reading *in, uint32_t bytes)
-{
-    const uint8_t *from = take(in, bytes);
-    uint64_t value = 0;
-    for (uint32_t i = 0; i < bytes && !in->broken; i++) {
-        value |= (uint64_t)from[i] << (8 * i);
-    }
-    return value;
-}
-
-static uint32_t take_u32(reading *in)
-{
-    return (uint32_t)take_number(in, 4);
-}
-
-static const uint8_t *take_block(reading *in, size_t bytes)
-{
-    (void)take(in, (BUNDLE_ALIGN - in->at % BUNDLE_ALIGN) % BUNDLE_ALIGN);
-    return take(in, bytes);
-}
-
-static void take_config(reading *in, t3r_config *config)
-{
-    uint32_t *words = (uint32_t *)config; /* a struct of 32-bit words: bundle_layout.h */
-    in->broken |= take_u32(in) != BUNDLE_CONFIG_WORDS;
-    for (uint32_t i = 0; i < BUNDLE_CONFIG_WORDS; i++) {
-        words[i] = take_u32(in);
-    }
-}
-
-static void take_frame(reading *in, frame_data *frame)
-{
-    t3r_camera *c = &frame->camera;
-    *c = (t3r_camera){0};
-    c->fx_q16 = (int32_t)take_u32(in);
-    c->fy_q16 = (int32_t)take_u32(in);
-    c->cx_q16 = (int32_t)take_u32(in);
-    c->cy_q16 = (int32_t)take_u32(in);
-    for (int i = 0; i < 3; i++) {
-        c->position_q32[i] = (int64_t)take_number(in, 8);
-    }
-    for (int i = 0; i < 4; i++) {
-        c->rotation_q30[i] = (int32_t)take_u32(in);
-    }
-    frame->depth_unit_q40 = take_number(in, 8);
-}
-
-static void take_pixels(reading *in, frame_data *frame, size_t pixels)
-{
-    frame->rgb = take_block(in, pixels * 3);
-    frame->depth = frame->depth_unit_q40 != 0 ? take_block(in, pixels * 2) : NULL;
-}
-
-/* Returns the bytes of a Gaussian's harmonics. */
-static size_t harmonics_bytes(void)
-{
-    const size_t rows = module.traits.degree + 1;
-    return module.traits.degree == 0 ? 0 : 2 * 3 * rows * rows;
-}
-
-static int32_t read_bundle(reading *in)
-{
-    if (take_u32(in) != BUNDLE_MAGIC) {
-        return 0;
-    }
-    take_config(in, &module.config);
-    const uint32_t views = take_u32(in);
-    module.frames = take_u32(in);
-    module.weight_bytes = take_u32(in);
-    module.gaussian_count = take_u32(in);
-    module.scene_frame.exponent = (int32_t)take_u32(in);
-    for (int i = 0; i < 3; i++) {
-        module.scene_frame.origin_q32[i] = (int64_t)take_number(in, 8);
-    }
-    module.traits.degree = take_u32(in);
-    module.traits.mip = take_u32(in) != 0;
-    if (in->broken || module.frames > BUNDLE_MOST_FRAMES || views > module.frames || views != module.config.views ||
-        module.gaussian_count > T3R_MAX_GAUSSIANS || module.traits.degree > T3R_HARMONICS_DEGREE_MOST ||
-        module.config.width > T3R_MAX_SIDE || module.config.height > T3R_MAX_SIDE) {
-        return 0;
-    }
-    for (uint32_t i = 0; i < module.frames; i++) {
-        take_frame(in, &module.frame[i]);
-    }
-    module.weights = take_block(in, module.weight_bytes);
-    for (uint32_t i = 0; i < module.frames; i++) {
-        take_pixels(in, &module.frame[i], (size_t)module.config.width * module.config.height);
-    }
-    module.gaussians = take_block(in, (size_t)module.gaussian_count * BUNDLE_GAUSSIAN_BYTES);
-    module.harmonics = take_block(in, (size_t)module.gaussian_count * harmonics_bytes());
-    return !in->broken;
-}
 
 /* ---- the runtime ------------------------------------------------------------------------------------------------- */
 
@@ -196,33 +85,33 @@ EXPORT(open)
 uint32_t module_open(const uint8_t *bundle, uint32_t bytes, uint32_t render_width, uint32_t render_height,
                      uint32_t builds, uint32_t workers)
 {
-    reading in = {.start = bundle, .count = bytes};
+    t3r_config *config = &module.bundle.config;
     t3r_plan_info plan;
-    if (!read_bundle(&in)) {
+    if (!bundle_read(bundle, bytes, &module.bundle)) {
         return 0;
     }
     if (builds == 0) {
-        module.config.views = 0;
-        module.weight_bytes = 0;
+        config->views = 0;
+        module.bundle.weight_bytes = 0;
     }
-    module.config.workers = workers;
-    module.config.render_width = render_width;
-    module.config.render_height = render_height;
-    return t3r_plan(&module.config, &plan) == T3R_OK ? (uint32_t)plan.bytes : 0;
+    config->workers = workers;
+    config->render_width = render_width;
+    config->render_height = render_height;
+    return t3r_plan(config, &plan) == T3R_OK ? (uint32_t)plan.bytes : 0;
 }
 
 /* Initialises the arena at this address, aligned to 64. Returns a t3r_status. */
 EXPORT(start) int32_t module_start(void *arena, uint32_t bytes)
 {
-    t3r_status status = t3r_init(&module.runtime, arena, bytes, &module.config);
+    t3r_status status = t3r_init(&module.runtime, arena, bytes, &module.bundle.config);
     if (status == T3R_OK) {
         status = t3r_set_cpu(module.runtime, t3r_cpu_found());
     }
     if (status == T3R_OK) {
         status = t3r_set_hooks(module.runtime, &drawing);
     }
-    if (status == T3R_OK && module.weight_bytes > 0) {
-        status = t3r_bind_head(module.runtime, module.weights, module.weight_bytes);
+    if (status == T3R_OK && module.bundle.weight_bytes > 0) {
+        status = t3r_bind_head(module.runtime, module.bundle.weights, module.bundle.weight_bytes);
     }
     return status;
 }
@@ -233,60 +122,106 @@ EXPORT(cpu) uint32_t module_cpu(void)
     return t3r_get_cpu(module.runtime);
 }
 
-static t3r_gaussian gaussian_at(uint32_t index)
+/* ---- the kept part of a scene ------------------------------------------------------------------------------------ */
+
+/* Returns the number of Gaussians of the whole scene. */
+EXPORT(whole) uint32_t module_whole(void)
 {
-    reading in = {.start = module.gaussians + (size_t)index * BUNDLE_GAUSSIAN_BYTES, .count = BUNDLE_GAUSSIAN_BYTES};
-    t3r_gaussian g = {0};
+    return module.source == SCENE_TAKEN       ? module.taken->count
+           : module.source == SCENE_OF_BUNDLE ? module.bundle.gaussian_count
+                                              : module.scene.count;
+}
+
+/* Returns a Gaussian of the whole scene as it is, not as a camera sees it. */
+static t3r_gaussian whole_gaussian(uint32_t index)
+{
+    return module.source == SCENE_TAKEN       ? module.taken->gaussians[index]
+           : module.source == SCENE_OF_BUNDLE ? bundle_gaussian(&module.bundle, index)
+                                              : module.scene.gaussians[index];
+}
+
+/* Returns a coordinate of a Gaussian of the whole scene, Q20 in scene units. */
+EXPORT(position) int32_t module_position(uint32_t index, uint32_t axis)
+{
+    return whole_gaussian(index).position_q20[axis];
+}
+
+static bool is_kept(const t3r_gaussian *g)
+{
+    bool is_inside = true;
     for (int i = 0; i < 3; i++) {
-        g.position_q20[i] = (int32_t)take_u32(&in);
+        is_inside =
+            is_inside && g->position_q20[i] >= module.kept.low_q20[i] && g->position_q20[i] <= module.kept.high_q20[i];
     }
-    for (int i = 0; i < 9; i++) {
-        g.factor[i] = (int16_t)take_number(&in, 2);
-    }
-    g.factor_exponent = (int8_t)take_number(&in, 1);
-    g.view = (uint8_t)take_number(&in, 1);
-    for (int i = 0; i < 3; i++) {
-        g.colour_q7[i] = (uint16_t)take_number(&in, 2);
-    }
-    g.opacity_q15 = (uint16_t)take_number(&in, 2);
-    g.confidence = (uint8_t)take_number(&in, 1);
-    return g;
+    return is_inside && g->opacity_q15 >= module.kept.opacity_least_q15;
 }
 
 static bool depends_on_view(void)
 {
-    return module.traits.degree > 0 || module.traits.mip;
+    const seen_traits *traits = &module.bundle.traits;
+    return module.source == SCENE_OF_BUNDLE && (traits->degree > 0 || traits->mip);
 }
 
-/* Puts the bundle's Gaussians into the arena, as a camera sees them; NULL: as they are. Returns a t3r_status. */
-static t3r_status append_gaussians(const seen_from *from)
+/* Puts the kept Gaussians into the arena, as a camera sees them; NULL: as they are. Returns a t3r_status. */
+static t3r_status append_kept(const seen_from *from)
 {
-    t3r_status status = t3r_scene_begin(module.runtime, &module.scene_frame);
-    for (uint32_t i = 0; i < module.gaussian_count && status == T3R_OK; i++) {
-        t3r_gaussian g = gaussian_at(i);
-        if (from != NULL) { /* blocks are aligned to 16, and WebAssembly is little-endian */
-            status =
-                seen_gaussian(&module.traits, (const int16_t *)(module.harmonics + i * harmonics_bytes()), from, &g);
+    const bundle_data *bundle = &module.bundle;
+    const uint32_t count = module_whole();
+    t3r_status status =
+        t3r_scene_begin(module.runtime, module.source == SCENE_TAKEN ? &module.taken->frame : &bundle->scene_frame);
+    for (uint32_t i = 0; i < count && status == T3R_OK; i++) {
+        t3r_gaussian g = whole_gaussian(i);
+        if (!is_kept(&g)) {
+            continue;
+        }
+        if (from != NULL) {
+            status = seen_gaussian(&bundle->traits, bundle_harmonics(bundle, i), from, &g);
         }
         status = status == T3R_OK ? t3r_scene_append(module.runtime, &g) : status;
     }
-    return status == T3R_OK ? t3r_get_scene(module.runtime, &module.scene) : status;
+    status = status == T3R_OK ? t3r_get_scene(module.runtime, &module.scene) : status;
+    if (module.source == SCENE_TAKEN) {
+        module.scene.valid_points = module.taken->valid_points;
+    }
+    return status;
+}
+
+/* Keeps the Gaussians of this opacity (Q15) and more whose centres are in this box (Q20 scene units, both ends in it),
+ * of a scene that was loaded or taken. Returns a t3r_status. */
+EXPORT(keep)
+int32_t module_keep(uint32_t opacity_least_q15, int32_t low_x, int32_t low_y, int32_t low_z, int32_t high_x,
+                    int32_t high_y, int32_t high_z)
+{
+    module.kept = (kept_part){opacity_least_q15, {low_x, low_y, low_z}, {high_x, high_y, high_z}};
+    return append_kept(NULL);
 }
 
 /* Puts the bundle's Gaussians into the arena. Returns a t3r_status. */
 EXPORT(load) int32_t module_load(void)
 {
-    module.loaded = true;
-    return append_gaussians(NULL);
+    module.source = SCENE_OF_BUNDLE;
+    module.kept = everything;
+    return append_kept(NULL);
 }
+
+/* Puts a carried scene into the arena, which stays where it is. Returns a t3r_status. */
+EXPORT(take) int32_t module_take(const carried *in)
+{
+    module.source = SCENE_TAKEN;
+    module.taken = in;
+    module.kept = everything;
+    return append_kept(NULL);
+}
+
+/* ---- building ---------------------------------------------------------------------------------------------------- */
 
 /* Adds the context views to an empty arena. Returns a t3r_status. */
 static t3r_status add_views(void)
 {
-    const uint32_t width = module.config.width, height = module.config.height;
+    const uint32_t width = module.bundle.config.width, height = module.bundle.config.height;
     t3r_status status = t3r_reset(module.runtime);
-    for (uint32_t v = 0; v < module.config.views && status == T3R_OK; v++) {
-        const frame_data *f = &module.frame[v];
+    for (uint32_t v = 0; v < module.bundle.config.views && status == T3R_OK; v++) {
+        const frame_data *f = &module.bundle.frame[v];
         const t3r_frame frame = {
             .format = T3R_PIXEL_RGB24,
             .width = width,
@@ -309,7 +244,7 @@ static t3r_status add_views(void)
 EXPORT(build) int32_t module_build(uint32_t gaussians)
 {
     const t3r_request request = {.gaussians = gaussians};
-    module.loaded = false;
+    module.source = SCENE_BUILT;
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
         module.hashed[stage] = 0;
     }
@@ -324,40 +259,39 @@ EXPORT(build) int32_t module_build(uint32_t gaussians)
     return status;
 }
 
-/* A scene on its way from the module that built it to one that draws it. */
-typedef struct carried {
-    t3r_scene_frame frame;
-    uint32_t count;
-    uint32_t valid_points;
-    t3r_gaussian gaussians[];
-} carried;
-
-/* Returns the bytes of a carried scene with this many Gaussians. */
-EXPORT(carried_bytes) uint32_t module_carried_bytes(uint32_t count)
+static uint32_t degree_of_scene(void)
 {
-    return (uint32_t)(sizeof(carried) + count * sizeof(t3r_gaussian));
+    return module.source == SCENE_OF_BUNDLE ? module.bundle.traits.degree : 0;
 }
 
-/* Writes the scene that was built to an address aligned to 64. */
+/* Returns the bytes of the scene in the arena when it is carried. */
+EXPORT(carried_bytes) uint32_t module_carried_bytes(void)
+{
+    const uint32_t numbers = carried_harmonics_count(degree_of_scene());
+    return (uint32_t)(sizeof(carried) + module.scene.count * (sizeof(t3r_gaussian) + numbers * sizeof(int16_t)));
+}
+
+/* Writes the scene that was built, or the kept part of another one, to an address aligned to 64. */
 EXPORT(give) void module_give(carried *out)
 {
-    out->frame = module.scene.frame;
-    out->count = module.scene.count;
-    out->valid_points = module.scene.valid_points;
-    memcpy(out->gaussians, module.scene.gaussians, module.scene.count * sizeof *out->gaussians);
-}
-
-/* Puts a carried scene into the arena. Returns a t3r_status. */
-EXPORT(take) int32_t module_take(const carried *in)
-{
-    module.loaded = false;
-    t3r_status status = t3r_scene_begin(module.runtime, &in->frame);
-    for (uint32_t i = 0; i < in->count && status == T3R_OK; i++) {
-        status = t3r_scene_append(module.runtime, &in->gaussians[i]);
+    const uint32_t numbers = carried_harmonics_count(degree_of_scene()), whole = module_whole();
+    *out = (carried){.frame = module.scene.frame,
+                     .count = module.scene.count,
+                     .valid_points = module.scene.valid_points,
+                     .degree = degree_of_scene(),
+                     .mip = module.source == SCENE_OF_BUNDLE && module.bundle.traits.mip};
+    t3r_gaussian *gaussians = out->gaussians;
+    int16_t *harmonics = carried_harmonics(out);
+    for (uint32_t i = 0; i < whole; i++) {
+        const t3r_gaussian g = whole_gaussian(i);
+        if (module.source != SCENE_BUILT && !is_kept(&g)) {
+            continue;
+        }
+        *gaussians++ = g;
+        for (uint32_t k = 0; k < numbers; k++) {
+            *harmonics++ = bundle_harmonics(&module.bundle, i)[k];
+        }
     }
-    status = status == T3R_OK ? t3r_get_scene(module.runtime, &module.scene) : status;
-    module.scene.valid_points = in->valid_points;
-    return status;
 }
 
 EXPORT(gaussians) uint32_t module_gaussians(void)
@@ -368,6 +302,12 @@ EXPORT(gaussians) uint32_t module_gaussians(void)
 EXPORT(valid_points) uint32_t module_valid_points(void)
 {
     return module.scene.valid_points;
+}
+
+/* Returns a coordinate of the scene's origin in the world, Q32. */
+EXPORT(origin) int64_t module_origin(uint32_t axis)
+{
+    return module.scene.frame.origin_q32[axis];
 }
 
 /* Returns the exponent of the scene's frame: the median depth is 1 to 2 times 2^exponent world units. */
@@ -420,9 +360,8 @@ int32_t module_render(int32_t fx_q16, int32_t fy_q16, int32_t cx_q16, int32_t cy
         .alpha_stride_bytes = width * 2,
     };
     seen_from from;
-    if (module.loaded && depends_on_view() &&
-        seen_from_camera(&camera, &module.scene_frame, width, height, &from) == T3R_OK) {
-        const t3r_status status = append_gaussians(&from);
+    if (depends_on_view() && seen_from_camera(&camera, &module.scene.frame, width, height, &from) == T3R_OK) {
+        const t3r_status status = append_kept(&from);
         if (status != T3R_OK) {
             return status;
         }
@@ -439,7 +378,7 @@ EXPORT(picture_hash) uint64_t module_picture_hash(const uint8_t *rgb, uint32_t w
 /* Returns the pixels of a frame in the bundle, 3 bytes each. */
 EXPORT(frame_rgb) const uint8_t *module_frame_rgb(uint32_t frame)
 {
-    return frame < module.frames ? module.frame[frame].rgb : NULL;
+    return frame < module.bundle.frames ? module.bundle.frame[frame].rgb : NULL;
 }
 
 enum { PLANE_MASK, PLANE_TEXTURE };
@@ -448,7 +387,7 @@ enum { PLANE_MASK, PLANE_TEXTURE };
  * bits each). NULL = there is none. */
 EXPORT(plane) const void *module_plane(uint32_t view, uint32_t plane)
 {
-    if (!module.runtime->analysed || view >= module.config.views) {
+    if (!module.runtime->analysed || view >= module.bundle.config.views) {
         return NULL;
     }
     const t3r_view planes = t3r_view_of(module.runtime, view);
@@ -461,7 +400,7 @@ EXPORT(plane) const void *module_plane(uint32_t view, uint32_t plane)
  * analysis. */
 EXPORT(labels) void module_labels(uint32_t view, uint16_t *label)
 {
-    const bool is_analysed = module.runtime->analysed && view < module.config.views;
+    const bool is_analysed = module.runtime->analysed && view < module.bundle.config.views;
     const t3r_view planes = t3r_view_of(module.runtime, is_analysed ? view : 0);
     for (size_t i = 0; i < (size_t)planes.width * planes.height; i++) {
         const bool has_label = is_analysed && t3r_has_depth(planes.validity[i]);

@@ -26,6 +26,7 @@ async function poll() {
   const rows = lines.filter((line) => line !== "").map((line) => JSON.parse(line));
   feed.rows.push(...rows);
   if (rows.length > 0) {
+    showPath(feed.rows);
     if ($("ride").checked) ride();
     showRun();
   }
@@ -48,45 +49,8 @@ async function pollForever() {
 const newest = () => feed.rows[feed.rows.length - 1];
 
 function ride() {
-  if (!newest()) return;
-  camera.position = [...newest().position];
-  camera.axes = axesOf(newest().rotation);
-  camera.frame = null;
-  draw();
+  if (newest()) travelTo(feed.rows.length - 1);
 }
-
-/* Draws a line through points of a plane; null breaks it. */
-function drawLine(to, points, colour, width) {
-  to.strokeStyle = colour;
-  to.lineWidth = width;
-  to.beginPath();
-  points.forEach((p, i) => { if (p && points[i - 1]) to.lineTo(...p); else if (p) to.moveTo(...p); });
-  to.stroke();
-}
-
-function drawDot(to, [x, y], colour, radius) {
-  to.fillStyle = colour;
-  to.beginPath();
-  to.arc(x, y, radius, 0, 2 * Math.PI);
-  to.fill();
-}
-
-/* Returns the place in the picture, or null for what lies behind the camera. */
-function projected(point) {
-  const seen = camera.axes.map((axis) => dot(axis, add(point, camera.position, -1))), { focal, centre } = cameraOf(lens, canvas.width);
-  return seen[2] > 1e-3 ? [0, 1].map((i) => focal[i] * seen[i] / seen[2] + centre[i]) : null;
-}
-
-const drawPicture = done.draw;
-done.draw = (answer) => {
-  drawPicture(answer);
-  if (!$("trace").checked || onFrame()) return;
-  const points = feed.rows.map((row) => projected(row.position));
-  drawLine(context, points, "#000a", 4);
-  drawLine(context, points, "#ffd24d", 2);
-  const last = points[points.length - 1];
-  if (last) drawDot(context, last, "#ffd24d", 5);
-};
 
 /* ---- the run over time --------------------------------------------------------------------------------------------- */
 
@@ -145,7 +109,7 @@ function describe(row) {
 
 function showRun() {
   if (feed.rows.length === 0) return;
-  $("run").hidden = $("follow").hidden = false;
+  $("run").hidden = false;
   drawTimeline();
   drawMap();
   $("moment").textContent = describe(feed.shown ?? newest());
@@ -159,7 +123,10 @@ $("timeline").onpointermove = ({ offsetX }) => {
 $("timeline").onpointerleave = () => { feed.shown = null; showRun(); };
 $("ride").onchange = () => { if ($("ride").checked) ride(); };
 for (const kind of ["pointerdown", "wheel", "keydown"]) canvas.addEventListener(kind, () => { $("ride").checked = false; });
-$("reset").addEventListener("click", () => { $("ride").checked = false; });
-$("trace").onchange = () => draw();
+for (const id of ["reset", "play"]) $(id).addEventListener("click", () => { $("ride").checked = false; });
+along.addEventListener("input", () => { $("ride").checked = false; });
+$("ride").closest("label").hidden = false;
+$("choose").hidden = true;
+$("trace").checked = true;
 addEventListener("resize", showRun);
 pollForever();

@@ -101,7 +101,8 @@ async function open({ wasm, bundle, width, height, most, builds, isShared }) {
   if (bytes === 0) throw new Error("the runtime refuses the data of this page");
   const arena = place(bytes);
   need(runtime.start(arena, bytes), "start");
-  opened = { width, height, rgb: place(w * h * 3), depth: place(w * h * 4), alpha: place(w * h * 2), carried: null };
+  opened = { width, height, rgb: place(w * h * 3), depth: place(w * h * 4), alpha: place(w * h * 2) };
+  carried.in = carried.out = null;
   if (threads > 1) startHelpers(module, memory, threads);
   return { cpu: runtime.cpu(), threads };
 }
@@ -109,12 +110,21 @@ async function open({ wasm, bundle, width, height, most, builds, isShared }) {
 const hex = (hash) => BigInt.asUintN(64, hash).toString(16).padStart(16, "0");
 
 /* Memory for a scene that is carried in or out. */
-function carried(bytes) {
-  if (!opened.carried || opened.carried.bytes < bytes) opened.carried = { at: place(bytes), bytes };
-  return opened.carried.at;
+const carried = { in: null, out: null };
+function roomFor(way, bytes) {
+  if (!carried[way] || carried[way].bytes < bytes) carried[way] = { at: place(bytes), bytes };
+  return carried[way].at;
 }
 
-const described = () => ({ gaussians: runtime.gaussians(), valid: runtime.valid_points(), exponent: runtime.exponent() });
+const described = () => ({ gaussians: runtime.gaussians(), valid: runtime.valid_points(), exponent: runtime.exponent(),
+                           origin: [0, 1, 2].map((axis) => Number(runtime.origin(axis)) / 4294967296) });
+
+/* Returns the scene that was built, or the kept part of another one. */
+function give() {
+  const bytes = runtime.carried_bytes(), at = roomFor("out", bytes);
+  runtime.give(at);
+  return { scene: bytesAt(at, bytes).slice() };
+}
 
 function build({ gaussians }) {
   times = new Float64Array(STAGES);
@@ -128,9 +138,7 @@ function build({ gaussians }) {
     const hash = BigInt.asUintN(64, runtime.hash(stage));
     if (hash !== 0n) stages.push({ stage, ms: times[stage], hash: hex(hash) });
   }
-  const bytes = runtime.carried_bytes(runtime.gaussians()), at = carried(bytes);
-  runtime.give(at);
-  return { ...described(), stages, hash: hex(runtime.hash(STAGES)), scene: bytesAt(at, bytes).slice() };
+  return { ...described(), stages, hash: hex(runtime.hash(STAGES)), ...give() };
 }
 
 function load() {
@@ -139,10 +147,36 @@ function load() {
 }
 
 function take({ scene }) {
-  const at = carried(scene.length);
+  const at = roomFor("in", scene.length);
   bytesAt(at, scene.length).set(scene);
   need(runtime.take(at), "the scene");
   return described();
+}
+
+/* Returns the places that part the Gaussians along each axis into equal shares, from a sample of them, between the
+ * outermost ones. */
+function measure({ shares }) {
+  const whole = runtime.whole(), step = Math.max(1, Math.ceil(whole / 65536)), sample = new Int32Array(Math.ceil(whole / step));
+  const table = [0, 1, 2].map((axis) => {
+    let low = Infinity, high = -Infinity;
+    for (let i = 0; i < whole; i++) {
+      const place = runtime.position(i, axis);
+      low = Math.min(low, place);
+      high = Math.max(high, place);
+      if (i % step === 0) sample[i / step] = place;
+    }
+    sample.sort();
+    const between = Int32Array.from({ length: shares + 1 }, (_, i) => sample[Math.round(i / shares * (sample.length - 1))]);
+    between[0] = low;
+    between[shares] = high;
+    return between;
+  });
+  return { table };
+}
+
+function keep({ opacity, low, high }) {
+  need(runtime.keep(Math.round(opacity * 32768), ...low, ...high), "the crop");
+  return { gaussians: runtime.gaussians(), whole: runtime.whole() };
 }
 
 const score = ({ frames }) => ({ psnr: frames.map(psnr) });
@@ -260,7 +294,7 @@ function draw({ camera, width, height, show, frame, coarse }) {
   return { pixels, width: w, height: h, ms, show, coarse, hash };
 }
 
-const answers = { open, build, load, take, score, draw, help };
+const answers = { open, build, load, take, measure, keep, give, score, draw, help };
 onmessage = async ({ data }) => {
   try {
     const result = await answers[data.kind](data);

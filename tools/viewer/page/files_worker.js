@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+"use strict";
+/* Reads or writes one scene file by the program's own C code. */
+const ENOSYS = 52;
+/* The C library asks for files that do not exist here: all that is read or written is in memory. */
+const system = new Proxy({}, { get: () => () => ENOSYS, has: () => true });
+
+let files;
+const bytesAt = (at, count) => new Uint8Array(files.memory.buffer, at, count);
+
+function place(bytes) {
+  const at = files.room(bytes.length);
+  if (at === 0) throw new Error("out of memory");
+  bytesAt(at, bytes.length).set(bytes);
+  return at;
+}
+
+const placeText = (text) => place(new TextEncoder().encode(`${text}\0`));
+
+function text() {
+  const rest = new Uint8Array(files.memory.buffer, files.text());
+  return new TextDecoder().decode(rest.subarray(0, rest.indexOf(0)));
+}
+
+function need(status) {
+  if (status !== 0) throw new Error(text());
+}
+
+const result = () => bytesAt(files.bytes(), files.count()).slice();
+
+/* Unpacks a gzip stream, unless it grows beyond what its size justifies. */
+async function unpacked(packed) {
+  const most = files.unpacked_most(packed.length), parts = [];
+  let count = 0;
+  const reader = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")).getReader();
+  for (let part; !(part = await reader.read()).done;) {
+    parts.push(part.value);
+    count += part.value.length;
+    if (count > most) throw new Error(`it unpacks to more than ${most} bytes`);
+  }
+  return new Uint8Array(await new Blob(parts).arrayBuffer());
+}
+
+const isGzip = (bytes) => bytes[0] === 0x1f && bytes[1] === 0x8b;
+
+async function read({ name, bytes: buffer }) {
+  const given = new Uint8Array(buffer), bytes = isGzip(given) ? await unpacked(given) : given;
+  need(files.read(placeText(name), place(bytes), bytes.length));
+  const numbers = Array.from({ length: 13 }, (_, i) => files.start(i));
+  const start = { focal: numbers.slice(0, 2), centre: numbers.slice(2, 4), position: numbers.slice(4, 7), rotation: numbers.slice(7, 11),
+                  width: numbers[11], height: numbers[12] };
+  return { bundle: result().buffer, start, text: text(), gaussians: files.gaussians() };
+}
+
+function write({ name, scene }) {
+  need(files.write(placeText(name), place(scene)));
+  return { bytes: result(), text: text() };
+}
+
+const answers = { read, write };
+onmessage = async ({ data }) => {
+  try {
+    files = (await WebAssembly.instantiate(data.wasm, { wasi_snapshot_preview1: system })).instance.exports;
+    files._initialize();
+    postMessage(await answers[data.kind](data));
+  } catch (error) {
+    postMessage({ failed: error.message });
+  }
+};
