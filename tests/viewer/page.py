@@ -209,6 +209,8 @@ def fits(page, looks_as):
         wide = page.value("document.documentElement.scrollWidth")
         check(low <= height and wide <= width, f"{width}x{height}: down to {low}, {wide} wide")
         page.wait("isStill()")
+        drawn_width, shown_width = page.value("[canvas.width, Math.min(most.width, canvas.clientWidth)]")
+        check(drawn_width == shown_width, f"{width}x{height}: {drawn_width} pixels in {shown_width}")
         browser.look(page, looks, f"{looks_as}-{width}")
     page.size(1200, 1000)
 

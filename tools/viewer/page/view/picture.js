@@ -15,14 +15,12 @@ function sized(width) {
   return { width: whole, height: Math.round(whole / ratio()) };
 }
 
-/* Returns the largest picture that is drawn; a larger canvas stretches it. */
-const largest = () => sized(Math.min(Math.max(screen.width, innerWidth) * density(), Math.sqrt(MOST_PIXELS * ratio())));
-let most = null;
+let most = null; /* the largest picture that is drawn; a larger canvas stretches it */
 
 /* Takes the shape of the scene's pictures. */
 function shapePicture() {
   document.documentElement.style.setProperty("--ratio", ratio());
-  most = largest();
+  most = sized(Math.sqrt(MOST_PIXELS * ratio()));
   ({ width: canvas.width, height: canvas.height } = most);
 }
 
