@@ -64,6 +64,8 @@ def shows(page):
     page.wait("isStill()")
     check(page.value("camera.position.join()") != free, "the camera of the newest keyframe")
     browser.look(page, looks, "follow-ride")
+    page.value("(() => { const s = document.getElementById('along'); s.value = 3; s.dispatchEvent(new Event('input')); })()")
+    check(page.value("feed.rows[3].position.join() === camera.position.join() && !document.getElementById('ride').checked"), "an earlier keyframe")
     page.value("approach(3), moved()")
     page.wait("isStill()")
     browser.look(page, looks, "follow-path")

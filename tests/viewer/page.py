@@ -78,7 +78,9 @@ def budget(page, room):
         page.wait("isStill()")
         seen.add(page.value(PICTURE))
     check(len(seen) == 4, "every budget is another picture")
-    check("dB" in page.value(STATUS), f"scores are told: {page.value(STATUS)}")
+    shown = float(re.search(r"frame 1 ([0-9.]+) dB", page.value(STATUS))[1])
+    row = json.loads(run(TRIM3R, "eval", room, "--context", "0,2", "--target", "1", "--gaussians", count, "--json").stdout)["rows"][0]
+    check(abs(shown - row["psnr_all"]) <= 0.005, f"built here: {shown} dB in the page, {row['psnr_all']} dB by eval")
 
 
 def shows(page):
@@ -156,7 +158,10 @@ def along_the_recording(page):
     page.click("#play")
     page.wait("path.playing === 0")
     check(page.value(at.replace("PLACE", f"{count - 1}")), "played to the last place")
-    page.wait("isStill()")
+    page.value("move(0, 0, -2000), moved()")
+    page.wait(f"{STATUS}.includes('pose are out of range')")
+    page.value("goTo(0)")
+    page.wait(f"isStill() && {STATUS}.includes('dB')")
 
 
 def accessible(page):

@@ -125,7 +125,9 @@ static const struct argp argp = {
            "\n"
            "The page builds scenes of a recording itself: a slider changes the budget, and mask, SuperClusters, "
            "texture and error are drawn over the frames. The first scene is built here as well, and the page "
-           "compares the hashes. A scene file is drawn as it is; with a recording as well, the page does both.\n"
+           "compares the hashes. A scene file is drawn as it is; with a recording as well, the page does both. Scene "
+           "files "
+           "can be dropped on the page, cropped, and saved as .ply.\n"
            "\n"
            "With -o the page is one file that fetches nothing. Without, it is served on 127.0.0.1 until Ctrl-C.",
     .children = children,

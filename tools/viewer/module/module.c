@@ -116,6 +116,12 @@ EXPORT(start) int32_t module_start(void *arena, uint32_t bytes)
     return status;
 }
 
+/* Returns the meaning of a t3r_status. */
+EXPORT(error_text) const char *module_error_text(int32_t status)
+{
+    return t3r_error_text((t3r_status)status);
+}
+
 /* Returns the features that the inner loops use, T3R_CPU_... */
 EXPORT(cpu) uint32_t module_cpu(void)
 {

@@ -85,7 +85,9 @@ const page = {
 };
 
 function need(status, what) {
-  if (status !== 0) throw new Error(`${what}: status ${status}`);
+  if (status === 0) return;
+  const at = runtime.error_text(status), text = bytesAt(at, 256);
+  throw new Error(`${what}: ${String.fromCharCode(...text.subarray(0, text.indexOf(0)))}`);
 }
 
 async function open({ wasm, bundle, width, height, most, builds, isShared }) {
@@ -299,8 +301,8 @@ onmessage = async ({ data }) => {
   try {
     const result = await answers[data.kind](data);
     const moved = [result.pixels, result.scene].filter(Boolean).map((array) => array.buffer);
-    postMessage({ ...result, kind: data.kind, id: data.id }, moved);
+    postMessage({ ...result, kind: data.kind }, moved);
   } catch (error) {
-    postMessage({ kind: "failed", id: data.id, text: error.message });
+    postMessage({ kind: "failed", of: data.kind, text: error.message });
   }
 };

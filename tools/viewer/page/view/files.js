@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Scene files that are opened in the page, and those that it saves. The program's own readers and writers do it, in a
  * worker of its own for each file. */
-const filesSource = sourceOf("files"), filesWasm = bytesOf("files-wasm");
+const filesSource = sourceOf("files");
 
 /* Returns the answer to a request of the worker. */
 function withFile(request) {
@@ -10,7 +10,7 @@ function withFile(request) {
     const end = (settleIt, answer) => { worker.terminate(); settleIt(answer); };
     worker.onmessage = ({ data: answer }) => (answer.failed ? end(reject, new Error(answer.failed)) : end(resolve, answer));
     worker.onerror = (event) => end(reject, new Error(event.message || "the reader does not start"));
-    worker.postMessage({ wasm: filesWasm, ...request });
+    worker.postMessage({ wasm: bytesOf("files-wasm"), ...request });
   });
 }
 

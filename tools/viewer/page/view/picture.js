@@ -70,6 +70,7 @@ let pictures = 0;
 const overPicture = []; /* functions that draw lines over a picture from the camera */
 done.draw = ({ pixels, width, height, ms, show, coarse, hash, took }) => {
   if (coarse) keepPace(took);
+  endFailure();
   if (show !== chosen("show")) return; /* it was asked for before another choice */
   if (canvas.width !== width || canvas.height !== height) {
     canvas.width = width;

@@ -55,7 +55,7 @@ class Runtime {
   #answer(answer) {
     if (answer.kind === "progress") return showProgress(answer);
     this.busy = false;
-    if (answer.kind === "failed") say(answer.text, true);
+    if (answer.kind === "failed") fail(answer);
     else done[answer.kind]({ ...answer, took: performance.now() - this.asked });
     this.#next();
   }

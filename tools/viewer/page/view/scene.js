@@ -1,10 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The scene: from the page's file, or built here within a budget. */
 const count = (n) => n.toLocaleString("en");
+let said = "", isUndrawn = false;
 function say(text, bad = false) {
+  if (!bad) said = text;
   $("status").textContent = text;
   $("status").classList.toggle("bad", bad);
   if (bad) $("progress").hidden = true;
+}
+
+/* A picture that cannot be drawn is an error until the next one is. */
+function fail({ of, text }) {
+  say(text, true);
+  isUndrawn = of === "draw";
+}
+
+function endFailure() {
+  if (isUndrawn) say(said);
+  isUndrawn = false;
 }
 
 function showProgress({ stage, done: part, total }) {
