@@ -24,12 +24,12 @@ function remedyFor(name) {
 async function openFile(file) {
   say(`Reading ${file.name}`);
   try {
-    if (/\.(mcap|sog|glb)$/i.test(file.name)) throw new Error("the page does not read such files.");
+    if (/\.(mcap|sog|glb)$/i.test(file.name)) throw new Error("the page does not read such files");
     const { bundle, start, gaussians, text } = await withFile({ kind: "read", name: file.name, bytes: await file.arrayBuffer() });
     showScene({ title: file.name, gaussians, start }, bundle);
     $("remark").textContent = text;
   } catch (error) {
-    say(`${file.name}: ${error.message}${remedyFor(file.name)}`, true);
+    say(`${file.name}: ${error.message}.${remedyFor(file.name)}`, true);
   }
 }
 
