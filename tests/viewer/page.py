@@ -268,10 +268,27 @@ def rows_of(path):
     return [dict(zip(names, row)) for row in struct.iter_unpack(f"<{len(names)}f", body)]
 
 
+def save(page, folder):
+    """Returns the rows of the file that the page saves."""
+    page.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=folder)
+    page.click("#save")
+    page.wait("document.getElementById('remark').textContent.includes('-kept.ply')")
+    saved = os.path.join(folder, page.value("document.getElementById('remark').textContent").split(":")[0])
+    until = time.monotonic() + 30
+    while not os.path.exists(saved) and time.monotonic() < until:
+        time.sleep(0.05)
+    return rows_of(saved)
+
+
+def same_rows(rows, wanted, names):
+    for row, want in zip(rows, wanted, strict=True):
+        worst = max(abs(row[name] - want[name]) for name in names)
+        check(worst < 2e-3, f"a row that is {worst} off")
+
+
 def crops(page, scene, folder):
     """A box and a least opacity leave out the same Gaussians in the picture, in the count and in the file that is
     saved."""
-    page.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=folder)
     whole = drawn(page, lambda: page.value("draw()"))
     page.value("document.getElementById('crop').open = true")
     page.wait("crop.table !== null && isStill()")
@@ -286,19 +303,13 @@ def crops(page, scene, folder):
     check(cropped != whole and 0 < len(wanted) < len(rows) / 2, f"{len(wanted)} of {len(rows)} are left")
     left = page.value("document.getElementById('kept').textContent")
     check(left == f"{len(wanted):,} of {len(rows):,} Gaussians are left.", f"{left} {len(wanted)} are wanted")
-    page.click("#save")
-    page.wait("document.getElementById('remark').textContent.includes('-kept.ply')")
-    saved = os.path.join(folder, page.value("document.getElementById('remark').textContent").split(":")[0])
-    until = time.monotonic() + 30
-    while not os.path.exists(saved) and time.monotonic() < until:
-        time.sleep(0.05)
-    for row, want in zip(rows_of(saved), wanted, strict=True):
-        worst = max(abs(row[name] - want[name]) for name in ("x", "y", "z", "f_dc_0", "opacity", "scale_0"))
-        check(worst < 2e-3, f"a row that is {worst} off")
+    same_rows(save(page, folder), wanted, ("x", "y", "z", "f_dc_0", "opacity", "scale_0"))
+    set_slider(page, "x, from", 600)  # beyond the other end
+    page.wait("document.body.dataset.kept === '0' && isStill()")
+    check(page.value("document.getElementById('save').disabled"), "nothing is left to save")
     page.click("#uncrop")
     page.wait("isStill()")
     check(page.value(PICTURE) == whole and page.value("document.getElementById('kept').textContent").startswith("All "), "and all of it again")
-    return saved
 
 
 def choose(page, path):
@@ -379,6 +390,7 @@ def harmonics(page, room, folder):
     shown = float(re.search(r"frame 1 ([0-9.]+) dB", page.value(STATUS))[1])
     row = json.loads(run(TRIM3R, "eval", room, "--context", "0,2", "--target", "1", "--scene", scene, "--json").stdout)["rows"][0]
     check(abs(shown - row["psnr_all"]) <= 0.005, f"harmonics: {shown} dB in the page, {row['psnr_all']} dB by eval")
+    same_rows(save(page, folder), rows_of(scene), names)
 
 
 with tempfile.TemporaryDirectory() as scratch:

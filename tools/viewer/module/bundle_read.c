@@ -1,18 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "module/bundle_read.h"
 
+#include "module/carried.h"
+
 typedef struct reading {
     const uint8_t *start;
     size_t at, count;
     int32_t broken; /* 1 = the bundle ended too early */
 } reading;
-
-/* Returns the numbers of a Gaussian's harmonics. */
-static size_t harmonics_count(const seen_traits *traits)
-{
-    const size_t rows = traits->degree + 1;
-    return traits->degree == 0 ? 0 : 3 * rows * rows;
-}
 
 static const uint8_t *take(reading *in, size_t bytes)
 {
@@ -108,7 +103,7 @@ static bool read_all(reading *in, bundle_data *out)
         take_pixels(in, &out->frame[i], (size_t)out->config.width * out->config.height);
     }
     out->gaussians = take_block(in, (size_t)out->gaussian_count * BUNDLE_GAUSSIAN_BYTES);
-    out->harmonics = take_block(in, 2 * (size_t)out->gaussian_count * harmonics_count(&out->traits));
+    out->harmonics = take_block(in, 2 * (size_t)out->gaussian_count * carried_harmonics_count(out->traits.degree));
     return !in->broken;
 }
 
@@ -140,6 +135,7 @@ t3r_gaussian bundle_gaussian(const bundle_data *bundle, uint32_t index)
 
 const int16_t *bundle_harmonics(const bundle_data *bundle, uint32_t index)
 {
-    const size_t count = harmonics_count(&bundle->traits); /* blocks are aligned to 16, WebAssembly is little-endian */
+    const size_t count = carried_harmonics_count(bundle->traits.degree);
+    /* blocks are aligned to 16, and WebAssembly is little-endian */
     return count > 0 ? (const int16_t *)bundle->harmonics + index * count : NULL;
 }

@@ -9,7 +9,7 @@ let files;
 const bytesAt = (at, count) => new Uint8Array(files.memory.buffer, at, count);
 
 function place(bytes) {
-  const at = files.room(bytes.length);
+  const at = files.room(bytes.length) >>> 0;
   if (at === 0) throw new Error("out of memory");
   bytesAt(at, bytes.length).set(bytes);
   return at;
@@ -18,7 +18,7 @@ function place(bytes) {
 const placeText = (text) => place(new TextEncoder().encode(`${text}\0`));
 
 function text() {
-  const rest = new Uint8Array(files.memory.buffer, files.text());
+  const rest = new Uint8Array(files.memory.buffer, files.text() >>> 0);
   return new TextDecoder().decode(rest.subarray(0, rest.indexOf(0)));
 }
 
@@ -26,7 +26,7 @@ function need(status) {
   if (status !== 0) throw new Error(text());
 }
 
-const result = () => bytesAt(files.bytes(), files.count()).slice();
+const result = () => bytesAt(files.bytes() >>> 0, files.count() >>> 0).slice();
 
 /* Unpacks a gzip stream, unless it grows beyond what its size justifies. */
 async function unpacked(packed) {

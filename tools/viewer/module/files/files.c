@@ -18,13 +18,13 @@
 static struct {
     char text[1024]; /* remarks, or the reason of a failure */
     size_t length;
-    char *bytes; /* what was read or written */
+    char *bytes; /* the bundle of a file that was read, or the file that was written */
     size_t count;
     t3r_camera start;
     uint32_t gaussians;
 } answer;
 
-/* Returns memory for what the page passes in; 0: there is none. */
+/* Returns memory for bytes that the page passes in; 0: there is none. */
 EXPORT(room) void *files_room(uint32_t bytes)
 {
     return malloc(bytes);
@@ -51,7 +51,7 @@ EXPORT(unpacked_most) double files_unpacked_most(double packed)
     return (double)t3r_limit_unpacked((uint64_t)packed);
 }
 
-/* ---- the callers of scene files ---------------------------------------------------------------------------------- */
+/* ---- files in memory --------------------------------------------------------------------------------------------- */
 
 static void add_remark(void *user, const char *text)
 {
