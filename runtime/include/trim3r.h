@@ -627,10 +627,10 @@ t3r_status t3r_rebuild(t3r_runtime *rt, const t3r_request *request, t3r_scene *s
 
 /* Builds the fewest Gaussians that draw every context view at least_psnr_q8 or more, 1..T3R_MAX_PSNR_Q8, of the views
  * analysed last. That is measured: each scene that is tried draws all context views into `picture`, and is compared
- * with the views as they were analysed, over all their pixels, black where it shows nothing. It promises nothing of
- * other views. The budget is the most. Numbers from 1/128 of it are doubled, then the gap to the last number that is
- * too small is halved, to 1/64: at most 16 builds. If none is enough, the scene of the number that draws them best is
- * returned, and found->psnr_q8 is below least_psnr_q8.
+ * with the views as they were analysed, over all their pixels, black where it shows nothing. Other
+ * views may be worse. The budget is the most. Numbers from 1/128 of it are doubled, then the gap to the last number
+ * that is too small is halved, to 1/64: at most 16 builds. If none is enough, the scene of the number that draws them
+ * best is returned, and found->psnr_q8 is below least_psnr_q8.
  *
  * picture: memory for `rgb`, of the working size; it holds a context view afterwards. Statuses are those of
  * t3r_rebuild(). T3R_ERR_ARGUMENT also: NULL for anything except `request`, a PSNR out of range, a picture of another

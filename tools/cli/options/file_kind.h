@@ -12,9 +12,9 @@ typedef enum file_kind {
     FILE_PAGE = 16, /* HTML */
     FILE_TABLE = 32,
     FILE_WEIGHTS = 64,
-    FILE_SOURCE = 128, /* a head as C source */
-    FILE_LINES = 256,  /* JSON objects of a stream's frames, one a line */
-    FILE_STATE = 512,  /* of a stream */
+    FILE_SOURCE = 128,  /* a head as C source */
+    FILE_LINES = 256,   /* JSON objects of a stream's frames, one a line */
+    FILE_STATE = 512,   /* of a stream */
     FILE_HEADER = 1024, /* a plan as C */
     FILE_OTHER = 2048,  /* none of these */
 } file_kind;
