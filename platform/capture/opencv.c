@@ -83,6 +83,9 @@ static int open_films(opencv_capture *self, char *error, size_t error_bytes)
 /* Returns NULL, or why the picture is no colour image. */
 static const char *fill_colour(const t3r_opencv_picture *p, t3r_frame *frame)
 {
+    if (p->channels == 4) {
+        return "has transparency, which trim3r import of its folder obeys";
+    }
     if (p->bytes != 1 || (p->channels != 3 && p->channels != 1)) {
         return "is neither BGR nor grey of 8 bits";
     }

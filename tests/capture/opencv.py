@@ -114,4 +114,6 @@ with tempfile.TemporaryDirectory() as folder:
     expect(1, "capture", "--source", "opencv:missing.avi", "--hash", err="cannot open")
     expect(1, "capture", "--source", "opencv:c%03d.png", "--backend", "NONE", "--hash", err="not a back end")
     expect(1, "capture", "--source", "opencv:d%03d.png", "--depth-source", "c%03d.png", "--hash")
+    cv2.imwrite("clear0.png", numpy.full((48, 64, 4), 99, numpy.uint8))
+    expect(1, "capture", "--source", "opencv:clear%d.png", "--hash", err="transparency, which trim3r import")
 done()

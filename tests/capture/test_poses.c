@@ -157,8 +157,8 @@ static void track(motion (*path)(double), double ahead_s, trajectory *t)
         double s = (double)i * 0.01 - 1;
         motion m = path(s);
         double cy = cos(m.yaw / 2), sy = sin(m.yaw / 2), cx = cos(-m.pitch / 2), sx = sin(-m.pitch / 2);
-        t->poses[i] = (trajectory_pose){(int64_t)llround((s + 2 + ahead_s) * 1e9),
-                                        {{m.x, 0, 0}, {cy * cx, cy * sx, sy * cx, -sy * sx}}};
+        t->poses[i] = (trajectory_pose){.stamp_ns = (int64_t)llround((s + 2 + ahead_s) * 1e9),
+                                        .pose = {{m.x, 0, 0}, {cy * cx, cy * sx, sy * cx, -sy * sx}}};
     }
 }
 

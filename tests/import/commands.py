@@ -147,7 +147,8 @@ def test_usage():
                       ["import", "x", "-o", "z", "--intrinsics", "1,2,3"],
                       ["import", "x", "-o", "z", "--intrinsics", "0,1,1,1"],
                       ["room"], ["room", "-o", "z", "--frames", "0"], ["room", "-o", "z", "--seed", "x"],
-                      ["room", "-o", "z", "--size", "5000x5"], ["info"], ["info", "a", "b"]):
+                      ["room", "-o", "z", "--size", "5000x5"], ["info"],
+                      ["info", "a", "b", "--view", "1"]):
         status, out, error = run(*arguments)
         check(status == 2 and out == "" and error != "", f"usage: {arguments} gave {status}")
     for command in ("import", "info", "room"):

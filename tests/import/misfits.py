@@ -25,7 +25,9 @@ from folder_makers import (FRAMES, HEIGHT, ROOM, UNIT, WIDTH, colmap, imported, 
                            write)
 from frames import picture as png  # noqa: E402
 from png import png as rgba  # noqa: E402
-from program import run  # noqa: E402
+from program import expect, run  # noqa: E402
+import ros_bag as ros  # noqa: E402
+from ros_bag import SECOND  # noqa: E402
 
 
 class Reader:
@@ -369,11 +371,29 @@ def test_large_pictures():
                                                        [frame.pop("depth_file_path") for frame in c["frames"]]))
         else:
             write(f"{path}/camera-intrinsics.txt", "4000 0 2099.5  0 4000 7.5  0 0 1")
+        found = json.loads(run("info", path, "--json")[1] or "{}")
+        check((found.get("width"), found.get("height")) == (4200, 16), f"{name}: info: {found}")
         refused(path, "4200x16 pixels; sides of up to 4096 are supported, larger ones with --size", *options)
         _, got = imported(path, "--size", "2100x8", *options)
         if got:
             check(np.abs(got["camera_info"][0] - [[2000, 0, 1049.5], [0, 2000, 3.5], [0, 0, 1]]).max() < 1e-3, f"{name}: camera")
             check(np.abs(got["image"][0][4, :, 0].astype(int) - np.arange(2100) // 10).max() <= 1, f"{name}: picture")
+
+
+def test_large_pictures_of_bags():
+    """info shows what a bag holds whose pictures only import --size reads."""
+    wide = np.full((16, 4200, 3), 90, np.uint8)
+    for name, kind, message in (("raw", ros.IMAGE, ros.image(SECOND, "cam", "rgb8", wide)),
+                                ("png", ros.COMPRESSED, ros.compressed(SECOND, "cam", "png", png(wide)))):
+        bag = ros.Bag()
+        bag.put("/camera/image", kind, SECOND, message)
+        bag.put("/camera/camera_info", ros.INFO, SECOND, ros.info(SECOND, "cam", size=(4200, 16)))
+        bag.write(f"{name}.mcap")
+        found = json.loads(run("info", f"{name}.mcap", "--json")[1] or "{}")
+        check([found.get(key) for key in ("width", "height", "unreadable_frames")] == [4200, 16, 0], f"{name}: {found}")
+        expect(0, "info", f"{name}.mcap", out="import needs --size WxH")
+        expect(1, "import", f"{name}.mcap", "-o", "large.mcap", err="4200x16 pixels")
+        expect(0, "import", f"{name}.mcap", "--size", "2100x8", "-o", "large.mcap")
 
 
 def test_repeated_stamps():
@@ -445,12 +465,19 @@ def test_many_coefficients():
     results.append(("FULL_OPENCV", imported(path)[1]))
     path = pose_files("steep", lens=False)
     results.append(("k1 of 200", imported(path, "--intrinsics", f"9000,9000,{k[0, 2]},{k[1, 2]},200,0,0,0,0")[1]))
+    path = pose_files("typed", lens=False)
+    lens = f"{k[0, 0]:.17g},{k[1, 1]:.17g},{k[0, 2]:.17g},{k[1, 2]:.17g},0.3,-0.1,0,0,0,0.35,-0.12,0.01"
+    results.append(("twelve numbers", imported(path, "--intrinsics", lens)[1]))
+    expect(2, "import", path, "--intrinsics", lens[:-5], "-o", "r.mcap", err="--intrinsics")
+    expect(2, "import", "room.mcap", "--intrinsics", lens, "-o", "r.mcap", err="its CameraInfo alone")
+    expect(2, "capture", "--source", "replay:room.mcap", "--hash", "--intrinsics", lens, err="no recording holds k4,k5,k6")
     for name, got in results:
-        told = json.loads(run("info", {"k4": "rational", "FU": "rational_colmap", "k1": "steep"}[name[:2]] + ".mcap", "--json")[1])
+        told = json.loads(run("info", {"k4": "rational", "FU": "rational_colmap", "k1": "steep", "tw": "typed"}[name[:2]] + ".mcap", "--json")[1])
         check(told.get("distortion", "none") == "none", f"{name}: {told}")
         off = np.abs(np.array(got.get("image", [0]), int) - np.array(ROOM["image"], int))
         check(0 < np.median(off) + off.max() and np.percentile(off, 80) < 40, f"{name}: off by {np.percentile(off, 80)}")
     check(np.array_equal(results[0][1]["image"], results[1][1]["image"]), "k4 to k6: two readers, one picture")
+    check(np.array_equal(results[0][1]["image"], results[3][1]["image"]), "k4 to k6 of a file and of the command line")
     refused(transforms("folded", change=lambda c: c.update(k1=-200)), "distortion: the coefficients fold")
 
 
@@ -485,7 +512,7 @@ def test_foreign_files():
 
 TESTS = [test_bad_pictures, test_bad_poses, test_bad_cameras, test_all_bad, test_depth_of_another_aspect,
          test_intrinsics_of_another_size, test_orientation, test_alpha, test_masks, test_confidence_and_scale,
-         test_large_pictures, test_repeated_stamps, test_sizes_of_bags, test_reduced_pictures, test_many_coefficients, test_depth_units, test_foreign_files]
+         test_large_pictures, test_large_pictures_of_bags, test_repeated_stamps, test_sizes_of_bags, test_reduced_pictures, test_many_coefficients, test_depth_units, test_foreign_files]
 
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)

@@ -43,19 +43,19 @@ class Command:
     def __init__(self, name, make, *line):
         self.name, self.make, self.line = name, make, line
 
-    def __call__(self, poses, *options):
-        self.make(poses)
+    def __call__(self, poses, *options, stamps=range(9)):
+        self.make(poses, stamps)
         return run(*self.line, *options, "--json")
 
 
 def text_of(line, path):
-    return lambda poses: write(path, "# a comment\n" + "".join(line(i, *pose) for i, pose in enumerate(poses)))
+    return lambda poses, stamps: write(path, "# a comment\n" + "".join(line(i, *pose) for i, pose in zip(stamps, poses)))
 
 
 def bag_of(path):
-    def make(poses):
+    def make(poses, stamps):
         bag = Bag()
-        for i, pose in enumerate(poses):
+        for i, pose in zip(stamps, poses):
             bag.put("/pose", ros.POSE, (i + 1) * SECOND, ros.pose((i + 1) * SECOND, "map", *pose))
         bag.write(path)
     return make
@@ -63,16 +63,12 @@ def bag_of(path):
 
 def matrices(path):
     """A transforms.json; of a bad pose only the matrix is bad, as JSON has no NaN."""
-    def make(poses):
+    def make(poses, _):
         frames = [{"file_path": f"{i}.png",
                    "transform_matrix": (np.eye(4) if all(map(np.isfinite, (*place, *turn))) and any(turn) and max(place) < 1e9
                                         else np.diag([1, 1, 0, 1])).tolist()} for i, (place, turn) in enumerate(poses)]
         write(path, json.dumps({"fl_x": 50, "w": 32, "h": 32, "frames": frames}))
     return make
-
-
-def folder(poses):
-    text_of(tum_line, "tum/groundtruth.txt")(poses)
 
 
 def commands():
@@ -84,7 +80,7 @@ def commands():
             Command("capture --poses, TUM", text_of(tum_line, "t.txt"), *live, "--poses", "t.txt"),
             Command("capture --poses, EuRoC", text_of(euroc_line, "e.csv"), *live, "--poses", "e.csv"),
             Command("capture --poses, a bag", bag_of("b.mcap"), *live, "--poses", "b.mcap"),
-            Command("import", folder, "import", "tum", *lens_option(), "-o", "t.mcap")]
+            Command("import", text_of(tum_line, "tum/groundtruth.txt"), "import", "tum", *lens_option(), "-o", "t.mcap")]
 
 
 def named(command, what, told):
@@ -112,6 +108,23 @@ def one_is_left_out(command):
     check(command(good, "--strict")[0] == 0, f"{command.name}: --strict takes a good list")
 
 
+def repeated_stamps(command):
+    """Of different poses of one time the first is kept; equal ones are no loss."""
+    here, there = ((0, 0, 0), UPRIGHT), ((0.5, 0, 0), UPRIGHT)
+    twice = (0, 1, 1, 2)
+    hashes = set()
+    for poses, stamps, losses in (([here] * 3, (0, 1, 2), 0), ([here] * 4, twice, 0), ([here, here, there, here], twice, 1)):
+        code, out, error = command(poses, stamps=stamps)
+        report = json.loads(out or "{}")
+        message = error if command.line[0] != "import" else "".join(report.get("left_out", []))
+        check(code == 0 and ("left out: 1; " in message and ".000000 is there twice" in message) == (losses == 1),
+              f"{command.name}, {losses} repeated stamps: {code} {message}")
+        hashes.add(report.get("frames_hash") or report["bytes"])
+    check(len(hashes) == 1, f"{command.name}: not the first of two poses of a time: {hashes}")
+    code, out, error = command([here, here, there, here], "--strict", stamps=twice)
+    check(code == 1 and out == "" and "there twice" in error, f"{command.name}, a repeated stamp, --strict: {code} {error}")
+
+
 def rotations_of_any_length(command):
     turned = (0.0, 0.6, 0.0, 0.8)
     out = []
@@ -135,6 +148,7 @@ def lists_agree():
     for line in (commands()[0].line, commands()[3].line):
         code, _, error = run(*[{"t.txt": "kitti.txt"}.get(word, word) for word in line])
         check(code == 1 and "line 1: more than eight numbers" in error, f"{line[0]}: a matrix: {error}")
+    expect(1, *commands()[3].line, "--pose-topic", "/pose", err="--pose-topic names a topic of a bag")
 
 
 def bags_of_poses_in_parts():
@@ -158,6 +172,8 @@ with tempfile.TemporaryDirectory() as work:
         one_is_left_out(each)
         if each.name != "render --pose":
             rotations_of_any_length(each)
+        if each.line[0] != "render":
+            repeated_stamps(each)
     lists_agree()
     bags_of_poses_in_parts()
     done()

@@ -10,8 +10,8 @@
 #include "scratch.h"
 #include "test.h"
 
-static const double lens[9] = {500, 510, 319.5, 239.5, 0.1, 0, 0, 0, 0.2};
-static const posed_folder_options with_lens = {.intrinsics = lens, .intrinsics_count = 9};
+static const double lens[INTRINSICS_NUMBERS] = {500, 510, 319.5, 239.5, 0.1, 0, 0, 0, 0.2};
+static const posed_folder_options with_lens = {.intrinsics = lens};
 
 static void put(scratch *s, const char *name, const char *text)
 {

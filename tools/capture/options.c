@@ -6,6 +6,7 @@
 
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
+#include "import/poses/intrinsics.h"
 #include "import/poses/pose_losses.h"
 #include "reconstruction/options/settings.h"
 #include "scene/scene_options.h"
@@ -54,7 +55,7 @@ static const struct argp_option options[] = {
     {"reconnect", KEY_RECONNECT, "SECONDS", 0, "seconds to wait for a lost device (10)", 0},
     {NULL, 0, NULL, 0, "The camera:", 2},
     {"intrinsics", KEY_INTRINSICS, "LIST", 0,
-     "fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels of the captured size, (0, 0) being the centre of the top-left pixel", 0},
+     "fx,fy,cx,cy[,k1,k2,p1,p2[,k3]] in pixels of the captured size, (0, 0) being the centre of the top-left pixel", 0},
     {"fisheye", OPTION_TO(capture_options, fisheye), NULL, 0,
      "read the intrinsics as those of a fisheye lens, with k1,k2,k3,k4 at the end", 0},
     {"poses", OPTION_TO(capture_options, poses), "FILE", OPTION_READS | OPTION_FOLDER,
@@ -141,10 +142,12 @@ static void parse_offset(struct argp_state *state, const char *text, capture_opt
 
 static void parse_intrinsics(struct argp_state *state, const char *text, capture_options *o)
 {
-    double numbers[9] = {0};
-    const uint32_t count = numbers_of_text(text, numbers, 9);
-    if (count != 4 && count != 8 && count != 9) {
-        argp_error(state, "--intrinsics takes fx,fy,cx,cy, optionally followed by k1,k2,p1,p2,k3, not '%s'", text);
+    double numbers[INTRINSICS_NUMBERS];
+    const uint32_t count = intrinsics_of_text(text, numbers);
+    if (count == 0) {
+        argp_error(state, "--intrinsics %s: not fx,fy,cx,cy[,k1,k2,p1,p2[,k3]]", text);
+    } else if (count == INTRINSICS_NUMBERS) {
+        argp_error(state, "--intrinsics: no recording holds k4,k5,k6: trim3r import of the pictures' folder does");
     }
     o->intrinsics.fx = numbers[0];
     o->intrinsics.fy = numbers[1];

@@ -12,6 +12,7 @@ typedef enum poses_source {
 } poses_source;
 
 #define POSES_NAMES "given, estimate, estimate-colour"
+#define POSES_PLACEHOLDER "given|estimate|estimate-colour"
 /* false: no such name. */
 bool poses_named(const char *name, poses_source *source);
 const char *poses_name(poses_source source);

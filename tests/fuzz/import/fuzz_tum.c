@@ -48,8 +48,8 @@ static void remove_folder(const char *folder, const int descriptors[LISTS])
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static const double intrinsics[4] = {40, 40, 8, 8};
-    static const posed_folder_options with = {.intrinsics = intrinsics, .intrinsics_count = 4};
+    static const double intrinsics[INTRINSICS_NUMBERS] = {40, 40, 8, 8};
+    static const posed_folder_options with = {.intrinsics = intrinsics};
     char path[64], error[512] = "";
     int descriptors[LISTS];
     make_folder(path, data, size, descriptors);

@@ -207,7 +207,7 @@ int colmap_folder_read(const char *directory, const posed_folder_options *option
     char place[PATH_BYTES];
     colmap_model model = {0};
     const model_files *form = find_model(directory, place);
-    if (options != NULL && options->intrinsics_count != 0) {
+    if (options != NULL && options->intrinsics != NULL) {
         return t3r_reason(error, error_bytes,
                           "%s/%s: the model has its own intrinsics; --intrinsics is for folders without", directory,
                           place);

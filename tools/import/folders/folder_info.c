@@ -48,9 +48,8 @@ static const char *distortion_name(const t3r_recorded_camera *camera)
                                                          : "fisheye";
 }
 
-static void print_json(const posed_folder *folder, const folder_summary *s)
+static void add_json(cJSON *json, const posed_folder *folder, const folder_summary *s)
 {
-    cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "kind", folder->kind);
     cJSON_AddNumberToObject(json, "frames", folder->frame_count);
     cJSON_AddNumberToObject(json, "depth_frames", s->depth_frames);
@@ -70,7 +69,6 @@ static void print_json(const posed_folder *folder, const folder_summary *s)
     cJSON_AddNumberToObject(json, "triplets", folder->triplet_count);
     left_out_add_json(&folder->left_out, json);
     text_list_add_json(&folder->remarks, json, "remarks");
-    json_print(json);
 }
 
 static void print_text(const char *directory, const posed_folder *folder, const folder_summary *s)
@@ -100,7 +98,7 @@ static void print_text(const char *directory, const posed_folder *folder, const 
     text_list_print(&folder->remarks, "remark");
 }
 
-int folder_info(const char *directory, bool json)
+int folder_info(const char *directory, cJSON *json)
 {
     const posed_folder_options how = posed_folder_look(directory);
     posed_folder folder;
@@ -112,8 +110,8 @@ int folder_info(const char *directory, bool json)
     }
     if (status != 0) {
         status = cli_error(CLI_BAD_INPUT, "%s", error);
-    } else if (json) {
-        print_json(&folder, &summary);
+    } else if (json != NULL) {
+        add_json(json, &folder, &summary);
     } else {
         print_text(directory, &folder, &summary);
     }

@@ -81,7 +81,7 @@ static int read_lens(const char *directory, const char *name, posed_intrinsics *
     if (!(m[0] > 0 && m[5] > 0) || !isfinite(m[0] + m[5] + m[2] + m[6]) || m[1] != 0 || m[4] != 0) {
         return t3r_reason(error, error_bytes, "%s/%s: not a camera matrix: fx 0 cx, 0 fy cy", directory, name);
     }
-    *out = posed_intrinsics_of((const double[9]){m[0], m[5], m[2], m[6]});
+    *out = posed_intrinsics_pinhole(m[0], m[5], m[2], m[6]);
     return 0;
 }
 
@@ -91,12 +91,10 @@ static int read_lenses(const char *directory, const pose_layout *layout, const p
 {
     const char *colour = pose_layout_first(directory, layout->colour_lenses);
     const char *depth = pose_layout_first(directory, layout->depth_lenses);
-    if (options != NULL && options->intrinsics_count != 0) {
-        double numbers[9] = {0};
-        memcpy(numbers, options->intrinsics, options->intrinsics_count * sizeof *numbers);
-        out->colour = posed_intrinsics_of(numbers);
+    if (options != NULL && options->intrinsics != NULL) {
+        out->colour = posed_intrinsics_of(options->intrinsics);
     } else if (colour == NULL && options != NULL && options->without_intrinsics) {
-        out->colour = posed_intrinsics_of((const double[9]){NAN, NAN, NAN, NAN});
+        out->colour = posed_intrinsics_unknown();
     } else if (colour == NULL) {
         return t3r_reason(error, error_bytes, "%s: %s", directory, layout->lens_hint);
     } else if (read_lens(directory, colour, &out->colour, error, error_bytes) != 0) {

@@ -21,7 +21,7 @@ static const pose_layout folders = {
     .colour_lenses = NAMES("intrinsic/intrinsic_color.txt", "intrinsic/intrinsic.txt", "intrinsic_color.txt",
                            "intrinsics.txt", "intrinsic.txt", "camera-intrinsics.txt"),
     .depth_lenses = NAMES("intrinsic/intrinsic_depth.txt", "intrinsic_depth.txt"),
-    .lens_hint = "no intrinsic/intrinsic_color.txt; give --intrinsics fx,fy,cx,cy[,k1,k2,p1,p2,k3]",
+    .lens_hint = "no intrinsic/intrinsic_color.txt; give --intrinsics " INTRINSICS_FORM,
 };
 
 /* 7-Scenes and 3DMatch: all files of a sequence in one folder. */

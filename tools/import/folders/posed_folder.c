@@ -12,6 +12,7 @@
 #include "host/reason.h"
 #include "import/colmap/colmap_folder.h"
 #include "import/depth/exr_depth.h"
+#include "import/folders/known_folder.h"
 #include "import/folders/pose_files.h"
 #include "import/folders/record3d.h"
 #include "import/folders/reduced_pictures.h"
@@ -36,7 +37,7 @@ static bool has_tum_lists(const char *directory)
 static int read_transforms(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                            size_t error_bytes)
 {
-    if (options != NULL && options->intrinsics_count != 0) {
+    if (options != NULL && options->intrinsics != NULL) {
         return t3r_reason(error, error_bytes,
                           "%s/transforms.json: has its own intrinsics; --intrinsics is for folders without", directory);
     }
@@ -154,6 +155,10 @@ int posed_folder_open(const char *directory, const posed_folder_options *options
     if (posed_exists(directory, "meta.json")) {
         return t3r_reason(error, error_bytes, "%s: an unpacked .sog; it is a scene once its files are zipped",
                           directory);
+    }
+    char advice[ERROR_BYTES];
+    if (!picture_folder_is(directory) && known_folder_advice(directory, advice, sizeof advice) != NULL) {
+        return t3r_reason(error, error_bytes, "%s: %s", directory, advice);
     }
     if (options != NULL && options->without_poses) {
         return picture_folder_read(directory, options, out, error, error_bytes);

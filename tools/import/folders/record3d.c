@@ -253,7 +253,7 @@ int record3d_read(const char *directory, const posed_folder_options *options, po
                   size_t error_bytes)
 {
     const layout *l = layout_of(directory);
-    if (options != NULL && options->intrinsics_count != 0) {
+    if (options != NULL && options->intrinsics != NULL) {
         return t3r_reason(error, error_bytes, "%s/%s: has its own intrinsics; --intrinsics is for folders without",
                           directory, l->metadata);
     }

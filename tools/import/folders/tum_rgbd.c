@@ -37,7 +37,7 @@ typedef struct stamped_list {
 
 typedef struct intrinsics_row {
     const char *set;
-    double numbers[9]; /* fx fy cx cy k1 k2 p1 p2 k3 */
+    double numbers[INTRINSICS_NUMBERS];
 } intrinsics_row;
 
 /* Colour camera calibrations as published with the data set,
@@ -125,8 +125,7 @@ static int parse_poses(const char *path, char *text, stamped_list *list, char *e
     return pose_list_end(&poses, path, error, error_bytes);
 }
 
-/* Leaves out lines with the time stamp of an earlier one, because nothing says which of them is meant. Repeated poses
- * that are equal are no loss. */
+/* Leaves out lines with the time stamp of an earlier one. Repeated poses that are equal are no loss. */
 static void drop_repeated(stamped_list *list, bool poses)
 {
     size_t kept = 0;
@@ -137,7 +136,7 @@ static void drop_repeated(stamped_list *list, bool poses)
             continue;
         }
         if (!poses || memcmp(&list->items[kept - 1].pose, &item->pose, sizeof item->pose) != 0) {
-            pose_losses_add(&list->bad, 1, "the time stamp %.6f is there twice", item->stamp);
+            pose_losses_add_repeated(&list->bad, item->stamp);
         }
         free(item->name);
     }
@@ -217,10 +216,8 @@ static bool find_pose(const stamped_list *trajectory, double stamp, rigid *pose)
 static int find_intrinsics(const char *directory, const posed_folder_options *options, posed_intrinsics *out,
                            char *error, size_t error_bytes)
 {
-    double numbers[9] = {0};
-    if (options != NULL && options->intrinsics_count != 0) {
-        memcpy(numbers, options->intrinsics, options->intrinsics_count * sizeof *numbers);
-    } else {
+    const double *numbers = options != NULL ? options->intrinsics : NULL;
+    if (numbers == NULL) {
         char *full = realpath(directory, NULL);
         const intrinsics_row *row = NULL;
         for (size_t i = 0; full != NULL && i < sizeof published / sizeof *published; i++) {
@@ -231,17 +228,17 @@ static int find_intrinsics(const char *directory, const posed_folder_options *op
         }
         free(full);
         if (row == NULL && options != NULL && options->without_intrinsics) {
-            *out = posed_intrinsics_of((const double[9]){NAN, NAN, NAN, NAN});
+            *out = posed_intrinsics_unknown();
             return 0;
         }
         if (row == NULL) {
             return t3r_reason(error, error_bytes,
                               "%s: intrinsics unknown: a TUM RGB-D folder does not hold them, and its name has none of "
-                              "freiburg1, freiburg2, freiburg3; give --intrinsics fx,fy,cx,cy[,k1,k2,p1,p2,k3] "
+                              "freiburg1, freiburg2, freiburg3; give --intrinsics " INTRINSICS_FORM " "
                               "(525,525,319.5,239.5 is the data set's own default)",
                               directory);
         }
-        memcpy(numbers, row->numbers, sizeof numbers);
+        numbers = row->numbers;
     }
     *out = posed_intrinsics_of(numbers);
     return 0;

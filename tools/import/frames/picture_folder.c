@@ -71,28 +71,29 @@ static char *first_of(const char *directory, int (*is)(const struct dirent *))
     return name;
 }
 
-char *picture_folder_bag(const char *directory)
+bool picture_folder_is(const char *directory)
 {
     char *shown = first_of(directory, is_picture);
-    char *bag = shown == NULL ? first_of(directory, is_bag) : NULL;
+    const bool is = shown != NULL;
     free(shown);
-    return bag;
+    return is;
+}
+
+char *picture_folder_bag(const char *directory)
+{
+    return picture_folder_is(directory) ? NULL : first_of(directory, is_bag);
 }
 
 int picture_folder_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                         size_t error_bytes)
 {
-    double numbers[9] = {NAN, NAN, NAN, NAN};
     struct dirent **entries;
     memset(out, 0, sizeof *out);
     out->kind = "pictures";
     out->depth_unit = 0.001;
-    if (options->intrinsics_count == 0 && !options->without_intrinsics) {
+    if (options->intrinsics == NULL && !options->without_intrinsics) {
         return t3r_reason(error, error_bytes, "%s: pictures without intrinsics; give --intrinsics fx,fy,cx,cy",
                           directory);
-    }
-    if (options->intrinsics_count > 0) {
-        memcpy(numbers, options->intrinsics, options->intrinsics_count * sizeof *numbers);
     }
     if (picture_folder_foreign(directory, &out->left_out) != 0) {
         return t3r_reason(error, error_bytes, "out of memory");
@@ -113,7 +114,8 @@ int picture_folder_read(const char *directory, const posed_folder_options *optio
         if (status == 0 && out->frames != NULL) {
             posed_frame *frame = &out->frames[out->frame_count++];
             frame->image = strdup(entries[i]->d_name);
-            frame->intrinsics = posed_intrinsics_of(numbers);
+            frame->intrinsics =
+                options->intrinsics != NULL ? posed_intrinsics_of(options->intrinsics) : posed_intrinsics_unknown();
             frame->pose = rigid_identity;
             status = frame->image != NULL ? 0 : t3r_reason(error, error_bytes, "out of memory");
         }

@@ -7,6 +7,9 @@
 
 #include "import/frames/posed_frame.h"
 
+/* Whether the folder holds a picture that is read. */
+bool picture_folder_is(const char *directory);
+
 /* Reads a folder of pictures (.png, .jpg, .jpeg), in the order of their names, with numbers in names by value. */
 int picture_folder_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                         size_t error_bytes);

@@ -36,7 +36,7 @@ bool posed_exists(const char *directory, const char *name)
     return found;
 }
 
-posed_intrinsics posed_intrinsics_of(const double numbers[9])
+posed_intrinsics posed_intrinsics_of(const double numbers[INTRINSICS_NUMBERS])
 {
     posed_intrinsics out = {.width = NAN,
                             .height = NAN,
@@ -46,11 +46,21 @@ posed_intrinsics posed_intrinsics_of(const double numbers[9])
                             .fy = numbers[1],
                             .cx = numbers[2] + 0.5,
                             .cy = numbers[3] + 0.5};
-    for (int i = 0; i < 5; i++) {
+    for (uint32_t i = 0; i < INTRINSICS_NUMBERS - 4; i++) {
         out.coefficients[i] = numbers[4 + i];
         out.distortion = numbers[4 + i] != 0 ? T3R_DISTORTION_RADTAN : out.distortion;
     }
     return out;
+}
+
+posed_intrinsics posed_intrinsics_pinhole(double fx, double fy, double cx, double cy)
+{
+    return posed_intrinsics_of((const double[INTRINSICS_NUMBERS]){fx, fy, cx, cy});
+}
+
+posed_intrinsics posed_intrinsics_unknown(void)
+{
+    return posed_intrinsics_pinhole(NAN, NAN, NAN, NAN);
 }
 
 #define ASPECT_TOLERANCE 0.04

@@ -11,6 +11,7 @@
 #include "geometry/rigid.h"
 #include "import/depth/raw_depth.h"
 #include "import/frames/left_out.h"
+#include "import/poses/intrinsics.h"
 #include "recording/recording.h"
 
 /* A camera as a folder describes it; missing numbers are NAN. In pixels, with the principal point measured from the
@@ -56,12 +57,11 @@ typedef struct posed_folder {
 } posed_folder;
 
 typedef struct posed_folder_options {
-    const double *intrinsics;  /* fx fy cx cy [k1 k2 p1 p2 k3], cx and cy from the top-left pixel's centre: for folders
-                                  without intrinsics */
-    uint32_t intrinsics_count; /* 0, 4 or 9 */
-    double depth_unit;         /* for depth whose step no file gives; 0 = not given */
-    bool without_poses;        /* frames may lack a pose, and a folder may hold only pictures */
-    bool without_intrinsics;   /* frames may lack intrinsics, which are NAN then */
+    const double *intrinsics; /* the INTRINSICS_NUMBERS numbers of intrinsics_of_text(), for folders without intrinsics;
+                                 NULL = not given */
+    double depth_unit;        /* for depth whose step no file gives; 0 = not given */
+    bool without_poses;       /* frames may lack a pose, and a folder may hold only pictures */
+    bool without_intrinsics;  /* frames may lack intrinsics, which are NAN then */
 } posed_folder_options;
 
 void posed_folder_close(posed_folder *folder);
@@ -79,8 +79,12 @@ bool posed_same_aspect(double width, double height, double other_width, double o
 int posed_frame_camera(const posed_frame *frame, uint32_t width, uint32_t height, t3r_recorded_camera *camera,
                        char *error, size_t error_bytes);
 
-/* Makes intrinsics from fx fy cx cy [k1 k2 p1 p2 k3]. */
-posed_intrinsics posed_intrinsics_of(const double numbers[9]);
+/* Makes intrinsics from the numbers of intrinsics_of_text(). */
+posed_intrinsics posed_intrinsics_of(const double numbers[INTRINSICS_NUMBERS]);
+/* Makes intrinsics of a pinhole. */
+posed_intrinsics posed_intrinsics_pinhole(double fx, double fy, double cx, double cy);
+/* Makes those of a frame whose intrinsics nothing gives. */
+posed_intrinsics posed_intrinsics_unknown(void);
 /* Returns DIR/NAME, or NAME when absolute, on the heap; NULL when out of memory. */
 char *posed_path(const char *directory, const char *name);
 bool posed_exists(const char *directory, const char *name);

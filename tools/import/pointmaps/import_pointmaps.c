@@ -175,7 +175,7 @@ static int place_camera(pointmap_source *source, posed_folder *folder, uint32_t 
     rigid *camera = &source->cameras[index];
     if (maps->intrinsics != NULL) {
         const double *k = maps->intrinsics[which];
-        frame->intrinsics = posed_intrinsics_of((const double[9]){k[0], k[1], k[2], k[3]});
+        frame->intrinsics = posed_intrinsics_pinhole(k[0], k[1], k[2], k[3]);
         frame->intrinsics.grid_width = maps->width;
         frame->intrinsics.grid_height = maps->height;
     }

@@ -18,6 +18,11 @@ void pose_losses_add(pose_losses *losses, uint64_t count, const char *format, ..
     losses->count += count;
 }
 
+void pose_losses_add_repeated(pose_losses *losses, double seconds)
+{
+    pose_losses_add(losses, 1, "the time stamp %.6f is there twice", seconds);
+}
+
 int pose_losses_print(const pose_losses *losses, const char *path, bool strict)
 {
     if (losses->count == 0) {

@@ -16,6 +16,8 @@ typedef struct pose_losses {
 
 void pose_losses_add(pose_losses *losses, uint64_t count, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* Adds an entry whose time stamp an earlier one has: nothing says which of the two is meant. */
+void pose_losses_add_repeated(pose_losses *losses, double seconds);
 /* Prints what was left out of a file as a warning; with `strict`, as an error. Returns an exit status of cli.h. */
 int pose_losses_print(const pose_losses *losses, const char *path, bool strict);
 

@@ -24,8 +24,9 @@ void trajectory_free(trajectory *t)
 
 static int by_stamp(const void *a, const void *b)
 {
-    int64_t x = ((const trajectory_pose *)a)->stamp_ns, y = ((const trajectory_pose *)b)->stamp_ns;
-    return (x > y) - (x < y);
+    const trajectory_pose *x = a, *y = b;
+    return x->stamp_ns != y->stamp_ns ? (x->stamp_ns > y->stamp_ns) - (x->stamp_ns < y->stamp_ns)
+                                      : (x->order > y->order) - (x->order < y->order);
 }
 
 /* Returns NULL, or why it cannot be appended. */
@@ -39,18 +40,23 @@ static const char *append(trajectory *t, size_t *room, const trajectory_pose *po
         return "out of memory";
     }
     t->poses = grown;
-    t->poses[t->count++] = *pose;
+    t->poses[t->count] = *pose;
+    t->poses[t->count].order = t->count;
+    t->count++;
     return NULL;
 }
 
-/* Sorts by stamp; of equal stamps the first stays. */
+/* Sorts by stamp; of equal stamps the first stays. Repeated poses that are equal are no loss. */
 static void order(trajectory *t)
 {
     size_t kept = 0;
     qsort(t->poses, t->count, sizeof *t->poses, by_stamp);
     for (size_t i = 0; i < t->count; i++) {
-        if (kept == 0 || t->poses[i].stamp_ns != t->poses[kept - 1].stamp_ns) {
-            t->poses[kept++] = t->poses[i];
+        const trajectory_pose *pose = &t->poses[i], *last = kept > 0 ? &t->poses[kept - 1] : NULL;
+        if (last == NULL || pose->stamp_ns != last->stamp_ns) {
+            t->poses[kept++] = *pose;
+        } else if (memcmp(&pose->pose, &last->pose, sizeof pose->pose) != 0) {
+            pose_losses_add_repeated(&t->losses, (double)pose->stamp_ns * 1e-9);
         }
     }
     t->count = kept;
@@ -63,7 +69,7 @@ int trajectory_parse(char *text, const char *path, trajectory *out, char *error,
     const char *wrong = NULL;
     *out = (trajectory){0};
     for (pose_list_item item; wrong == NULL && pose_list_next(&list, &item);) {
-        wrong = append(out, &room, &(trajectory_pose){item.stamp_ns, item.pose});
+        wrong = append(out, &room, &(trajectory_pose){.stamp_ns = item.stamp_ns, .pose = item.pose});
     }
     int status = wrong == NULL ? pose_list_end(&list, path, error, error_bytes)
                                : t3r_reason(error, error_bytes, "%s: %s", path, wrong);
@@ -167,6 +173,9 @@ int trajectory_read(const char *path, const char *topic, trajectory *out, char *
     *out = (trajectory){0};
     if (is_bag(path)) {
         return read_bag(path, topic, out, error, error_bytes);
+    }
+    if (topic != NULL) {
+        return t3r_reason(error, error_bytes, "%s: --pose-topic names a topic of a bag, and this is a list", path);
     }
     size_t count;
     char *text = (char *)t3r_file_bytes(path, T3R_LIMIT_TEXT_BYTES, &count, error, error_bytes);

@@ -12,7 +12,8 @@
 
 typedef struct trajectory_pose {
     int64_t stamp_ns;
-    rigid pose; /* camera (x right, y down, z forward) to world */
+    rigid pose;   /* camera (x right, y down, z forward) to world */
+    size_t order; /* in the file */
 } trajectory_pose;
 
 typedef struct trajectory {
@@ -25,7 +26,8 @@ typedef struct trajectory {
 #define TRAJECTORY_BRACKET_NS INT64_C(200000000) /* neighbours farther apart are not interpolated */
 
 /* Reads PATH: an MCAP bag (geometry_msgs PoseStamped or TransformStamped on `topic`, NULL: the only such topic), or a
- * list (pose_list.h). Stamps keep their nanoseconds. Returns 0, or -1 with "path: line: what" in error[]. */
+ * list (pose_list.h). Stamps keep their nanoseconds; of different poses of one time the first is kept, the others are
+ * losses. Returns 0, or -1 with "path: line: what" in error[]. */
 int trajectory_read(const char *path, const char *topic, trajectory *out, char *error, size_t error_bytes);
 /* Parses the text of a list. */
 int trajectory_parse(char *text, const char *path, trajectory *out, char *error, size_t error_bytes);

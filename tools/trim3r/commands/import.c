@@ -33,8 +33,8 @@ typedef struct options {
     const char *directory;
     const char *output;
     uint32_t width, height; /* 0 = as the pictures are */
-    double intrinsics[9];
-    uint32_t intrinsics_count;
+    double intrinsics[INTRINSICS_NUMBERS];
+    uint32_t intrinsics_count; /* 0 = not given */
     poses_source poses;
     pointmap_options pointmaps;
     bool json;
@@ -79,10 +79,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         option_size(state, "size", argument, T3R_MIN_SIDE, &o->width, &o->height);
         return 0;
     case KEY_INTRINSICS:
-        o->intrinsics_count = numbers_of_text(argument, o->intrinsics, 9);
-        if ((o->intrinsics_count != 4 && o->intrinsics_count != 9) || !(o->intrinsics[0] > 0) ||
-            !(o->intrinsics[1] > 0)) {
-            argp_error(state, "--intrinsics %s: not fx,fy,cx,cy[,k1,k2,p1,p2,k3]", argument);
+        o->intrinsics_count = intrinsics_of_text(argument, o->intrinsics);
+        if (o->intrinsics_count == 0) {
+            argp_error(state, "--intrinsics %s: not " INTRINSICS_FORM, argument);
         }
         return 0;
     case KEY_POSES:
@@ -119,12 +118,11 @@ static const struct argp_option argp_options[] = {
      "area average and depth by the pixel at the centre of each box (as the pictures are)",
      0},
     {"intrinsics", KEY_INTRINSICS, "LIST", 0,
-     "colour camera of a TUM RGB-D folder, of a folder of pose texts, of pictures alone or of a bag: "
-     "fx,fy,cx,cy[,k1,k2,p1,p2,k3] in pixels, (0, 0) being "
-     "the centre of the top-left pixel (known where the name of the folder has freiburg1, freiburg2 or freiburg3 in "
-     "it)",
+     "colour camera of a TUM RGB-D folder, of a folder of pose texts, of pictures alone or of a bag: " INTRINSICS_FORM
+     " in pixels, (0, 0) being the centre of the top-left pixel (known where the name of the folder has freiburg1, "
+     "freiburg2 or freiburg3 in it)",
      0},
-    {"poses", KEY_POSES, "SOURCE", 0,
+    {"poses", KEY_POSES, POSES_PLACEHOLDER, 0,
      "source of the poses: given (default), those of the folder; estimate, from features that frames share, with depth "
      "where two of them have it, or of all frames from pointmaps; estimate-colour, from colour alone, without "
      "pointmaps",
@@ -348,8 +346,7 @@ static void print_text(const options *o, const material *m, const totals *t)
 static int prepare(const options *o, material *m, char *error)
 {
     bool estimate = o->poses != POSES_GIVEN;
-    posed_folder_options how = {.intrinsics = o->intrinsics,
-                                .intrinsics_count = o->intrinsics_count,
+    posed_folder_options how = {.intrinsics = o->intrinsics_count != 0 ? o->intrinsics : NULL,
                                 .depth_unit = o->pointmaps.depth_unit,
                                 .without_poses = estimate || o->pointmaps.file != NULL,
                                 .without_intrinsics = o->pointmaps.file != NULL};
@@ -438,11 +435,13 @@ static int given_lens(const options *o, t3r_camera *camera, char *error)
         .fy = n[1],
         .cx = n[2],
         .cy = n[3],
-        .distortion = o->intrinsics_count == 9 ? T3R_DISTORTION_RADTAN : T3R_DISTORTION_NONE,
+        .distortion = o->intrinsics_count > 4 ? T3R_DISTORTION_RADTAN : T3R_DISTORTION_NONE,
         .coefficients = {n[4], n[5], n[6], n[7], n[8]},
         .rotation = {1, 0, 0, 0},
     };
-    const char *wrong = t3r_fixed_camera(&given, camera);
+    const char *wrong = o->intrinsics_count == INTRINSICS_NUMBERS
+                            ? "k4, k5 and k6 of a bag are read from its CameraInfo alone"
+                            : t3r_fixed_camera(&given, camera);
     return wrong == NULL ? 0 : t3r_reason(error, ERROR_BYTES, "--intrinsics: %s", wrong);
 }
 
