@@ -73,7 +73,9 @@ static int decode_depth(bag_pictures *pictures, t3r_text format, const uint8_t *
 static int finish_colour(bag_pictures *pictures, t3r_decoded_image *out, char *error, size_t error_bytes)
 {
     picture *p = &pictures->colour;
-    const uint32_t whole[2] = {p->width, p->height}, n = picture_reduction(p->width, p->height);
+    const uint32_t n = picture_reduction(p->width, p->height);
+    pictures->whole_width = p->width;
+    pictures->whole_height = p->height;
     if (n > 1 && !pictures->large) {
         return t3r_reason(error, error_bytes,
                           "%ux%u pixels; sides of up to %u are supported, larger ones with --size of trim3r import",
@@ -84,8 +86,8 @@ static int finish_colour(bag_pictures *pictures, t3r_decoded_image *out, char *e
     }
     *out = (t3r_decoded_image){.width = p->width,
                                .height = p->height,
-                               .whole_width = whole[0],
-                               .whole_height = whole[1],
+                               .whole_width = pictures->whole_width,
+                               .whole_height = pictures->whole_height,
                                .reduction = n,
                                .format = p->channels == 3 ? T3R_PIXEL_RGB24 : T3R_PIXEL_GREY,
                                .rows = p->samples};

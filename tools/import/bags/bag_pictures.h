@@ -11,6 +11,7 @@
 typedef struct bag_pictures {
     bool large;                              /* reduces colour with sides above T3R_MAX_SIDE, else refuses it */
     picture colour, depth;                   /* the last ones decoded */
+    uint32_t whole_width, whole_height;      /* sides of the last colour before it was reduced; 0: none was decoded */
     picture straight_colour, straight_depth; /* the last ones redrawn without distortion */
     picture hidden;                          /* the last depth that bag_pictures_hide() made */
 } bag_pictures;
