@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Pose files and trajectories. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,7 +36,7 @@ TEST(reads_a_pose)
     viewpoint_list list;
     char error[256] = "";
     write_text("{\"fl_x\": 200, \"cx\": 100.5, \"w\": 256, \"h\": 128, \"transform_matrix\": " IDENTITY "}");
-    assert_int_equal(viewpoint_read_pose(path, &list, error, sizeof error), 0);
+    assert_int_equal(viewpoint_read_pose(path, 0, 0, &list, error, sizeof error), 0);
     assert_int_equal(list.count, 1);
     const t3r_camera *v = list.items;
     assert_true(v->width == 256 && v->height == 128);
@@ -56,14 +57,14 @@ TEST(reads_all_frames_of_a_list)
     write_text(
         "{\"fl_x\": 200, \"w\": 64, \"h\": 64, \"frames\": [{\"file_path\": \"a.png\", \"transform_matrix\": " IDENTITY
         "}, {\"file_path\": \"b.png\", \"transform_matrix\": " IDENTITY "}]}");
-    assert_int_equal(viewpoint_read_pose(path, &list, error, sizeof error), 0);
+    assert_int_equal(viewpoint_read_pose(path, 0, 0, &list, error, sizeof error), 0);
     assert_int_equal(list.count, 2);
     viewpoint_list_free(&list);
     write_text(
         "{\"fl_x\": 200, \"w\": 64, \"h\": 64, \"frames\": [{\"file_path\": \"a.png\"}, {\"file_path\": \"b.png\", "
         "\"transform_matrix\": " IDENTITY "}, {\"file_path\": \"c.png\", \"k1\": 0.1, \"transform_matrix\": " IDENTITY
         "}]}");
-    assert_int_equal(viewpoint_read_pose(path, &list, error, sizeof error), 0);
+    assert_int_equal(viewpoint_read_pose(path, 0, 0, &list, error, sizeof error), 0);
     assert_int_equal(list.count, 1);
     assert_int_equal(list.losses.count, 2);
     assert_ptr_equal(strstr(list.losses.first, "frames[0]: "), list.losses.first);
@@ -95,7 +96,7 @@ TEST(refuses_bad_poses)
         viewpoint_list list;
         char error[512] = "";
         write_text(bad[i].text);
-        assert_int_equal(viewpoint_read_pose(path, &list, error, sizeof error), -1);
+        assert_int_equal(viewpoint_read_pose(path, 0, 0, &list, error, sizeof error), -1);
         assert_null(list.items);
         if (strstr(error, bad[i].reason) == NULL || strstr(error, path) != error) {
             fail_msg("'%s' does not say '%s'", error, bad[i].reason);
@@ -154,6 +155,51 @@ TEST(refuses_bad_trajectories)
     }
     t3r_camera wide;
     assert_int_equal(viewpoint_from_angle(179.9, 64, 64, &wide), -1);
+}
+
+/* Returns the pixel at which a camera sees a point. */
+static void project(const t3r_camera *camera, const double point[3], double pixel[2])
+{
+    rigid pose = {0};
+    double seen[3];
+    for (int i = 0; i < 3; i++) {
+        pose.position[i] = ldexp((double)camera->position_q32[i], -32);
+    }
+    for (int i = 0; i < 4; i++) {
+        pose.rotation[i] = ldexp(camera->rotation_q30[i], -30);
+    }
+    pose = rigid_inverse(&pose);
+    rigid_apply(&pose, point, seen);
+    assert_true(seen[2] > 0);
+    pixel[0] = camera->fx_q16 * 0x1p-16 * seen[0] / seen[2];
+    pixel[1] = camera->fy_q16 * 0x1p-16 * seen[1] / seen[2];
+}
+
+TEST(turns_about_a_centre)
+{
+    static const double centre[3] = {1, -2, 5}, axis[3] = {0, 0.6, 0.8}, beside[3] = {1, -1.4, 5.8};
+    t3r_camera start;
+    viewpoint_list list;
+    char error[256] = "";
+    assert_int_equal(viewpoint_from_angle(60, 64, 48, &start), 0);
+    assert_int_equal(viewpoint_turn(&start, centre, axis, 5, &list, error, sizeof error), 0);
+    assert_int_equal(list.count, 5);
+    assert_memory_equal(&list.items[0], &start, sizeof start);
+    double first[2], last[2], pixel[2];
+    project(&start, centre, first);
+    project(&start, beside, last);
+    for (uint32_t i = 1; i < 5; i++) { /* points of the axis keep their pixels */
+        assert_true(list.items[i].position_q32[0] != start.position_q32[0]);
+        project(&list.items[i], centre, pixel);
+        assert_true(fabs(pixel[0] - first[0]) < 1e-4 && fabs(pixel[1] - first[1]) < 1e-4);
+        project(&list.items[i], beside, pixel);
+        assert_true(fabs(pixel[0] - last[0]) < 1e-4 && fabs(pixel[1] - last[1]) < 1e-4);
+    }
+    viewpoint_list_free(&list);
+    start.position_q32[0] = start.position_q32[1] =
+        (INT64_C(1) << 62) - 1; /* farther along one axis, after an eighth */
+    assert_int_equal(viewpoint_turn(&start, centre, (const double[3]){0, 0, 1}, 8, &list, error, sizeof error), -1);
+    assert_null(list.items);
 }
 
 ALL_TESTS_WITH(make_path, scratch_teardown)

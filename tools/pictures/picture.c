@@ -229,7 +229,7 @@ int picture_write_png(const char *path, const picture *in, char *error, size_t e
     free(work.rows);
     if (status != 0) {
         t3r_whole_file_abandon(&file);
-        return fail(error, error_bytes, path, work.reason);
+        return fail(error, error_bytes, file.path, work.reason);
     }
     return t3r_whole_file_commit(&file, NULL, error, error_bytes);
 }

@@ -12,13 +12,13 @@ void scene_output_option(struct argp_state *state, const char *option, const cha
     }
 }
 
-int scene_up_option(struct argp_state *state, const char *name)
+scene_up scene_up_option(struct argp_state *state, const char *name)
 {
     const scene_up up = scene_up_named(name);
     if (up == T3R_UP_UNKNOWN) {
         argp_error(state, "--up takes one of %s, not '%s'", SCENE_UP_NAMES, name);
     }
-    return SCENE_FILE_UP * (int)up;
+    return up;
 }
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */

@@ -5,13 +5,15 @@
 
 #include <argp.h>
 
+#include "scene/scene_turn.h"
+
 /* The options of reading a scene; input: the int of flags for scene_file_read(), to which they add. */
 extern const struct argp scene_input_argp;
 
 /* Reports a usage error if the path (NULL: none) of `option` ("-o") has no suffix of a scene file that can be
  * written. */
 void scene_output_option(struct argp_state *state, const char *option, const char *path);
-/* Parses --up: returns the flags of scene_file_write() for the named axis; a usage error for other names. */
-int scene_up_option(struct argp_state *state, const char *name);
+/* Parses --up: returns the named axis; a usage error for other names. */
+scene_up scene_up_option(struct argp_state *state, const char *name);
 
 #endif

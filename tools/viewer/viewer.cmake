@@ -57,7 +57,7 @@ if(wasm_found)
   # Readers and writers that need no other library.
   file(GLOB file_sources CONFIGURE_DEPENDS viewer/module/files/*.c scene/*.c scene/formats/ply/*.c)
   list(FILTER file_sources EXCLUDE REGEX "/(scene_options|scene_append|seen_gaussian|splat_camera|tile_lists)[.]c$")
-  foreach(name viewer/bundle viewer/start_view scene/formats/splat scene/formats/spz/spz_read scene/store/scene_formats
+  foreach(name viewer/bundle viewer/start_view scene/summary/scene_box scene/formats/splat scene/formats/spz/spz_read scene/store/scene_formats
                scene/store/scene_read scene/store/scene_remark scene/store/scene_write import/viewpoint_angle geometry/quaternion)
     list(APPEND file_sources ${CMAKE_CURRENT_SOURCE_DIR}/${name}.c)
   endforeach()

@@ -16,7 +16,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char path[MEMORY_FILE_PATH_BYTES], error[512] = "";
     int descriptor = memory_file(data, size, path);
     viewpoint_list list;
-    int status = viewpoint_read_pose(path, &list, error, sizeof error);
+    int status = viewpoint_read_pose(path, 0, 0, &list, error, sizeof error);
     if ((status != 0) != (error[0] != '\0')) {
         abort();
     }

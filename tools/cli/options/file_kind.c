@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/options/file_kind.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdbool.h>
@@ -13,7 +14,7 @@
 
 static const struct {
     file_kind kind;
-    const char *name, *ending, *begins; /* first bytes, in either case of letters; NULL = see below */
+    const char *name, *ending, *begins; /* first bytes, in either case of letters, ? any; NULL = see below */
     bool by_name;                       /* other kinds begin the same way: the name must also have the suffix */
 } kinds[] = {
     {FILE_RECORDING, "a recording", ".mcap", "\x89MCAP0\r\n", false},
@@ -32,6 +33,10 @@ static const struct {
     {FILE_LINES, "lines of a stream", ".jsonl", "{\"frame\":", false},
     {FILE_STATE, "the state of a stream", ".t3s", "T3RSTATE", false},
     {FILE_HEADER, "the C header of a plan", ".h", "/* The settings and the static memory", false},
+    {FILE_VIDEO, "a video", ".mp4", "????ftyp", false},
+    {FILE_VIDEO, "a video", ".mov", "????ftyp", false},
+    {FILE_VIDEO, "a video", ".mkv", "\x1a\x45\xdf\xa3", false},
+    {FILE_VIDEO, "a video", ".webm", "\x1a\x45\xdf\xa3", false},
     {FILE_TABLE, "a table", ".csv", NULL, false},
     {FILE_OTHER, "a file of another kind", NULL, NULL, false},
 };
@@ -63,6 +68,16 @@ static bool is_heading(const char *text)
     return ends && memchr(text, ',', length) != NULL;
 }
 
+/* Whether the bytes at `text`, of which there are enough, are those of a kind. */
+static bool begins_with(const char *text, const char *begins)
+{
+    bool same = true;
+    for (; same && *begins != '\0'; text++, begins++) {
+        same = *begins == '?' || tolower((unsigned char)*text) == tolower((unsigned char)*begins);
+    }
+    return same;
+}
+
 file_kind file_kind_of(const char *path)
 {
     char text[LOOKED_AT + 1] = "";
@@ -76,7 +91,7 @@ file_kind file_kind_of(const char *path)
         return 0;
     }
     for (int i = 0; i < ROWS && count > 0; i++) {
-        if (kinds[i].begins != NULL && strncasecmp(text, kinds[i].begins, strlen(kinds[i].begins)) == 0 &&
+        if (kinds[i].begins != NULL && begins_with(text, kinds[i].begins) &&
             (!kinds[i].by_name || ends_with(path, kinds[i].ending))) {
             return kinds[i].kind;
         }
@@ -97,6 +112,16 @@ file_kind file_kind_named(const char *path)
         }
     }
     return 0;
+}
+
+const char *file_kind_ending(file_kind set, int index)
+{
+    for (int i = 0; i < ROWS; i++) {
+        if ((kinds[i].kind & set) != 0 && kinds[i].ending != NULL && index-- == 0) {
+            return kinds[i].ending;
+        }
+    }
+    return NULL;
 }
 
 const char *file_kind_name(file_kind kind)

@@ -10,49 +10,57 @@
 #include <string.h>
 
 #include "cli/cli.h"
-#include "cli/files/recorded_frame.h"
 #include "cli/jobs/work_times.h"
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
+#include "cli/options/standard_output.h"
 #include "cli/tables/json_output.h"
 #include "core/hash.h"
-#include "import/import_source.h"
-#include "import/viewpoint.h"
 #include "pictures/picture.h"
-#include "reconstruction/reconstruction.h"
+#include "pictures/video.h"
 #include "reconstruction/reconstruction_error.h"
 #include "scene/scene_options.h"
+#include "trim3r/commands/render.h"
 
 #define ERROR_BYTES 512
 #define MAX_PATH_BYTES 4096
 
-typedef struct render_options {
-    const char *scene, *recording;
-    const char *pose, *trajectory;
-    const char *output, *depth, *alpha;
-    bool has_view, has_size, has_fov, strict, json;
-    uint32_t view;
-    uint32_t width, height;
-    double fov_degrees;
-    double depth_unit; /* world units a step of the depth picture */
-    double most_ms;    /* of a view; 0 = it may take any time */
-    reconstruction_options settings;
-} render_options;
-
-enum { KEY_VIEW = 0x1000, KEY_SIZE, KEY_FOV, KEY_DEPTH_UNIT, KEY_ARENA, KEY_MAX_MS, KEY_TILE_SPLATS };
+enum {
+    KEY_VIEW = 0x1000,
+    KEY_SIZE,
+    KEY_FOV,
+    KEY_ORBIT,
+    KEY_UP,
+    KEY_RATE,
+    KEY_DEPTH_UNIT,
+    KEY_ARENA,
+    KEY_MAX_MS,
+    KEY_TILE_SPLATS
+};
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("SCENE.ply", OPTION_READS | OPTION_FOLDER),
     {NULL, 0, NULL, 0, "Viewpoint:", 1},
     {"view", KEY_VIEW, "N", 0, "frame of REC.mcap whose camera draws", 0},
-    {"pose", OPTION_TO(render_options, pose), "FILE", OPTION_READS, "camera as JSON (below)", 0},
+    {"pose", OPTION_TO(render_options, pose), "FILE.json", OPTION_READS,
+     "camera as JSON, or several, one numbered picture each (below)", 0},
+    {"path", OPTION_TO(render_options, pose), "FILE.json", OPTION_READS,
+     "the same, for a camera path as nerfstudio's viewer saves it", 0},
+    {"orbit", KEY_ORBIT, "N", 0,
+     "turntable: N views around the middle of the scene, from above, or from --view or --pose on", 0},
+    {"up", KEY_UP, "x|-x|y|-y|z|-z", 0,
+     "axis of the scene that points up, about which it turns (that of the file, else -y)", 0},
     {"trajectory", OPTION_TO(render_options, trajectory), "FILE", OPTION_READS,
      "list of poses, one numbered picture each; the lens is that of --view, --pose or --fov", 0},
     {"strict", OPTION_TO(render_options, strict), NULL, 0, POSE_LOSSES_STRICT_HELP, 0},
-    {"fov", KEY_FOV, "DEGREES", 0, "horizontal angle of view of a trajectory, with --size", 0},
-    {"size", KEY_SIZE, "WxH", 0, "size of the picture; the lens is scaled along (the camera's)", 0},
+    {"fov", KEY_FOV, "DEGREES", 0, "horizontal angle of view of a trajectory, with --size, or of a turntable (60)", 0},
+    {"size", KEY_SIZE, "WxH", 0, "size of the picture; the lens is scaled along (the camera's; 640x480)", 0},
     {NULL, 0, NULL, 0, "Pictures:", 2},
-    {"output", 'o', "view.png", OPTION_WRITES(FILE_PICTURE), "picture to write (needed)", 0},
+    {"output", 'o', "view.png", OPTION_WRITES(FILE_PICTURE | FILE_VIDEO) | OPTION_PIPE,
+     "picture to write (needed), or of several views a video: .mp4, .mkv, .mov or .webm, by the program ffmpeg; -: a "
+     "picture to standard output",
+     0},
+    {"rate", KEY_RATE, "FPS", 0, "pictures a second of a video (those of the camera path, or 24)", 0},
     {"depth", OPTION_TO(render_options, depth), "d.png", OPTION_WRITES(FILE_PICTURE),
      "depth along z to write, 16 bits, 0 = none", 0},
     {"depth-unit", KEY_DEPTH_UNIT, "U", 0, "world units in one step of the depth picture (0.001)", 0},
@@ -80,10 +88,11 @@ static double parse_positive(struct argp_state *state, const char *option, const
     return value;
 }
 
-/* Pictures are PNG; devices take any bytes. */
+/* Pictures are PNG; standard output and devices take any bytes. */
 static void check_picture_name(struct argp_state *state, const char *option, const char *path)
 {
-    if (path != NULL && file_kind_named(path) != FILE_PICTURE && strncmp(path, "/dev/", 5) != 0) {
+    if (path != NULL && !standard_output_is(path) && file_kind_named(path) != FILE_PICTURE &&
+        strncmp(path, "/dev/", 5) != 0) {
         argp_error(state, "%s %s: pictures are written as .png", option, path);
     }
 }
@@ -97,13 +106,21 @@ static void check_options(struct argp_state *state, const render_options *o)
         argp_error(state, "-o view.png is missing");
     } else if (o->has_view != (o->recording != NULL)) {
         argp_error(state, "REC.mcap and --view N go together");
-    } else if (lenses != 1) {
-        argp_error(state, "%s: give one of REC.mcap --view N, --pose FILE, --fov DEGREES",
+    } else if (o->orbit > 0 && o->trajectory != NULL) {
+        argp_error(state, "--orbit and --trajectory exclude each other");
+    } else if (o->orbit == 0 && o->up != T3R_UP_UNKNOWN) {
+        argp_error(state, "--up belongs to --orbit");
+    } else if (lenses > 1 || (lenses == 0 && o->orbit == 0)) {
+        argp_error(state, "%s: give one of REC.mcap --view N, --pose FILE, --fov DEGREES, or --orbit N",
                    lenses == 0 ? "no viewpoint" : "more than one viewpoint");
-    } else if (o->has_fov && (o->trajectory == NULL || !o->has_size)) {
-        argp_error(state, "--fov goes with --trajectory and --size");
+    } else if (o->has_fov && o->orbit == 0 && (o->trajectory == NULL || !o->has_size)) {
+        argp_error(state, "--fov goes with --orbit, or with --trajectory and --size");
+    } else if (o->rate > 0 && !video_is_named(o->output)) {
+        argp_error(state, "--rate belongs to a video");
     }
-    check_picture_name(state, "-o", o->output);
+    if (!video_is_named(o->output)) {
+        check_picture_name(state, "-o", o->output);
+    }
     check_picture_name(state, "--depth", o->depth);
     check_picture_name(state, "--alpha", o->alpha);
 }
@@ -127,6 +144,15 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_SIZE:
         option_size(state, "size", arg, 1, &o->width, &o->height);
         o->has_size = true;
+        return 0;
+    case KEY_ORBIT:
+        o->orbit = option_number(state, "orbit", arg, 1, 100000);
+        return 0;
+    case KEY_UP:
+        o->up = scene_up_option(state, arg);
+        return 0;
+    case KEY_RATE:
+        o->rate = parse_positive(state, "rate", arg, 1000);
         return 0;
     case 'o':
         o->output = arg;
@@ -164,74 +190,21 @@ static const struct argp argp = {
         "\vExamples:\n"
         "  trim3r render scene.ply room.mcap --view 1 -o view.png\n"
         "  trim3r render scene.ply --pose pose.json --depth depth.png -o view.png\n"
-        "  trim3r render scene.ply --trajectory t.txt --fov 60 --size 640x480 -o v.png\n\n"
+        "  trim3r render scene.ply --trajectory t.txt --fov 60 --size 640x480 -o v.png\n"
+        "  trim3r render scene.ply --orbit 120 -o turn.mp4\n"
+        "  trim3r render scene.ply room.mcap --view 1 --orbit 36 -o turn.png\n"
+        "  trim3r render splat.ply --path camera_path.json -o path.mp4\n\n"
         "A pose file holds the fields of one frame of transforms.json, or is a transforms.json:\n"
         "  {\"fl_x\": 220, \"fl_y\": 220, \"cx\": 128, \"cy\": 128, \"w\": 256, \"h\": 256,\n"
         "   \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}\n"
         "transform_matrix: camera to world, x right, y up, z backward; cx, cy from the picture's corner; "
-        "fl_y, cx and cy may be left out. Several poses give view_0000.png, view_0001.png ...\n"
+        "fl_y, cx and cy may be left out; Blender's camera_angle_x may stand for fl_x, and --size for w and h. It may "
+        "also be a camera path of nerfstudio, with render_width and camera_path, or cameras.json of 3D Gaussian "
+        "Splatting. Several poses give view_0000.png, view_0001.png ...\n"
         "A trajectory has lines of TUM, `stamp tx ty tz qx qy qz qw`, or of EuRoC: camera to world, x right, y down, "
         "z forward. Poses that cannot be used are left out, counted and named.",
     .children = children,
 };
-
-/* ---- viewpoints ------------------------------------------------------------------------------------------------ */
-
-static int view_of_recording(const render_options *o, viewpoint_list *views)
-{
-    t3r_recording *recording = import_source_open(o->recording);
-    if (recording == NULL) {
-        return CLI_BAD_INPUT;
-    }
-    t3r_capture_frame frame;
-    int code = recorded_frame_read(recording, o->recording, o->view, &frame);
-    if (code == CLI_OK) {
-        views->items = calloc(1, sizeof *views->items);
-        if (views->items == NULL) {
-            code = cli_error(CLI_BAD_INPUT, "out of memory");
-        } else {
-            uint32_t width = frame.frame.width, height = frame.frame.height;
-            views->items[0] = reconstruction_camera(&frame.camera, width, height, width, height);
-            views->count = 1;
-        }
-    }
-    t3r_recording_close(recording);
-    return code;
-}
-
-/* Reads the poses of --pose or --trajectory, and reports what is left out of them. */
-static int read_poses(const render_options *o, const t3r_camera *lens, viewpoint_list *views)
-{
-    char error[ERROR_BYTES] = "";
-    const char *path = lens != NULL ? o->trajectory : o->pose;
-    const int status = lens != NULL ? viewpoint_read_trajectory(path, lens, views, error, sizeof error)
-                                    : viewpoint_read_pose(path, views, error, sizeof error);
-    return status == 0 ? pose_losses_print(&views->losses, path, o->strict) : cli_error(CLI_BAD_INPUT, "%s", error);
-}
-
-static int choose_viewpoints(const render_options *o, viewpoint_list *views)
-{
-    *views = (viewpoint_list){0};
-    int code = o->recording != NULL ? view_of_recording(o, views)
-               : o->pose != NULL    ? read_poses(o, NULL, views)
-                                    : CLI_OK;
-    if (code == CLI_OK && o->trajectory != NULL) {
-        t3r_camera lens;
-        if (!o->has_fov) {
-            lens = views->items[0];
-        } else if (viewpoint_from_angle(o->fov_degrees, o->width, o->height, &lens) != 0) {
-            return cli_error(CLI_BAD_USAGE, "--fov %g at this --size: the focal length must be 8..16384 pixels",
-                             o->fov_degrees);
-        }
-        viewpoint_list_free(views);
-        code = read_poses(o, &lens, views);
-    }
-    for (uint32_t i = 0; code == CLI_OK && o->has_size && i < views->count; i++) {
-        t3r_camera *v = &views->items[i];
-        *v = reconstruction_camera(v, v->width, v->height, o->width, o->height);
-    }
-    return code;
-}
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
@@ -286,8 +259,20 @@ typedef struct planes {
     uint16_t *grey;
 } planes;
 
+/* Writes a picture of the colour, or adds it to the video. */
+static int write_colour(const render_options *o, const t3r_camera *view, uint32_t index, uint32_t count,
+                        const planes *p, video *film)
+{
+    if (film->pictures == NULL) {
+        const picture colour = {
+            .width = view->width, .height = view->height, .channels = 3, .bits = 8, .samples = p->rgb};
+        return write_picture(o->output, index, count, &colour);
+    }
+    return video_add(film, p->rgb) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s: ffmpeg takes no more", o->output);
+}
+
 static int render_one(const render_options *o, reconstruction *r, const t3r_camera *view, uint32_t index,
-                      uint32_t count, const planes *p, uint64_t *hash, work_times *times)
+                      uint32_t count, const planes *p, video *film, uint64_t *hash, work_times *times)
 {
     size_t pixels = (size_t)view->width * view->height;
     t3r_target target = {
@@ -313,16 +298,19 @@ static int render_one(const render_options *o, reconstruction *r, const t3r_came
                          o->most_ms);
     }
     if (status != T3R_OK) {
-        const char *from = o->pose != NULL ? o->pose : o->trajectory != NULL ? o->trajectory : o->recording;
-        return reconstruction_error(status, from, &r->config, r->arena_bytes);
+        const char *const from[] = {o->pose, o->trajectory, o->recording, o->scene};
+        uint32_t named = 0;
+        while (from[named] == NULL) {
+            named++;
+        }
+        return reconstruction_error(status, from[named], &r->config, r->arena_bytes);
     }
     if (shows_nothing(p->alpha_q15, pixels)) {
         (void)cli_error(CLI_OK, "warning: view %" PRIu32 " shows nothing of the scene: no Gaussian is in front of it",
                         index);
     }
     *hash = t3r_hash_bytes(*hash, p->rgb, pixels * 3);
-    picture colour = {.width = view->width, .height = view->height, .channels = 3, .bits = 8, .samples = p->rgb};
-    code = write_picture(o->output, index, count, &colour);
+    code = write_colour(o, view, index, count, p, film);
     picture grey = {.width = view->width, .height = view->height, .channels = 1, .bits = 16, .samples = p->grey};
     if (code == CLI_OK && o->depth != NULL) {
         const uint32_t far = convert_depth(p->depth_q20, pixels, o->depth_unit, r->scene.frame.exponent, p->grey);
@@ -344,6 +332,32 @@ static int render_one(const render_options *o, reconstruction *r, const t3r_came
     return code;
 }
 
+/* Opens the video, if -o is one. */
+static int open_film(const render_options *o, const viewpoint_list *views, video *film)
+{
+    char error[ERROR_BYTES] = "";
+    const t3r_camera *first = &views->items[0];
+    *film = (video){0};
+    if (!video_is_named(o->output)) {
+        return CLI_OK;
+    }
+    for (uint32_t i = 1; i < views->count; i++) {
+        if (views->items[i].width != first->width || views->items[i].height != first->height) {
+            return cli_error(CLI_BAD_USAGE, "%s: views 0 and %" PRIu32 " differ in size: give --size", o->output, i);
+        }
+    }
+    const double rate = o->rate > 0 ? o->rate : views->rate > 0 ? views->rate : RENDER_RATE;
+    return video_begin(film, o->output, first->width, first->height, rate, error, sizeof error) == 0
+               ? CLI_OK
+               : cli_error(CLI_BAD_INPUT, "%s", error);
+}
+
+static int close_film(video *film, int code)
+{
+    char error[ERROR_BYTES] = "";
+    return video_end(film, code == CLI_OK, error, sizeof error) == 0 ? code : cli_error(CLI_BAD_INPUT, "%s", error);
+}
+
 static int render_all(const render_options *o, scene_file *scene, const viewpoint_list *views, work_times *times)
 {
     uint32_t width = 1, height = 1;
@@ -355,6 +369,9 @@ static int render_all(const render_options *o, scene_file *scene, const viewpoin
         size_t area = (size_t)v->width * v->height;
         pixels = area > pixels ? area : pixels;
     }
+    if (views->count > 1 && standard_output_is(o->output)) {
+        return cli_error(CLI_BAD_USAGE, "-o -: %" PRIu32 " views are numbered files, and need a name", views->count);
+    }
     reconstruction r;
     int code = reconstruction_load(&r, scene, width, height, &o->settings);
     if (code != CLI_OK) {
@@ -365,9 +382,13 @@ static int render_all(const render_options *o, scene_file *scene, const viewpoin
     if (p.rgb == NULL || p.depth_q20 == NULL || p.alpha_q15 == NULL || p.grey == NULL) {
         code = cli_error(CLI_BAD_INPUT, "out of memory");
     }
+    video film = {0};
+    code = code == CLI_OK ? open_film(o, views, &film) : code;
     for (uint32_t i = 0; i < views->count && code == CLI_OK; i++) {
-        code = render_one(o, &r, &views->items[i], i, views->count, &p, &hash, times);
+        cli_progress("rendering", i, views->count);
+        code = render_one(o, &r, &views->items[i], i, views->count, &p, &film, &hash, times);
     }
+    code = close_film(&film, code);
     times->seconds[WORK_DRAW] /= views->count;
     times->seconds[WORK_WRITE] /= views->count;
     cli_progress_end();
@@ -406,14 +427,13 @@ int command_render(int argc, char **argv)
     file_options_parse(&argp, argc, argv, &o);
 
     char error[ERROR_BYTES] = "";
-    viewpoint_list views;
+    viewpoint_list views = {0};
     scene_file scene = {0};
     work_times times;
     work_times_begin(&times);
-    int code = choose_viewpoints(&o, &views);
-    if (code == CLI_OK && scene_file_read(o.scene, o.settings.scene_flags, &scene, error, sizeof error) != 0) {
-        code = cli_error(CLI_BAD_INPUT, "%s", error);
-    }
+    int code = scene_file_read(o.scene, o.settings.scene_flags, &scene, error, sizeof error) == 0
+                   ? render_views(&o, &scene, &views)
+                   : cli_error(CLI_BAD_INPUT, "%s", error);
     work_times_end(&times, WORK_READ);
     if (code == CLI_OK) {
         code = render_all(&o, &scene, &views, &times);
