@@ -186,7 +186,7 @@ static const struct argp_option options[] = {
     {"from-file", OPTION_TO(evaluation_options, from_file), NULL, 0,
      "write each scene as .ply, read it back and draw that", 0},
     {NULL, 0, NULL, 0, "What is written:", 2},
-    {"csv", OPTION_TO(evaluation_options, to.csv), "FILE", OPTION_WRITES(FILE_TABLE),
+    {"csv", OPTION_TO(evaluation_options, to.csv), "FILE", OPTION_WRITES(FILE_TABLE) | OPTION_PIPE,
      "table to write; each row appears when it is made, or without --resume all at the end if a table exists", 0},
     {"images", OPTION_TO(evaluation_options, to.images), "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
      "folder to write pictures into: DIR/<target>/<method>_<keep>.png, target.png, mask.png, context_a.png, ...; with "
@@ -195,6 +195,8 @@ static const struct argp_option options[] = {
      0},
     {"html", OPTION_TO(evaluation_options, to.page), "PAGE.html", OPTION_WRITES(FILE_PAGE),
      "page to write, with the pictures side by side; it needs no other file", 0},
+    {"wide", OPTION_TO(evaluation_options, to.wide), NULL, 0,
+     "print all main columns, in 200 characters, not those that fit 80; several methods or heads print them always", 0},
     {"json", OPTION_TO(evaluation_options, to.json), NULL, 0,
      "print one JSON object on stdout: rows, means over the cases, refused cases", 0},
     {NULL, 0, NULL, 0, "How the work is done:", 3},

@@ -48,7 +48,7 @@ int evaluation_report_open(evaluation_report *report, const evaluation_outputs *
         }
     }
     if (code == CLI_OK && !to->json && to->table == NULL) {
-        evaluation_print_header(stdout, to->planar);
+        evaluation_print_header(stdout, to->planar, to->wide);
     }
     cli_progress_within("rows", 0, 0, report->row_total);
     return code;
@@ -144,7 +144,7 @@ int evaluation_report_row(evaluation_report *report, bool known, const evaluatio
     report->known_count += known;
     if (!report->to.json && report->to.table == NULL) {
         cli_progress_end();
-        evaluation_print_row(stdout, row, report->to.planar);
+        evaluation_print_row(stdout, row, report->to.planar, report->to.wide);
     }
     cli_progress_within("rows", report->known_count, report->row_count, report->row_total);
     if (known) {
@@ -303,7 +303,7 @@ static int finish(evaluation_report *report)
         print_json(report, means, mean_count);
     }
     for (uint32_t i = 0; several && !report->to.json && report->to.table == NULL && i < mean_count; i++) {
-        evaluation_print_row(stdout, &means[i], report->to.planar);
+        evaluation_print_row(stdout, &means[i], report->to.planar, report->to.wide);
     }
     int code = CLI_OK;
     if (report->to.table != NULL && !report->to.json &&

@@ -16,6 +16,7 @@
 typedef struct evaluation_outputs {
     const char *csv, *images, *page; /* paths; NULL = none */
     bool json, planar;
+    bool wide;   /* rows have all main columns, not only those that fit 80 characters */
     bool resume; /* add to the rows of `csv` */
     /* Prints one table of the means at the end instead of rows as they arrive; NULL = rows. False if out of memory. */
     bool (*table)(FILE *out, const evaluation_row *means, uint32_t count, bool planar);

@@ -35,6 +35,7 @@ static int report_all(const evaluation_options *o, const evaluation_work *work)
 {
     evaluation_outputs to = o->to;
     to.planar = o->planar;
+    to.wide = o->to.wide || work->contestants->count > 1; /* rows of a budget differ in columns of the wide table */
     to.folder_each = !o->planar && o->input_count > 1;
     int code = evaluation_settings_suffix(&o->settings, o->head_count == 0, to.suffix);
     if (code != CLI_OK) {

@@ -33,43 +33,44 @@ typedef struct column {
     const char *name;
     int value;    /* evaluation_value, or one of the texts */
     int decimals; /* of a number; -1: as many as needed */
-    int width;    /* on the terminal */
+    int narrow;   /* width on a terminal of 80 columns; 0: not shown there */
+    int width;    /* with all columns */
     shown shown;  /* at a glance */
 } column;
 
 static const column columns[EVALUATION_COLUMNS] = {
-    {"scene", SCENE, 0, 20, ALWAYS},
-    {"context", CONTEXT, 0, 8, RECORDING},
-    {"target", TARGET, 0, 7, RECORDING},
-    {"method", METHOD, 0, 23, ALWAYS},
-    {"head", HEAD, 0, 10, ALWAYS},
-    {"bits", BITS, 0, 6, ALWAYS},
-    {"refine", REFINE, 0, 0, NEVER},
-    {"allocate", ALLOCATE, 0, 9, ALWAYS},
-    {"depth", DEPTH, 0, 0, NEVER},
-    {"ablation", ABLATION, 0, 22, GIVEN},
-    {"wavelet", WAVELET, 0, 0, NEVER},
-    {"levels", LEVELS, 0, 0, NEVER},
-    {"clusters", CLUSTERS, 0, 0, NEVER},
-    {"settings", SETTINGS, 0, 0, NEVER},
-    {"keep", EVALUATION_KEEP, -1, 5, ALWAYS},
-    {"requested", EVALUATION_REQUESTED, 0, 0, NEVER},
-    {"gaussians", EVALUATION_GAUSSIANS, 0, 10, ALWAYS},
-    {"psnr", EVALUATION_PSNR, 4, 7, RECORDING},
-    {"ssim", EVALUATION_SSIM, 5, 7, ALWAYS},
-    {"sharp", EVALUATION_SHARP, 5, 7, ALWAYS},
-    {"holes", EVALUATION_HOLES, 5, 7, ALWAYS},
-    {"psnr_all", EVALUATION_PSNR_ALL, 4, 9, RECORDING},
-    {"psnr_seen", EVALUATION_PSNR_SEEN, 4, 10, RECORDING},
-    {"context_psnr", EVALUATION_CONTEXT_PSNR, 4, 13, RECORDING},
-    {"perceptual", EVALUATION_PERCEPTUAL, 5, 11, ALWAYS},
-    {"build_ms", EVALUATION_BUILD_MS, 2, 9, ALWAYS},
-    {"render_ms", EVALUATION_RENDER_MS, 2, 10, ALWAYS},
-    {"arena_bytes", EVALUATION_ARENA_BYTES, 0, 12, ALWAYS},
-    {"scene_bytes", EVALUATION_SCENE_BYTES, 0, 0, NEVER},
-    {"planar_psnr", EVALUATION_PLANAR_PSNR, 4, 12, PLANAR},
-    {"picture", PICTURE, 0, 0, NEVER},
-    {"bits_epoch", EVALUATION_BITS_EPOCH, 0, 0, NEVER},
+    {"scene", SCENE, 0, 14, 20, ALWAYS},
+    {"context", CONTEXT, 0, 8, 8, RECORDING},
+    {"target", TARGET, 0, 7, 7, RECORDING},
+    {"method", METHOD, 0, 0, 23, ALWAYS},
+    {"head", HEAD, 0, 0, 10, ALWAYS},
+    {"bits", BITS, 0, 0, 6, ALWAYS},
+    {"refine", REFINE, 0, 0, 0, NEVER},
+    {"allocate", ALLOCATE, 0, 0, 9, ALWAYS},
+    {"depth", DEPTH, 0, 0, 0, NEVER},
+    {"ablation", ABLATION, 0, 0, 22, GIVEN},
+    {"wavelet", WAVELET, 0, 0, 0, NEVER},
+    {"levels", LEVELS, 0, 0, 0, NEVER},
+    {"clusters", CLUSTERS, 0, 0, 0, NEVER},
+    {"settings", SETTINGS, 0, 0, 0, NEVER},
+    {"keep", EVALUATION_KEEP, -1, 5, 5, ALWAYS},
+    {"requested", EVALUATION_REQUESTED, 0, 0, 0, NEVER},
+    {"gaussians", EVALUATION_GAUSSIANS, 0, 10, 10, ALWAYS},
+    {"psnr", EVALUATION_PSNR, 4, 7, 7, RECORDING},
+    {"ssim", EVALUATION_SSIM, 5, 7, 7, ALWAYS},
+    {"sharp", EVALUATION_SHARP, 5, 0, 7, ALWAYS},
+    {"holes", EVALUATION_HOLES, 5, 0, 7, ALWAYS},
+    {"psnr_all", EVALUATION_PSNR_ALL, 4, 9, 9, RECORDING},
+    {"psnr_seen", EVALUATION_PSNR_SEEN, 4, 0, 10, RECORDING},
+    {"context_psnr", EVALUATION_CONTEXT_PSNR, 4, 0, 13, RECORDING},
+    {"perceptual", EVALUATION_PERCEPTUAL, 5, 0, 11, ALWAYS},
+    {"build_ms", EVALUATION_BUILD_MS, 2, 10, 9, ALWAYS},
+    {"render_ms", EVALUATION_RENDER_MS, 2, 0, 10, ALWAYS},
+    {"arena_bytes", EVALUATION_ARENA_BYTES, 0, 0, 12, ALWAYS},
+    {"scene_bytes", EVALUATION_SCENE_BYTES, 0, 0, 0, NEVER},
+    {"planar_psnr", EVALUATION_PLANAR_PSNR, 4, 12, 12, PLANAR},
+    {"picture", PICTURE, 0, 0, 0, NEVER},
+    {"bits_epoch", EVALUATION_BITS_EPOCH, 0, 0, 0, NEVER},
 };
 
 const char *evaluation_column_name(uint32_t index)
@@ -274,31 +275,34 @@ bool evaluation_glance(const evaluation_row *row, uint32_t index, bool planar, c
 }
 
 /* Texts to the left, numbers to the right. */
-static void print_cell(FILE *out, const column *c, const char *text)
+static void print_cell(FILE *out, const column *c, bool wide, const char *text)
 {
-    char cut[64];
-    size_t room = (size_t)c->width < sizeof cut ? (size_t)c->width : sizeof cut;
-    t3r_text_copy(cut, room, t3r_text_of(text)); /* between characters */
-    fprintf(out, "%*s", c->value < 0 ? -c->width : c->width, cut);
+    const int width = wide ? c->width : c->narrow;
+    if (width > 0) {
+        char cut[64];
+        const size_t room = (size_t)width < sizeof cut ? (size_t)width : sizeof cut;
+        t3r_text_copy(cut, room, t3r_text_of(text)); /* between characters */
+        fprintf(out, "%*s", c->value < 0 ? -width : width, cut);
+    }
 }
 
-void evaluation_print_header(FILE *out, bool planar)
+void evaluation_print_header(FILE *out, bool planar, bool wide)
 {
     fputs(style_begin(out, STYLE_HEADING), out);
     for (uint32_t i = 0; i < EVALUATION_COLUMNS; i++) {
         if (at_a_glance(&columns[i], planar, false)) {
-            print_cell(out, &columns[i], columns[i].name);
+            print_cell(out, &columns[i], wide, columns[i].name);
         }
     }
     fprintf(out, "%s\n", style_end(out));
 }
 
-void evaluation_print_row(FILE *out, const evaluation_row *row, bool planar)
+void evaluation_print_row(FILE *out, const evaluation_row *row, bool planar, bool wide)
 {
     for (uint32_t i = 0; i < EVALUATION_COLUMNS; i++) {
         char text[EVALUATION_CELL_BYTES];
         if (evaluation_glance(row, i, planar, text, sizeof text)) {
-            print_cell(out, &columns[i], text);
+            print_cell(out, &columns[i], wide, text);
         }
     }
     fputc('\n', out);

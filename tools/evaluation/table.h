@@ -40,7 +40,8 @@ uint32_t evaluation_means(const evaluation_row *rows, uint32_t count, bool by_sc
 /* Writes a cell for terminal and page: the main columns of recordings or of planar images, with fewer digits. False
  * if the column is not one of them. */
 bool evaluation_glance(const evaluation_row *row, uint32_t column, bool planar, char *text, size_t bytes);
-void evaluation_print_header(FILE *out, bool planar);
-void evaluation_print_row(FILE *out, const evaluation_row *row, bool planar);
+/* Print these columns for a terminal: all, or with `wide` false those that fit 80 characters. */
+void evaluation_print_header(FILE *out, bool planar, bool wide);
+void evaluation_print_row(FILE *out, const evaluation_row *row, bool planar, bool wide);
 
 #endif

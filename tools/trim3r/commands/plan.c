@@ -77,7 +77,7 @@ static const struct argp_option options[] = {
      "a map of --gaussians that follows a camera, with --views newest keyframes, instead of builds", 0},
     {"threads", KEY_THREADS, "N|all", 0,
      "number of threads that share the arena's work, 1..16, or all: one for each processor (1)", 0},
-    {"svg", OPTION_TO(plan_options, svg), "FILE", OPTION_WRITES(FILE_SVG),
+    {"svg", OPTION_TO(plan_options, svg), "FILE", OPTION_WRITES(FILE_SVG) | OPTION_PIPE,
      "picture of the arena to write: stages across, bytes upwards", 0},
     {"header", OPTION_TO(plan_options, header), "FILE.h", OPTION_WRITES(FILE_HEADER),
      "header in C to write for a firmware: the arena's bytes, and a function that returns the settings", 0},
@@ -268,7 +268,7 @@ static void print_json(const t3r_config *config, const t3r_plan_info *plan, cons
 
 static void print_table(const t3r_plan_info *plan, bool markdown)
 {
-    const char *head = markdown ? "| %s | %s | %s | %s | %s |\n" : "%-30s %12s %12s  %-13s  %s\n";
+    const char *head = markdown ? "| %s | %s | %s | %s | %s |\n" : "%-28s %11s %11s %-13s %s\n";
     printf(head, "buffer", "bytes", "offset", "first stage", "last stage");
     if (markdown) {
         puts("|---|---:|---:|---|---|");
@@ -278,10 +278,10 @@ static void print_table(const t3r_plan_info *plan, bool markdown)
         if (b->bytes == 0) {
             continue;
         }
-        printf(markdown ? "| %s | %zu | %zu | %s | %s |\n" : "%-30s %12zu %12zu  %-13s  %s\n", b->name, b->bytes,
+        printf(markdown ? "| %s | %zu | %zu | %s | %s |\n" : "%-28s %11zu %11zu %-13s %s\n", b->name, b->bytes,
                b->offset, t3r_stage_name(b->first), t3r_stage_name(b->last));
     }
-    const char *total = markdown ? "| **%s** | **%zu** | | | |\n" : "%-30s %12zu\n";
+    const char *total = markdown ? "| **%s** | **%zu** | | | |\n" : "%-28s %11zu\n";
     printf(total, "arena, at least", plan->min_bytes);
     printf(total, "arena, full speed", plan->bytes);
     if (!markdown) { /* it has no bytes */
