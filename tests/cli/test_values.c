@@ -20,6 +20,31 @@ TEST(parses_lists)
     }
 }
 
+TEST(parses_counts)
+{
+    static const struct {
+        const char *text;
+        uint32_t value;
+    } good[] = {{"13107", 13107},  {"10k", 10000},
+                {"1.5M", 1500000}, {"2.125k", 2125},
+                {"0.000001M", 1},  {"4294.967295M", UINT32_MAX},
+                {"007k", 7000},    {"4294967295", UINT32_MAX}};
+    uint32_t values[3], count = 0;
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+        assert_int_equal(cli_parse_list_counts(good[i].text, values, 3, &count), 0);
+        assert_int_equal(values[0], good[i].value);
+    }
+    assert_int_equal(cli_parse_list_counts("1k,20,3M", values, 3, &count), 0);
+    assert_true(count == 3 && values[0] == 1000 && values[1] == 20 && values[2] == 3000000);
+    static const char *const bad[] = {"",     "k",  "1.k",   ".5k",  "1.5",   "1.2345k",      "1kk",
+                                      "1K",   "1G", "-1k",   "1 k",  "1k,",   "4.294967296k", "4294967296k",
+                                      "1e3k", "1m", "1..5k", "0x1k", "4295M", "99999999999M"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        assert_int_equal(cli_parse_list_counts(bad[i], values, 3, &count), -1);
+    }
+    assert_int_equal(cli_parse_list_u32("1k", values, 3, &count), -1);
+}
+
 TEST(parses_percentages)
 {
     double values[3];

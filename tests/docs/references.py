@@ -55,6 +55,8 @@ def options(name, text, program):
 
 
 def options_of(where, words, program):
+    if words[:2] == ["trim3r", "help"]:
+        words = ["trim3r", *words[2:]]
     if words[:1] != ["trim3r"] or len(words) < 2 or words[1].startswith("-"):
         return
     if words[1] not in program.commands:

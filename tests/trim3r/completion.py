@@ -27,11 +27,43 @@ def bash_completes():
     check(completed("build", "--gau") == ["--gaussians"], f"--gau: {completed('build', '--gau')}")
     check(set(completed("plan", "--s")) >= {"--size", "--svg", "--seed"}, f"--s: {completed('plan', '--s')}")
     check("--complete" not in completed("plan", "--"), "a hidden option is offered")
-    check(set(completed("info", "sc")) == {"scene.ply", "script.bash"}, f"files: {completed('info', 'sc')}")
-    check("scene.ply" in completed("build", "--prune", "sce"), "no file for --prune")
+    write("scene.spz", b"NGSP")
+    write("scene.npz", b"PK")
+    write("scores.csv", b"scene")
+    os.mkdir("scans")
+    for line, found in {("info", "sc"): {"scene.ply", "scene.spz", "scans"},
+                        ("build", "--prune", "sc"): {"scene.ply", "scene.spz", "scans"},
+                        ("convert", "-o", "sc"): {"scene.ply", "scene.spz", "scans"},
+                        ("import", "--pointmaps", "sc"): {"scene.npz", "scans"},
+                        ("eval", "--csv", "sc"): {"scores.csv", "scans"},
+                        ("completion", "-o", "scr"): {"script.bash"},
+                        ("help", "bu"): {"build"}, ("help", "comp"): {"completion"},
+                        ("build", "--poses", "e"): {"estimate", "estimate-colour"},
+                        ("build", "--arena", ""): {"min", "full"},
+                        ("convert", "--up", "-"): {"-x", "-y", "-z"},
+                        ("room", "--compression", "z"): {"zstd"},
+                        ("build", "--color", "a"): {"auto", "always"}}.items():
+        check(set(completed(*line)) == found, f"{line}: {completed(*line)}")
     check(completed("build", "--gaussians", "sce") == [], "a file for a number")
     check(completed("build", "--wavelet", "h") == ["haar"], f"--wavelet h: {completed('build', '--wavelet', 'h')}")
     check(completed("replay", "--align", "") == ["on", "off"], f"--align: {completed('replay', '--align', '')}")
+
+
+def in_fish(line):
+    path = f"{os.path.dirname(TRIM3R)}:{os.environ['PATH']}"
+    done = subprocess.run(["fish", "-c", f"source script.fish; complete -C '{line}'"], capture_output=True, text=True,
+                          env={**os.environ, "PATH": path, "HOME": os.getcwd()})
+    return {row.split("\t")[0] for row in done.stdout.splitlines()}
+
+
+def fish_completes():
+    name = os.path.basename(TRIM3R)
+    if name != "trim3r":
+        return
+    for line, found in {"bu": {"build"}, "help bu": {"build"}, "plan --sv": {"--svg"}, "build --poses given": {"given"},
+                        "info scen": {"scene.ply", "scene.spz"}, "import --pointmaps scen": {"scene.npz"},
+                        "build --gaussians sc": set()}.items():
+        check(in_fish(f"trim3r {line}") == found, f"fish, {line}: {in_fish('trim3r ' + line)}")
 
 
 def other_shells():
@@ -64,6 +96,8 @@ def completion():
     if shutil.which("bash"):
         bash_completes()
     other_shells()
+    if shutil.which("fish") and shutil.which("bash"):
+        fish_completes()
     nearly()
     check(os.path.exists("script.zsh"), "no script")
 

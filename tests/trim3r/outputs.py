@@ -18,6 +18,7 @@ CONTENT = {
     "a PNG picture": b"\x89PNG\r\n\x1a\n" + bytes(99), "an SVG picture": b"<svg xmlns='http://www.w3.org/2000/svg'/>",
     "a page": b"<!DOCTYPE html>\n<html></html>", "a table": b"scene,context,psnr\nroom,0,1\n",
     "a weight file": b"T3RW" + bytes(99), "the C source of a head": b"/* The head `x` as a weight file */\n",
+    "a video": b"\0\0\0\x20ftypisom",
     "lines of a stream": b'{"frame":0}\n', "the state of a stream": b"T3RSTATE" + bytes(99),
     "the C header of a plan": b"/* The settings and the static memory of one runtime */\n",
     "a file of another kind": b'{"a": 1, "b": 2}\n'}
@@ -26,8 +27,9 @@ CONTENT = {
 # The suffixes of each kind.
 SUFFIXES = {
     "a recording": (".mcap",), "a scene": (".ply", ".splat", ".spz", ".glb", ".sog"), "a PNG picture": (".png",),
-    "an SVG picture": (".svg",), "a page": (".html",), "a table": (".csv",), "a weight file": (".t3w",),
-    "the C source of a head": (".c",), "the C header of a plan": (".h",), "a file of another kind": (".jpg", ".pdf", ".json")}
+    "an SVG picture": (".svg",), "a video": (".mp4", ".mov", ".mkv", ".webm"), "a page": (".html",), "a table": (".csv",),
+    "a weight file": (".t3w",), "the C source of a head": (".c",), "the C header of a plan": (".h",),
+    "a file of another kind": (".jpg", ".pdf", ".json")}
 
 
 def commands():
@@ -131,6 +133,51 @@ def to_standard_output():
                                           stderr=subprocess.PIPE)
                 check(done.returncode == 2 and "standard output are one file" in done.stderr, f"{command}: {done.stderr}")
     remove("printed")
+
+
+# A line of each command with an output that may be standard output, and the name of the file in its place.
+PIPES = {
+    ("build", "-o"): (["room.mcap", "--keep", "10"], "x.ply"), ("convert", "-o"): (["scene.ply"], "x.ply"),
+    ("render", "-o"): (["scene.ply", "room.mcap", "--view", "1"], "x.png"), ("info", "--svg"): (["scene.ply"], "x.svg"),
+    ("plan", "--svg"): (["--size", "64x64", "--gaussians", "9"], "x.svg"), ("completion", "-o"): (["bash"], "x.bash"),
+    ("eval", "--csv"): (["room.mcap", "--keep", "10"], "x.csv")}
+
+
+def without_times(content, name):
+    return re.sub(rb"[0-9.]+(?=,)", b"", content) if name.endswith(".csv") else content
+
+
+def to_a_pipe():
+    """The output - is standard output, with the bytes of a file; what is printed goes to stderr."""
+    room()
+    expect(0, "build", "room.mcap", "--keep", 10, "-o", "scene.ply")
+    seen = set()
+    for command in commands():
+        for row in (row for row in table(command) if row["writes"]):
+            if not row["pipe"]:
+                if not row["word"]:
+                    code, printed, message = run(command, *given(row, "-"))
+                    check((code, printed) == (2, "") and f"{row['option']} -: this output needs a file" in message,
+                          f"{command} {row['option']}: {code} {message}")
+                continue
+            seen.add((command, row["option"]))
+            line, name = PIPES[command, row["option"]]
+            expect(0, command, *line, row["option"], name)
+            content = open(name, "rb").read()
+            done = subprocess.run([TRIM3R, command, *line, row["option"], "-"], capture_output=True)
+            check(done.returncode == 0 and without_times(done.stdout, name) == without_times(content, name) and
+                  b"Gaussians" in (done.stderr if command in ("build", "convert", "render") else b"Gaussians"),
+                  f"{command} {row['option']} -: {done.returncode} {done.stderr[-300:]}")
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([TRIM3R, command, *line, row["option"], "-"], stdout=full, stderr=subprocess.PIPE, text=True)
+            check(done.returncode == 1 and "standard output" in done.stderr, f"{command} to a full disk: {done.stderr}")
+            remove(name)
+            check(not os.path.exists("-"), f"{command}: a file of that name")
+    check(seen == set(PIPES), f"{seen}")
+    write("path.txt", "0 0 0 0 0 0 0 1\n1 0 0 0.1 0 0 0 1\n")
+    expect(2, "render", "scene.ply", "--trajectory", "path.txt", "--fov", 60, "--size", "32x32", "-o", "-", err="-o -")
+    expect(2, "render", "scene.ply", "room.mcap", "--view", 1, "--depth", "-", "-o", "-", err="--depth -: this output")
+    remove("scene.ply", "room.mcap", "path.txt")
 
 
 def other_kinds():
@@ -279,4 +326,4 @@ def names_of_others():
 
 
 if __name__ == "__main__":
-    in_scratch(all_are_named, every_pair, to_standard_output, other_kinds, wrong_names, strange_inputs, missing_folders, in_folders, names_of_others)
+    in_scratch(all_are_named, every_pair, to_standard_output, to_a_pipe, other_kinds, wrong_names, strange_inputs, missing_folders, in_folders, names_of_others)

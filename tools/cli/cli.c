@@ -165,11 +165,39 @@ static int parse_u32(const char **text, uint32_t *value)
     return 0;
 }
 
-int cli_parse_list_u32(const char *text, uint32_t *values, uint32_t most, uint32_t *count)
+/* Parses a count likewise: digits, or with k (thousands) or M (millions) after them, and then also with a point and as
+ * many digits as give a whole number. */
+static int parse_count(const char **text, uint32_t *value)
+{
+    const size_t digits = strspn(*text, "0123456789");
+    const char *p = *text + digits + ((*text)[digits] == '.');
+    const size_t places = p > *text + digits ? strspn(p, "0123456789") : 0;
+    const char unit = p[places];
+    const uint32_t zeros = unit == 'k' ? 3 : unit == 'M' ? 6 : 0;
+    if (zeros == 0) {
+        return parse_u32(text, value);
+    }
+    if (digits == 0 || digits > 9 || places > zeros || (p > *text + digits && places == 0)) {
+        return -1;
+    }
+    uint64_t x = 0;
+    for (const char *at = *text; *at != unit; at++) {
+        x = *at == '.' ? x : x * 10 + (uint64_t)(*at - '0');
+    }
+    for (size_t i = places; i < zeros; i++) {
+        x *= 10;
+    }
+    *value = (uint32_t)x;
+    *text = p + places + 1;
+    return x <= UINT32_MAX ? 0 : -1;
+}
+
+static int parse_list(const char *text, uint32_t *values, uint32_t most, uint32_t *count,
+                      int (*parse)(const char **text, uint32_t *value))
 {
     uint32_t n = 0;
     for (;;) {
-        if (n == most || parse_u32(&text, &values[n]) != 0) {
+        if (n == most || parse(&text, &values[n]) != 0) {
             return -1;
         }
         n++;
@@ -181,6 +209,16 @@ int cli_parse_list_u32(const char *text, uint32_t *values, uint32_t most, uint32
             return -1;
         }
     }
+}
+
+int cli_parse_list_u32(const char *text, uint32_t *values, uint32_t most, uint32_t *count)
+{
+    return parse_list(text, values, most, count, parse_u32);
+}
+
+int cli_parse_list_counts(const char *text, uint32_t *values, uint32_t most, uint32_t *count)
+{
+    return parse_list(text, values, most, count, parse_count);
 }
 
 int cli_parse_list_percent(const char *text, double *values, uint32_t most, uint32_t *count)

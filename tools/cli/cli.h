@@ -28,8 +28,10 @@ void cli_progress_within(const char *what, uint32_t before, uint32_t done, uint3
 /* Silences all progress from here on: for a process that works for another. */
 void cli_progress_silence(void);
 
-/* Parse "0,2" into indices; "256x256" into sizes; "10%" or "13107"; "100,60,40". Return 0, or -1 when malformed. */
+/* Parse "0,2" into indices; "13107,10k,1.5M" into counts, k being 1000 and M 1000000; "100,60,40%" into percentages;
+ * "256x256" into sizes. Return 0, or -1 when malformed. */
 int cli_parse_list_u32(const char *text, uint32_t *values, uint32_t most, uint32_t *count);
+int cli_parse_list_counts(const char *text, uint32_t *values, uint32_t most, uint32_t *count);
 int cli_parse_list_percent(const char *text, double *values, uint32_t most, uint32_t *count);
 int cli_parse_size(const char *text, uint32_t *width, uint32_t *height);
 

@@ -1,13 +1,34 @@
 # SPDX-License-Identifier: Apache-2.0
 # Completion of trim3r in fish. The program itself says which commands and options it has.
-function __trim3r_options
+function __trim3r_rows
     set -l words (commandline -opc)
-    $words[1] $words[2] --complete 2>/dev/null | string replace -r '\t[a-z0-9|]*\t' '\t'
+    $words[1] $words[2] --complete 2>/dev/null
+end
+function __trim3r_options
+    __trim3r_rows | string match -v '\**' | string replace -r '\t[^\t]*\t' '\t'
+end
+# The kind of the word that is being typed: of the option before it, else of the other arguments.
+function __trim3r_kind
+    set -l words (commandline -opc)
+    set -l kind (__trim3r_rows | string replace -rf -- "^$words[-1]\t([^\t]+)\t.*" '$1')
+    test -n "$kind"; or set kind (__trim3r_rows | string replace -rf -- '^\*\t([^\t]+)\t.*' '$1')
+    echo $kind
 end
 function __trim3r_values
-    set -l words (commandline -opc)
-    $words[1] $words[2] --complete 2>/dev/null | string replace -rf -- "^$words[-1]\t([a-z0-9]+\|[a-z0-9|]+)\t.*" '$1' | string split '|'
+    set -l kind (__trim3r_kind)
+    if string match -q 'file:*' -- $kind
+        for ending in (string split '|' -- (string replace 'file:' '' -- $kind))
+            __fish_complete_suffix $ending | string match -- "*$ending"
+        end
+        __fish_complete_directories (commandline -ct)
+    else if test "$kind" = file
+        __fish_complete_path (commandline -ct)
+    else if test "$kind" != value
+        string split '|' -- $kind
+    end
 end
-complete -c trim3r -n 'test (count (commandline -opc)) -eq 1' -f -a '(trim3r --commands)'
-complete -c trim3r -n 'test (count (commandline -opc)) -gt 1; and string match -q -- "-*" (commandline -ct)' -f -a '(__trim3r_options)'
-complete -c trim3r -n 'test (count (commandline -opc)) -gt 2; and __trim3r_values | string length -q' -f -a '(__trim3r_values)'
+complete -c trim3r -f
+complete -c trim3r -n 'test (count (commandline -opc)) -eq 1' -a '(trim3r --commands)'
+complete -c trim3r -n 'test (count (commandline -opc)) -eq 2; and __fish_seen_subcommand_from help' -a '(trim3r --commands)'
+complete -c trim3r -n 'test (count (commandline -opc)) -gt 1; and string match -q -- "-*" (commandline -ct)' -a '(__trim3r_options)'
+complete -c trim3r -n 'test (count (commandline -opc)) -gt 1; and not string match -q -- "-*" (commandline -ct)' -a '(__trim3r_values)'

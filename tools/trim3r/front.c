@@ -73,8 +73,8 @@ static void list_commands(const trim3r_extension *added)
     }
 }
 
-static const char about[] =
-    "Turn a few camera frames into a budgeted set of 3-D Gaussians, and draw views of it, in integers.\n";
+static const char about[] = "Turn a few camera frames into a budgeted set of 3-D Gaussians, and draw views of\n"
+                            "it, in integers.\n";
 static const char data_flow[] = "  import|capture|room > REC.mcap > build > SCENE.ply > render > view.png\n"
                                 "                        REC.mcap > eval > scores.csv\n"
                                 "                        REC.mcap > replay > hashes\n\n"
@@ -94,8 +94,9 @@ static void print_help(FILE *out)
     }
     fprintf(out,
             "\n%sData flow:%s\n%s\n"
-            "trim3r COMMAND --help lists a command's options. Exit status: 0 done, 1 bad input, 2 bad usage,\n"
-            "3 budget or arena too small. Commands with results know --json: one object on stdout.\n",
+            "trim3r help COMMAND lists a command's options, as trim3r COMMAND --help does.\n"
+            "Exit status: 0 done, 1 bad input, 2 bad usage, 3 budget or arena too small.\n"
+            "Commands with results know --json: one object on stdout.\n",
             heading, end, data_flow);
 }
 
@@ -144,6 +145,10 @@ static int run(int argc, char **argv)
     if (argc < 2) {
         print_help(stderr);
         return CLI_BAD_USAGE;
+    }
+    if (argc == 3 && strcmp(argv[1], "help") == 0) {
+        char option[] = "--help";
+        return run(3, (char *[]){argv[0], argv[2], option, NULL});
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
         print_help(stdout);

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include "cli/cli.h"
+#include "cli/options/standard_output.h"
 
 #define ERROR_BYTES 512
 
@@ -20,7 +21,7 @@ int csv_file_open(csv_file *file, const char *path, bool more, bool *is_new)
     *file = (csv_file){.path = path};
     const bool stands = has_rows(path);
     *is_new = !more || !stands;
-    if (stands && !more) {
+    if ((stands && !more) || standard_output_is(path)) {
         char error[ERROR_BYTES] = "";
         if (whole_file_begin(&file->beside, path, error, sizeof error) != 0) {
             return cli_error(CLI_BAD_INPUT, "%s", error);

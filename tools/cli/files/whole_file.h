@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Files of commands that appear under their names only when they are complete (host/whole_file.h). Files that
- * file_guard.h protects are not replaced, and a signal that ends the process leaves no part. */
+ * file_guard.h protects are not replaced, and a signal that ends the process leaves no part. Standard output
+ * (standard_output.h) is written as it comes. */
 #ifndef TRIM3R_TOOLS_WHOLE_FILE_H
 #define TRIM3R_TOOLS_WHOLE_FILE_H
 

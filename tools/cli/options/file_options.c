@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/options/file_options.h"
 
+#include <errno.h>
 #include <getopt.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -9,7 +10,9 @@
 
 #include "cli/cli.h"
 #include "cli/options/file_guard.h"
+#include "cli/options/option_completion.h"
 #include "cli/options/option_list.h"
+#include "cli/options/standard_output.h"
 #include "cli/tables/json_output.h"
 #include "cli/text/edit_distance.h"
 #include "cli/text/style.h"
@@ -195,6 +198,32 @@ static bool read_line(const option_list *list, int argc, char **argv, file_list 
     return got == -1;
 }
 
+/* Takes the output that is standard output off the list: it is no file that the guard knows. */
+static void take_standard_output(file_list *files)
+{
+    named_file taken = {0};
+    uint32_t rest = 0;
+    for (uint32_t i = 0; i < files->count; i++) {
+        const named_file *file = &files->items[i];
+        if ((file->flags & OPTION_WRITES_BIT) == 0 || (file->flags & OPTION_OR_WORD) != 0 ||
+            strcmp(file->path, STANDARD_OUTPUT_WORD) != 0) {
+            files->items[rest++] = *file;
+            continue;
+        }
+        if ((file->flags & OPTION_PIPE) == 0) {
+            exit(cli_error(CLI_BAD_USAGE, "%s -: this output needs a file; ./- is one of that name", file->option));
+        }
+        if (taken.path != NULL) {
+            exit(cli_error(CLI_BAD_USAGE, "%s - and %s - are both standard output", taken.option, file->option));
+        }
+        taken = *file;
+    }
+    files->count = rest;
+    if (taken.path != NULL && standard_output_keep() != 0) {
+        exit(cli_error(CLI_BAD_INPUT, "standard output: %s", strerror(errno)));
+    }
+}
+
 /* ---- options common to all commands ------------------------------------------------------------------------------ */
 
 /* Prints the rows that name files, for the tests. */
@@ -217,6 +246,7 @@ static void print_listing(const option_list *list)
         cJSON_AddBoolToObject(row, "folder", (o->flags & OPTION_FOLDER) != 0);
         cJSON_AddBoolToObject(row, "list", (o->flags & OPTION_LIST) != 0);
         cJSON_AddBoolToObject(row, "word", (o->flags & OPTION_OR_WORD) != 0);
+        cJSON_AddBoolToObject(row, "pipe", (o->flags & OPTION_PIPE) != 0);
         cJSON_AddBoolToObject(row, "device", (o->flags & OPTION_OR_DEVICE) != 0);
         cJSON *kinds = cJSON_AddArrayToObject(row, "kinds");
         for (int k = 0; k < FILE_KINDS; k++) {
@@ -229,29 +259,14 @@ static void print_listing(const option_list *list)
     json_print(rows);
 }
 
-/* Whether help lists the values themselves: "on|off". */
-static bool lists_values(const char *argument)
+/* Returns the names of a command's arguments, which argp keeps one level down; NULL = it has none. */
+static const char *arguments_text(const struct argp *argp)
 {
-    return strchr(argument, '|') != NULL && argument[strspn(argument, "abcdefghijklmnopqrstuvwxyz0123456789|")] == '\0';
-}
-
-/* Prints for completion: each option, the kind of its value ("file", "value", "one|other" or nothing), and its help,
- * separated by tabs. */
-static void print_completion(const option_list *list)
-{
-    for (uint32_t i = 0; i < list->count; i++) {
-        const struct argp_option *o = list->rows[i];
-        if (!option_is_shown(o)) {
-            continue;
-        }
-        const bool file = (o->flags & (OPTION_READS | OPTION_WRITES_BIT)) != 0;
-        const char *kind = o->arg == NULL ? "" : file ? "file" : lists_values(o->arg) ? o->arg : "value";
-        printf("--%s\t%s\t%s\n", o->name, kind, o->doc != NULL ? o->doc : "");
-        if (option_has_short(o)) {
-            printf("-%c\t%s\t%s\n", o->key, kind, o->doc != NULL ? o->doc : "");
-        }
+    const char *text = argp->args_doc;
+    for (const struct argp_child *c = argp->children; c != NULL && c->argp != NULL && text == NULL; c++) {
+        text = arguments_text(c->argp);
     }
-    puts("--help\t\tgive this help list");
+    return text;
 }
 
 static error_t parse_listing(int key, char *argument, struct argp_state *state)
@@ -269,7 +284,7 @@ static error_t parse_listing(int key, char *argument, struct argp_state *state)
     }
     option_list list = option_list_of(state->root_argp);
     if (key == KEY_COMPLETE) {
-        print_completion(&list);
+        option_completion_print(&list, arguments_text(state->root_argp));
     } else {
         print_listing(&list);
     }
@@ -283,7 +298,7 @@ static error_t parse_force(int key, char *argument, struct argp_state *state)
 }
 
 static const struct argp_option listing_options[] = {
-    {"color", KEY_COLOR, "WHEN", 0,
+    {"color", KEY_COLOR, "auto|always|never", 0,
      "use of colours in messages and headings: auto (default), only on terminals; always; never", -1},
     {"file-options", KEY_LISTING, NULL, OPTION_HIDDEN, "the options that name files, as JSON", -1},
     {"complete", KEY_COMPLETE, NULL, OPTION_HIDDEN, "all options, for completion", -1},
@@ -330,6 +345,7 @@ void file_options_parse(const struct argp *argp, int argc, char **argv, void *in
     option_list list = option_list_of(&whole);
     file_list files = {0};
     if (read_line(&list, argc, argv, &files)) {
+        take_standard_output(&files);
         int code = file_guard_begin(files.items, files.count, files.force); /* keeps the items */
         if (code != CLI_OK) {
             exit(code);

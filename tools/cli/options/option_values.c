@@ -26,7 +26,7 @@ error_t option_field(int key, char *argument, struct argp_state *state)
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high)
 {
     uint32_t value = low, count;
-    if (cli_parse_list_u32(text, &value, 1, &count) != 0 || value < low || value > high) {
+    if (cli_parse_list_counts(text, &value, 1, &count) != 0 || value < low || value > high) {
         argp_error(state, "--%s takes a whole number %" PRIu32 "..%" PRIu32 ", not '%s'", option, low, high, text);
     }
     return value;
@@ -130,7 +130,7 @@ void option_keep(struct argp_state *state, const char *text, double *percents, u
 void option_counts(struct argp_state *state, const char *option, const char *text, uint32_t high, uint32_t *counts,
                    uint32_t most, uint32_t *count)
 {
-    bool good = cli_parse_list_u32(text, counts, most, count) == 0;
+    bool good = cli_parse_list_counts(text, counts, most, count) == 0;
     for (uint32_t i = 0; good && i < *count; i++) {
         good = counts[i] >= 1 && counts[i] <= high;
     }

@@ -18,7 +18,7 @@ enum { TO_SWITCH = 0x100000, TO_TEXT = 0x200000 };
 /* Fills the field of such a key. Returns ARGP_ERR_UNKNOWN for any other key. */
 error_t option_field(int key, char *argument, struct argp_state *state);
 
-/* Returns a whole number in [low, high]. */
+/* Returns a whole number in [low, high], given as "13107", "10k" or "1.5M". */
 uint32_t option_number(struct argp_state *state, const char *option, const char *text, uint32_t low, uint32_t high);
 /* Returns a decimal number in [low, high], with or without an exponent. */
 double option_decimal(struct argp_state *state, const char *option, const char *text, double low, double high);
@@ -39,7 +39,7 @@ void option_percents(struct argp_state *state, const char *option, const char *t
 /* Parses the percentages of --keep likewise; a value below 1, which may be meant as a share, gives a remark on
  * stderr. */
 void option_keep(struct argp_state *state, const char *text, double *percents, uint32_t most, uint32_t *count);
-/* Parses 1 to `most` counts in [1, high], separated by commas. */
+/* Parses 1 to `most` such numbers in [1, high], separated by commas. */
 void option_counts(struct argp_state *state, const char *option, const char *text, uint32_t high, uint32_t *counts,
                    uint32_t most, uint32_t *count);
 /* Parses 1 to T3R_MAX_VIEWS frame indices, separated by commas. */

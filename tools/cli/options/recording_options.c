@@ -9,8 +9,7 @@ enum { KEY_COMPRESSION = 0x190 };
 
 static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "How messages are stored in the recording:", RECORDING_GROUP},
-    {"compression", KEY_COMPRESSION, "NAME", 0, "compression of the frames: none (default), zstd or lz4",
-     RECORDING_GROUP},
+    {"compression", KEY_COMPRESSION, "none|zstd|lz4", 0, "compression of the frames (none)", RECORDING_GROUP},
     {"unchunked", OPTION_TO(recording_options, unchunked), NULL, 0,
      "write messages without chunks and without their index, as a microcontroller does", RECORDING_GROUP},
     {0},

@@ -125,7 +125,8 @@ const struct argp reconstruction_settings_argp = {
 static const struct argp_option budget[] = {
     {NULL, 0, NULL, 0, "Views and budget:", 10},
     {"context", KEY_CONTEXT, "A,B,...", 0, "frames that the scene is made of, 1..16 (the first two)", 0},
-    {"gaussians", KEY_GAUSSIANS, "Z", 0, "number of Gaussians: exactly Z, or all valid points if there are fewer", 0},
+    {"gaussians", KEY_GAUSSIANS, "Z", 0,
+     "number of Gaussians, such as 13107 or 10k: exactly Z, or all valid points if there are fewer", 0},
     {"keep", KEY_KEEP, "P%", 0, "percent of the valid points to retain, rounded half up to a number", 0},
     {0},
 };

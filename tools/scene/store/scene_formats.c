@@ -31,7 +31,7 @@ enum { FORMATS_COUNT = sizeof formats / sizeof formats[0] };
 
 const scene_format *scene_format_of_path(const char *path)
 {
-    const scene_format *found = NULL;
+    const scene_format *found = strcmp(path, "-") == 0 ? &scene_format_ply : NULL; /* standard output */
     const size_t length = strlen(path);
     size_t longest = 0;
     for (int i = 0; i < FORMATS_COUNT; i++) {

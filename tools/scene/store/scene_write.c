@@ -111,7 +111,7 @@ static int write_all(const char *path, const scene_rows *rows, const scene_exten
     char reason[256] = "";
     if (format->write(file.stream, &source, reason, sizeof reason) != 0) {
         t3r_whole_file_abandon(&file);
-        return t3r_reason(error, error_bytes, "%s: %s", path, reason);
+        return t3r_reason(error, error_bytes, "%s: %s", file.path, reason);
     }
     if (moves) {
         remark_origin(caller, path, format, &source);

@@ -32,7 +32,8 @@ enum { KEY_LOCAL = 0x1000, KEY_COMMENTS, KEY_UP };
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS | OPTION_FOLDER),
-    {"output", 'o', "SCENE.ply", OPTION_WRITES(FILE_SCENE), "scene to write (needed, or --colmap)", 0},
+    {"output", 'o', "SCENE.ply", OPTION_WRITES(FILE_SCENE) | OPTION_PIPE,
+     "scene to write (needed, or --colmap); -: .ply to standard output", 0},
     {"colmap", OPTION_TO(build_options, colmap), "DIR", OPTION_WRITES(FILE_OTHER) | OPTION_FOLDER,
      "folder, new or empty, for the start of another optimiser: the context views, and the means and colours of the "
      "Gaussians, as a COLMAP model in text",
@@ -71,7 +72,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->flags |= T3R_SCENE_LOCAL;
         return 0;
     case KEY_UP:
-        o->flags |= scene_up_option(state, arg);
+        o->flags |= SCENE_FILE_UP * (int)scene_up_option(state, arg);
         return 0;
     case KEY_COMMENTS:
         o->flags |= T3R_SCENE_COMMENTS;

@@ -45,7 +45,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp_option options[] = {
-    {"output", 'o', "FILE", OPTION_WRITES(FILE_OTHER), "script to write (standard output)", 0},
+    {"output", 'o', "FILE", OPTION_WRITES(FILE_OTHER) | OPTION_PIPE, "script to write (standard output)", 0},
     {0},
 };
 static const struct argp argp = {

@@ -34,7 +34,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
         o->output = argument;
         return 0;
     case KEY_UP:
-        o->flags |= scene_up_option(state, argument);
+        o->flags |= SCENE_FILE_UP * (int)scene_up_option(state, argument);
         return 0;
     case ARGP_KEY_ARG:
         option_argument(state, argument, (const char **[]){&o->scene}, 1);
@@ -52,9 +52,10 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
 
 static const struct argp_option argp_options[] = {
     OPTION_ARGUMENTS("SCENE", OPTION_READS | OPTION_FOLDER),
-    {"output", 'o', "SCENE", OPTION_WRITES(FILE_SCENE), "scene to write (needed); its ending names the format", 0},
-    {"up", KEY_UP, "AXIS", 0,
-     "axis of the scene that points up, x, -x, y, -y, z or -z: the file is turned so that y does, for viewers that "
+    {"output", 'o', "SCENE", OPTION_WRITES(FILE_SCENE) | OPTION_PIPE,
+     "scene to write (needed); its ending names the format; -: .ply to standard output", 0},
+    {"up", KEY_UP, "x|-x|y|-y|z|-z", 0,
+     "axis of the scene that points up: the file is turned so that y does, for viewers that "
      "want "
      "it (not turned; .spz and .glb as for -y)",
      0},
@@ -66,7 +67,7 @@ static const struct argp_child children[] = {{.argp = &scene_input_argp}, {0}};
 static const struct argp argp = {
     .options = argp_options,
     .parser = parse_option,
-    .args_doc = "SCENE",
+    .args_doc = "SCENE.ply",
     .doc = "Turn a scene file into another format.\v"
            "The scene's first bytes determine the format to read, the "
            "ending of -o the one to write. Harmonics are kept up to the degree that the format holds.\n"
