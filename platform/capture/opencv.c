@@ -76,6 +76,10 @@ static int open_films(opencv_capture *self, char *error, size_t error_bytes)
     self->rate = isfinite(rate) && rate >= 0.001 && rate <= 10000 ? rate : DEFAULT_RATE;
     t3r_capture_remark(&self->capture, "%s: OpenCV %s, back end %s", self->name, self->shim->version,
                        self->shim->backend(self->film));
+    if (pictures) {
+        t3r_capture_remark(&self->capture, "%s: pictures as they are stored; trim3r import turns them as EXIF states",
+                           self->name);
+    }
     self->capture.clock = self->shim->live(self->film) ? "unknown" : pictures ? "synthetic" : "stream";
     return 0;
 }

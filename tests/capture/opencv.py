@@ -90,6 +90,7 @@ with tempfile.TemporaryDirectory() as folder:
     told = capture("opencv:c%03d.png", "pictures.mcap", "--depth-source", "d%03d.png", "--intrinsics", lens, "--poses",
                    "euroc.csv")
     check(told["frames"] == told["paired"] == 5 and told["format"] == "bgr24", f"{told}")
+    check("as they are stored" in told["note"], f"{told['note']}")
     for (encoding, got), want in zip(images("pictures.mcap", "/camera/image", numpy.uint8, 3), colour):
         check(encoding == "bgr8" and (got[..., ::-1] == want).all(), "colour, sample by sample")
     for (encoding, got), want in zip(images("pictures.mcap", "/camera/depth", "<u2", 1), depth):
