@@ -120,7 +120,7 @@ static void refuse_all_cuts(scratch *s, const char *name)
     free(bytes);
 }
 
-static void write_jpeg_as(const char *path, uint32_t width, uint32_t height, bool progressive)
+static void write_jpeg_as(const char *path, uint32_t width, uint32_t height, bool progressive, int inks)
 {
     struct jpeg_compress_struct jpeg;
     struct jpeg_error_mgr manager;
@@ -131,15 +131,15 @@ static void write_jpeg_as(const char *path, uint32_t width, uint32_t height, boo
     jpeg_stdio_dest(&jpeg, file);
     jpeg.image_width = width;
     jpeg.image_height = height;
-    jpeg.input_components = 3;
-    jpeg.in_color_space = JCS_RGB;
+    jpeg.input_components = inks;
+    jpeg.in_color_space = inks == 4 ? JCS_CMYK : JCS_RGB;
     jpeg_set_defaults(&jpeg);
     jpeg_set_quality(&jpeg, 95, TRUE);
     if (progressive) {
         jpeg_simple_progression(&jpeg);
     }
     jpeg_start_compress(&jpeg, TRUE);
-    uint8_t *row = malloc((size_t)width * 3);
+    uint8_t *row = calloc(width, (size_t)inks);
     for (uint32_t y = 0; y < height; y++) {
         for (uint32_t x = 0; x < width; x++) {
             row[3 * x] = (uint8_t)(x * 3);
@@ -156,7 +156,7 @@ static void write_jpeg_as(const char *path, uint32_t width, uint32_t height, boo
 
 static void write_jpeg(const char *path, uint32_t width, uint32_t height)
 {
-    write_jpeg_as(path, width, height, false);
+    write_jpeg_as(path, width, height, false, 3);
 }
 
 /* Checks that a JPEG without its end marker is read as with it, and that nothing more may be lacking: no byte of a
@@ -168,7 +168,7 @@ TEST(test_the_end_marker_may_be_missing)
         uint8_t *bytes;
         char error[256] = "";
         picture whole, in;
-        write_jpeg_as(scratch_path(s, "a.jpg"), 80, 60, progressive != 0);
+        write_jpeg_as(scratch_path(s, "a.jpg"), 80, 60, progressive != 0, 3);
         assert_int_equal(picture_read(s->path, &whole, error, sizeof error), 0);
         const size_t count = file_bytes(s->path, &bytes);
         for (size_t lacking = 1; lacking < count - 1; lacking += lacking < 40 ? 1 : 29) {
@@ -281,6 +281,17 @@ TEST(test_writing_fails_cleanly)
     /* a device is written to and not replaced */
     assert_int_equal(picture_write_png("/dev/null", &p, error, sizeof error), 0);
     assert_int_equal(access("/dev/null", W_OK), 0);
+}
+
+TEST(refuses_four_inks)
+{
+    picture in;
+    char error[256] = "";
+    write_jpeg_as(scratch_path(*state, "a.jpg"), 16, 8, false, 4);
+    assert_int_equal(picture_read(((scratch *)*state)->path, &in, error, sizeof error), -1);
+    assert_non_null(strstr(error, "CMYK"));
+    assert_non_null(strstr(error, "convert IN.jpg"));
+    assert_null(in.samples);
 }
 
 ALL_TESTS_WITH(scratch_setup, scratch_teardown)

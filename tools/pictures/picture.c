@@ -303,6 +303,10 @@ static int jpeg_decode(jpeg_work *work, FILE *file, picture *out)
         out->height = work->jpeg.image_height;
         return 0;
     }
+    if (work->jpeg.num_components == 4) {
+        jpeg_fail(work, "four inks (CMYK) are not read; convert IN.jpg -colorspace sRGB OUT.jpg makes three colours of "
+                        "them");
+    }
     bool grey = work->jpeg.jpeg_color_space == JCS_GRAYSCALE;
     work->jpeg.out_color_space = grey ? JCS_GRAYSCALE : JCS_RGB;
     work->jpeg.dct_method = JDCT_ISLOW;
