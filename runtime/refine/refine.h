@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "core/map_record.h"
-#include "raster/raster_list.h"
+#include "kernels/solve.h"
 #include "state/views.h"
 
 /* Applies a correction to a Gaussian. */
@@ -19,9 +19,6 @@ t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, uint32_t passes);
 /* Refines a map. A Gaussian changes only if a retained keyframe sees it as finely as its own keyframe did. records:
  * one per Gaussian; NULL: all change. */
 t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t passes, const t3r_map_record *records);
-
-/* Returns the memory in which refinement draws a view of the working size; unused before refinement runs. */
-t3r_raster_room t3r_refine_room(const t3r_runtime *rt);
 
 /* Computes the distance of the scene in the arena from the context views: mean squared residual per channel, levels^2
  * Q8, at most 2^24, over the pixels that refinement counts. Works where t3r_refine() does: needs refine above 0. */

@@ -48,8 +48,3 @@ t3r_refine_layout t3r_refine_layout_of(const t3r_runtime *rt)
     }
     return w;
 }
-
-t3r_raster_room t3r_refine_room(const t3r_runtime *rt)
-{
-    return t3r_refine_layout_of(rt).room;
-}
