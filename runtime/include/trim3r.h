@@ -7,13 +7,27 @@
  *
  *     t3r_plan()      how many bytes             t3r_attach()   an arena that was copied, as it was left
  *         |
- *     t3r_init() --> empty -- t3r_add_view() --> views -- t3r_reconstruct() --> scene -- t3r_render() --> a picture
- *                      ^                         |   ^                          | ^ |
- *                      |                         +---+ t3r_add_view()           | +-+ t3r_rebuild(), t3r_render()
- *                      +---------------------- t3r_reset() ---------------------+
+ *     t3r_init() --> empty -- t3r_add_view() --> views -- t3r_reconstruct() --> scene -- t3r_render() --> scene alone
+ *                      ^                         |   ^                          | ^ |                     |   | ^
+ *                      |                         +---+ t3r_add_view()           | +-+ t3r_reconstruct()   |   +-+
+ *                      +--------------------------- t3r_reset() ----------------+-------------------------+
+ * t3r_render()
  *
  *     a stream:      empty -- t3r_stream_keyframe() --> scene, and once more for each further keyframe
- *     from a file:   empty -- t3r_scene_begin() --> scene, and t3r_scene_append() for each Gaussian
+ *     from a file:   any -- t3r_scene_begin() --> scene alone, and t3r_scene_append() for each Gaussian
+ *
+ * A scene has its views until t3r_render() draws in their memory. With keep_analysis, t3r_render() keeps the views, and
+ * t3r_rebuild() makes further scenes of them. With `warm` it keeps them, too, and t3r_add_view() may follow a scene. A
+ * call that does not fit the state returns T3R_ERR_STATE and changes nothing. docs/firmware.md has a table of what each
+ * call does in each state.
+ *
+ * Threads: calls on one runtime take turns, in any threads. Those that take a const t3r_runtime may overlap each other.
+ * Different runtimes, and calls without a runtime, are independent. No call is allowed on a runtime from its own hooks,
+ * or from an interrupt during another call on it.
+ *
+ * Memory: the arena may be copied, moved and saved between calls, and a copy is bound by t3r_attach(). The pointers to
+ * the runtime and to the scene's Gaussians are into the arena. The weights of a head stay where they are while bound.
+ * Everything else that a call takes is read during that call only; of hooks a copy is kept.
  *
  * The shortest program follows. Calls return a t3r_status, which a real program checks:
  *
