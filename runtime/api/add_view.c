@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Context views: converts frames to planes, and reports stereo's results. */
-#include "adding.h"
-#include "core/features.h"
+#include "adding_checks.h"
 #include "core/memory.h"
-#include "image/develop.h"
 #include "image/image.h"
 #include "layout/arena.h"
 #include "state/state.h"
@@ -71,45 +69,26 @@ t3r_status t3r_end_view(t3r_runtime *rt, uint32_t slot, const t3r_camera *undist
 
 t3r_status t3r_add_view(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera)
 {
-    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
-    T3R_REFUSE_UNLESS(t3r_takes_view(rt), T3R_ERR_STATE);
-    const bool stereo = t3r_is_by_stereo(&rt->config);
-    const uint32_t slot = t3r_slot_of_next(rt);
-    t3r_frame shown = *frame;
-    if (stereo) {
-        shown.depth = NULL;
-    } else if (frame->depth == NULL) {
-        return T3R_ERR_NO_DEPTH;
-    }
+    t3r_frame shown;
     t3r_camera taken;
-    t3r_status status = t3r_frame_check(rt, &shown, camera, &taken); /* before anything is discarded */
-    if (status != T3R_OK) {
-        return status;
-    }
+    T3R_PASS(t3r_add_view_checks(rt, frame, camera, &shown, &taken, NULL)); /* before anything is discarded */
+    const uint32_t slot = t3r_slot_of_next(rt);
     const bool replaces = slot < rt->views;
-    if (replaces && !stereo && is_blind(frame)) {
+    if (replaces && !t3r_is_by_stereo(&rt->config) && is_blind(frame)) {
         return T3R_ERR_NO_DEPTH; /* before the oldest view is overwritten */
     }
     t3r_begin_view(rt);
-    status = t3r_develop_view(rt, slot, &shown, &taken);
+    const t3r_status status = t3r_develop_view(rt, slot, &shown, &taken);
     return status == T3R_OK ? t3r_end_view(rt, slot, &taken, frame->depth_unit_q40) : status;
 }
 
 t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint8_t *rgb_out,
                        uint16_t *depth_out, t3r_camera *undistorted)
 {
-    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL && rgb_out != NULL && undistorted != NULL,
-                      T3R_ERR_ARGUMENT);
-    T3R_REFUSE_UNLESS(rt->config.views > 0 && rt->views == 0 && !rt->has_scene, T3R_ERR_STATE);
     t3r_camera taken;
-    t3r_status status = t3r_frame_check(rt, frame, camera, &taken);
-    if (status == T3R_OK) {
-        rt->strips = (t3r_strips){0};
-        status = t3r_develop_view(rt, 0, frame, &taken);
-    }
-    if (status != T3R_OK) {
-        return status;
-    }
+    T3R_PASS(t3r_develop_call_checks(rt, frame, camera, rgb_out, undistorted, &taken, NULL));
+    rt->strips = (t3r_strips){0};
+    T3R_PASS(t3r_develop_view(rt, 0, frame, &taken));
     *undistorted = taken;
     const t3r_view view = t3r_view_of(rt, 0);
     size_t pixels = T3R_PIXELS_(rt->config.width, rt->config.height);

@@ -1,25 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Binds the weights of a learned head. */
-#include "head/head.h"
-#include "head/weights.h"
-#include "layout/arena.h"
-#include "state/state.h"
+#include "api/bind_head_checks.h"
 
 t3r_status t3r_bind_head(t3r_runtime *rt, const void *weights, size_t bytes)
 {
-    T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
+    T3R_PASS(t3r_bind_head_checks(rt, weights, bytes, NULL));
     if (weights == NULL) {
         rt->weights = NULL;
         return T3R_OK;
-    }
-    T3R_REFUSE_UNLESS(rt->config.views > 0, T3R_ERR_STATE);
-    t3r_status status = t3r_weights_check(weights, bytes);
-    if (status != T3R_OK) {
-        return status;
-    }
-    const t3r_config *c = &rt->config;
-    if (t3r_head_learned_work_bytes(weights, c->width) > T3R_HEAD_WORK_(c->width, c->head_column_bytes)) {
-        return T3R_ERR_WEIGHTS;
     }
     rt->weights = weights;
     rt->head_crc = t3r_weights_header_of(weights).crc;

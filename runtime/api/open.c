@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Lays out the arena, or attaches to a copied one. */
+#include "api/open_checks.h"
 #include "api/restored.h"
-#include "core/config.h"
 #include "core/hash.h"
 #include "core/memory.h"
 #include "image/image.h"
-#include "layout/arena.h"
 #include "state/state.h"
 
 /* Returns a hash of the layout: an arena laid out by another build is refused. */
@@ -33,15 +32,8 @@ t3r_status t3r_init_as(uint64_t digest, t3r_runtime **rt, void *arena, size_t ar
     T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     *rt = NULL;
     T3R_REFUSE_UNLESS(digest == t3r_header_interface(), T3R_ERR_INTERFACE);
-    T3R_REFUSE_UNLESS(arena != NULL && config != NULL, T3R_ERR_ARGUMENT);
-    const t3r_status status = t3r_config_check(config);
-    if (status != T3R_OK) {
-        return status;
-    }
     t3r_layout layout;
-    if ((uintptr_t)arena % T3R_ARENA_ALIGN != 0 || t3r_lay_out(config, arena_bytes, &layout) != T3R_OK) {
-        return T3R_ERR_ARENA;
-    }
+    T3R_PASS(t3r_init_checks(arena, arena_bytes, config, &layout, NULL));
     t3r_runtime *state = arena;
     memset(state, 0, sizeof *state);
     state->magic = T3R_MAGIC;
@@ -83,7 +75,7 @@ t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks)
 
 t3r_status t3r_set_cpu(t3r_runtime *rt, uint32_t features)
 {
-    T3R_REFUSE_UNLESS(rt != NULL && (features & ~t3r_kernels_features()) == 0, T3R_ERR_ARGUMENT);
+    T3R_PASS(t3r_set_cpu_checks(rt, features, NULL));
     t3r_kernels_choose(&rt->kernels, features);
     return T3R_OK;
 }
@@ -107,15 +99,10 @@ t3r_status t3r_attach_as(uint64_t digest, t3r_runtime **rt, void *arena, size_t 
     T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);
     *rt = NULL;
     T3R_REFUSE_UNLESS(digest == t3r_header_interface(), T3R_ERR_INTERFACE);
-    T3R_REFUSE_UNLESS(arena != NULL, T3R_ERR_ARGUMENT);
-    if ((uintptr_t)arena % T3R_ARENA_ALIGN != 0 || arena_bytes < T3R_HEADER_BYTES) {
-        return T3R_ERR_ARENA;
-    }
-    t3r_runtime *state = arena;
     t3r_layout layout;
-    if (state->magic != T3R_MAGIC || state->bits_epoch != T3R_BITS_EPOCH || state->arena_bytes != arena_bytes ||
-        t3r_config_check(&state->config) != T3R_OK || t3r_lay_out(&state->config, arena_bytes, &layout) != T3R_OK ||
-        state->layout_hash != layout_hash(&layout)) {
+    T3R_PASS(t3r_attach_checks(arena, arena_bytes, &layout, NULL));
+    t3r_runtime *state = arena;
+    if (state->layout_hash != layout_hash(&layout)) {
         return T3R_ERR_EPOCH;
     }
     bind_layout(state, &layout);

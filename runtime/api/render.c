@@ -1,28 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Renders a view of the scene in the arena. */
-#include "core/features.h"
+#include "api/scene_checks.h"
 #include "core/fixed.h"
 #include "kernels/hash_writer.h"
 #include "raster/raster_list.h"
 #include "state/state.h"
-
-/* Whether `row_bytes` of all rows can be written there, aligned for their type. NULL: not requested. */
-static bool is_plane(const void *plane, size_t element_bytes, uint32_t row_bytes, uint32_t stride_bytes)
-{
-    return plane == NULL ||
-           ((uintptr_t)plane % element_bytes == 0 && stride_bytes % element_bytes == 0 && stride_bytes >= row_bytes);
-}
-
-static t3r_status check_target(const t3r_runtime *rt, const t3r_target *t)
-{
-    if (t->width < 1 || t->height < 1 || t->width > rt->config.render_width || t->height > rt->config.render_height) {
-        return T3R_ERR_ARGUMENT;
-    }
-    const bool fits = is_plane(t->rgb, sizeof *t->rgb, 3 * t->width, t->rgb_stride_bytes) &&
-                      is_plane(t->depth_q20, sizeof *t->depth_q20, 4 * t->width, t->depth_stride_bytes) &&
-                      is_plane(t->alpha_q15, sizeof *t->alpha_q15, 2 * t->width, t->alpha_stride_bytes);
-    return fits ? T3R_OK : T3R_ERR_ARGUMENT;
-}
 
 static uint64_t hash_target(const t3r_runtime *rt, const t3r_target *target)
 {
@@ -48,16 +30,8 @@ static uint64_t hash_target(const t3r_runtime *rt, const t3r_target *target)
 
 t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target)
 {
-    T3R_REFUSE_UNLESS(rt != NULL && camera != NULL && target != NULL, T3R_ERR_ARGUMENT);
-    T3R_REFUSE_UNLESS(rt->has_scene, T3R_ERR_STATE);
-    t3r_status status = check_target(rt, target);
     t3r_projection projection;
-    if (status == T3R_OK) {
-        status = t3r_projection_make(camera, &rt->frame, target->width, target->height, &projection);
-    }
-    if (status != T3R_OK) {
-        return status;
-    }
+    T3R_PASS(t3r_render_checks(rt, camera, target, &projection, NULL));
     if (!rt->config.keep_analysis && !t3r_is_stream(&rt->config)) {
         rt->analysed = 0; /* the raster's buffers lie where labels and clusters were */
         if (!t3r_is_warm(&rt->config)) {
@@ -77,10 +51,7 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
     };
     t3r_binning bin = t3r_raster_list(rt, &projection, &t3r_all_pixels, &room);
     uint32_t passes;
-    status = t3r_raster_tiles(rt, &bin, target, &passes);
-    if (status != T3R_OK) {
-        return status;
-    }
+    T3R_PASS(t3r_raster_tiles(rt, &bin, target, &passes));
     rt->render_passes = passes;
     if (rt->hooks.stage_hash != NULL) {
         rt->hooks.stage_hash(rt->hooks.user, T3R_STAGE_RASTER, hash_target(rt, target));

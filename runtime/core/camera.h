@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "fault.h"
 #include "trim3r.h"
 
 /* Bound of |position_q32|, so that the difference of two positions fits 63 bits. */
@@ -15,6 +16,9 @@
 /* Checks a camera for a picture of width x height. Returns T3R_ERR_ARGUMENT for NULL, T3R_ERR_CAMERA when the camera is
  * for another size, or a field is outside the range of trim3r.h and the bounds above. */
 t3r_status t3r_camera_check(const t3r_camera *camera, uint32_t width, uint32_t height);
+
+/* Does the same for a camera that is not NULL, and writes the sentence of the check that fails. */
+t3r_status t3r_camera_fault(const t3r_camera *camera, uint32_t width, uint32_t height, t3r_fault *fault);
 
 /* Computes the row-major rotation matrix of a checked quaternion w x y z, which is normalised: each entry is the exact
  * quotient, rounded once (error at most 2^-31). */

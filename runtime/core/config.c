@@ -197,14 +197,60 @@ static size_t first_fault(const t3r_config *c)
     return t3r_most_arena_bytes(c) > SIZE_MAX / 2 ? FIRST_FEATURE - 1 : first_need(c);
 }
 
+static t3r_status status_of(size_t fault)
+{
+    return fault == FAULTS ? T3R_OK : fault < FIRST_FEATURE ? T3R_ERR_CONFIG : T3R_ERR_UNSUPPORTED;
+}
+
 t3r_status t3r_config_check(const t3r_config *config)
 {
-    const size_t fault = first_fault(config);
-    return fault == FAULTS ? T3R_OK : fault < FIRST_FEATURE ? T3R_ERR_CONFIG : T3R_ERR_UNSUPPORTED;
+    return status_of(first_fault(config));
+}
+
+/* Whether t3r_default_config() left it so, or nobody filled it. */
+static bool is_blank(const t3r_config *c)
+{
+    return c != NULL && (c->width | c->height | c->max_gaussians | c->gaussians) == 0;
+}
+
+/* Returns the sentence of a fault. */
+static const char *text_of(const t3r_config *c, size_t fault)
+{
+    return is_blank(c)
+               ? "all settings are 0: t3r_default_config() was not called, or met another trim3r.h or other features"
+               : texts[fault];
 }
 
 const char *t3r_config_error(const t3r_config *config)
 {
     const size_t fault = first_fault(config);
-    return fault == FAULTS ? NULL : texts[fault];
+    return fault == FAULTS ? NULL : text_of(config, fault);
+}
+
+#define VALUE(text, value, low, high) (value),
+
+/* Returns the value that is out of its range, UINT64_MAX for another fault. */
+static uint64_t value_of_fault(const t3r_config *c, size_t fault)
+{
+    if (fault == 0 || is_blank(c)) {
+        return UINT64_MAX;
+    }
+    if (fault <= RANGES_COUNT) {
+        return value_of(c, fault - 1);
+    }
+    const uint32_t related[] = {RELATIONS(VALUE)};
+    const size_t at = fault - 1 - RANGES_COUNT;
+    return at < sizeof related / sizeof related[0] ? related[at] : UINT64_MAX;
+}
+
+t3r_status t3r_config_fault(const t3r_config *config, t3r_fault *fault)
+{
+    const size_t at = first_fault(config);
+    if (at == FAULTS) {
+        return T3R_OK;
+    }
+    const uint64_t value = value_of_fault(config, at);
+    t3r_note(fault, text_of(config, at), (int64_t)value, 0, 0, 0);
+    fault->after = value != UINT64_MAX ? " (it is #)" : NULL;
+    return status_of(at);
 }

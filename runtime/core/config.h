@@ -5,11 +5,15 @@
 
 #include <stdbool.h>
 
+#include "core/fault.h"
 #include "core/fixed.h"
 #include "trim3r.h"
 
 /* Checks a configuration. After T3R_ERR_CONFIG or T3R_ERR_UNSUPPORTED t3r_config_error() returns the reason. */
 t3r_status t3r_config_check(const t3r_config *config);
+
+/* Does the same, and writes the sentence of what is wrong. */
+t3r_status t3r_config_fault(const t3r_config *config, t3r_fault *fault);
 
 /* Returns the configuration with values for the settings left open. */
 t3r_config t3r_settled(const t3r_config *config);

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "develop.h"
 
-#include "core/camera.h"
 #include "core/cut.h"
-#include "core/features.h"
 #include "depth/depth.h"
+#include "develop_checks.h"
 #include "image.h"
 #include "state/state.h"
 #include "undistort.h"
@@ -40,18 +39,7 @@ static void undistort_rows(void *context, uint32_t begin, uint32_t end, uint32_t
 
 t3r_status t3r_frame_check(const t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_camera *resized)
 {
-    t3r_status status = t3r_image_check(frame);
-    if (status == T3R_OK) {
-        status = t3r_camera_check(camera, frame->width, frame->height);
-    }
-    if (status == T3R_OK) {
-        *resized = t3r_camera_resized(camera, frame->width, frame->height, rt->config.width, rt->config.height);
-        status = t3r_camera_check(resized, rt->config.width, rt->config.height);
-    }
-    if (status == T3R_OK && !T3R_FEATURE_EXTRAS && resized->distortion != T3R_DISTORTION_NONE) {
-        status = T3R_ERR_UNSUPPORTED;
-    }
-    return status;
+    return t3r_develop_checks(rt, frame, camera, resized, NULL);
 }
 
 /* Assigns the parts of the work memory. */

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 
+#include "core/fault.h"
 #include "trim3r.h"
 
 /* Checks a caller's frame and camera for the image stage, except whether the lens shows too little of the picture.
@@ -12,6 +13,10 @@
  */
 t3r_status t3r_frame_check(const t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                            t3r_camera *resized);
+
+/* Does the same and writes the sentence of the check that fails. */
+t3r_status t3r_frame_fault(const t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_camera *resized,
+                           t3r_fault *fault);
 
 /* Fills colour, depth and validity of view `index` from a checked frame: resized to the working size and undistorted.
  * *camera comes from t3r_frame_check() and becomes the camera of the planes. After an error the planes may be partly

@@ -6,63 +6,14 @@
 
 #include "core/fixed.h"
 #include "core/memory.h"
+#include "frame_checks.h"
 
 /* Source pixels converted at a time when the size changes; even, so that a YUYV pair is never split. */
 #define CHUNK 256u
 
-static bool side_ok(uint32_t side)
-{
-    return side >= 2 && side <= T3R_MAX_SIDE;
-}
-
-static uint32_t bytes_per_pixel(t3r_pixel_format format)
-{
-    switch (format) {
-    case T3R_PIXEL_RGB24:
-    case T3R_PIXEL_BGR24:
-        return 3;
-    case T3R_PIXEL_YUYV:
-    case T3R_PIXEL_UYVY:
-        return 2;
-    default:
-        return 1;
-    }
-}
-
-/* Whether a plane is usable. A row has `bytes` <= 3 T3R_MAX_SIDE, a stride is below 2^19: every offset is below
- * 2^31. */
-static bool plane_ok(const uint8_t *plane, uint32_t stride, uint32_t bytes)
-{
-    return plane != NULL && stride >= bytes && stride <= T3R_MAX_STRIDE_BYTES;
-}
-
 t3r_status t3r_image_check(const t3r_frame *frame)
 {
-    if (frame == NULL) {
-        return T3R_ERR_ARGUMENT;
-    }
-    if ((uint32_t)frame->format >= T3R_PIXEL_FORMAT_COUNT || !side_ok(frame->width) || !side_ok(frame->height)) {
-        return T3R_ERR_FRAME;
-    }
-    bool pairs = frame->format == T3R_PIXEL_YUYV || frame->format == T3R_PIXEL_UYVY || frame->format == T3R_PIXEL_NV12;
-    if (pairs && frame->width % 2 != 0) {
-        return T3R_ERR_FRAME;
-    }
-    if (!plane_ok(frame->planes[0], frame->stride_bytes[0], frame->width * bytes_per_pixel(frame->format))) {
-        return T3R_ERR_FRAME;
-    }
-    if (frame->format == T3R_PIXEL_NV12 &&
-        (frame->height % 2 != 0 || !plane_ok(frame->planes[1], frame->stride_bytes[1], frame->width))) {
-        return T3R_ERR_FRAME;
-    }
-    if (frame->depth != NULL) {
-        if (!side_ok(frame->depth_width) || !side_ok(frame->depth_height) ||
-            !plane_ok(frame->depth, frame->depth_stride_bytes, frame->depth_width * 2) || frame->depth_unit_q40 == 0 ||
-            frame->depth_unit_q40 > T3R_MAX_DEPTH_UNIT_Q40) {
-            return T3R_ERR_FRAME;
-        }
-    }
-    return T3R_OK;
+    return frame == NULL ? T3R_ERR_ARGUMENT : t3r_frame_checks(frame, NULL);
 }
 
 size_t t3r_image_work_bytes(uint32_t width)
@@ -75,7 +26,7 @@ static void convert(const t3r_kernels *kernels, const t3r_frame *frame, uint32_t
                     uint8_t *r, uint8_t *g, uint8_t *b)
 {
     const uint8_t *row =
-        frame->planes[0] + (size_t)y * frame->stride_bytes[0] + (size_t)x * bytes_per_pixel(frame->format);
+        frame->planes[0] + (size_t)y * frame->stride_bytes[0] + (size_t)x * t3r_bytes_per_pixel(frame->format);
 
     switch (frame->format) {
     case T3R_PIXEL_RGB24:

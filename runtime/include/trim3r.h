@@ -738,6 +738,57 @@ t3r_status t3r_view_camera(const t3r_runtime *rt, uint32_t view, t3r_camera *cam
 t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint8_t *rgb_out,
                        uint16_t *depth_out, t3r_camera *undistorted);
 
+/* ---- errors in words ---------------------------------------------------------------------------------------------
+ *
+ * After a call returned an error, the function of its name with the suffix _error gives the reason: which argument, its
+ * value and what is allowed, or which call is missing. It takes the status, the arguments of the call, and memory for a
+ * sentence, T3R_ERROR_BYTES of which hold any. It runs the checks of the call again and changes nothing, so call it
+ * before anything else changes the runtime or the arguments. Returns `text`, or a constant text if it is NULL. For an
+ * error that no check explains, such as T3R_ERR_CANCELLED, the text is that of t3r_error_text(), as for the calls
+ * without such a function. A firmware that does not call them links neither them nor their sentences. */
+#define T3R_ERROR_BYTES 320
+const char *t3r_plan_error(t3r_status status, const t3r_config *config, const t3r_plan_info *plan, char *text,
+                           size_t text_bytes);
+const char *t3r_plan_bytes_error(t3r_status status, const t3r_config *config, const size_t *min_bytes,
+                                 const size_t *bytes, char *text, size_t text_bytes);
+const char *t3r_plan_within_error(t3r_status status, size_t bytes, const t3r_config *config, char *text,
+                                  size_t text_bytes);
+const char *t3r_init_error(t3r_status status, t3r_runtime *const *rt, const void *arena, size_t arena_bytes,
+                           const t3r_config *config, char *text, size_t text_bytes);
+const char *t3r_attach_error(t3r_status status, t3r_runtime *const *rt, const void *arena, size_t arena_bytes,
+                             char *text, size_t text_bytes);
+const char *t3r_set_cpu_error(t3r_status status, const t3r_runtime *rt, uint32_t features, char *text,
+                              size_t text_bytes);
+const char *t3r_bind_head_error(t3r_status status, const t3r_runtime *rt, const void *weights, size_t bytes, char *text,
+                                size_t text_bytes);
+const char *t3r_add_view_error(t3r_status status, const t3r_runtime *rt, const t3r_frame *frame,
+                               const t3r_camera *camera, char *text, size_t text_bytes);
+const char *t3r_add_rows_error(t3r_status status, const t3r_runtime *rt, const t3r_frame *frame,
+                               const t3r_camera *camera, uint32_t row, uint32_t rows, uint32_t depth_row,
+                               uint32_t depth_rows, char *text, size_t text_bytes);
+const char *t3r_reconstruct_error(t3r_status status, const t3r_runtime *rt, const t3r_request *request,
+                                  const t3r_scene *scene, char *text, size_t text_bytes);
+const char *t3r_rebuild_error(t3r_status status, const t3r_runtime *rt, const t3r_request *request,
+                              const t3r_scene *scene, char *text, size_t text_bytes);
+const char *t3r_stream_keyframe_error(t3r_status status, const t3r_runtime *rt, const t3r_frame *frame,
+                                      const t3r_camera *camera, const t3r_stream_report *report, char *text,
+                                      size_t text_bytes);
+const char *t3r_stream_overlap_error(t3r_status status, const t3r_runtime *rt, const t3r_camera *camera, uint32_t width,
+                                     uint32_t height, const uint32_t *overlap_q8, char *text, size_t text_bytes);
+const char *t3r_get_scene_error(t3r_status status, const t3r_runtime *rt, const t3r_scene *scene, char *text,
+                                size_t text_bytes);
+const char *t3r_scene_begin_error(t3r_status status, const t3r_runtime *rt, const t3r_scene_frame *frame, char *text,
+                                  size_t text_bytes);
+const char *t3r_scene_append_error(t3r_status status, const t3r_runtime *rt, const t3r_gaussian *gaussian, char *text,
+                                   size_t text_bytes);
+const char *t3r_render_error(t3r_status status, const t3r_runtime *rt, const t3r_camera *camera,
+                             const t3r_target *target, char *text, size_t text_bytes);
+const char *t3r_view_camera_error(t3r_status status, const t3r_runtime *rt, uint32_t view, const t3r_camera *camera,
+                                  char *text, size_t text_bytes);
+const char *t3r_develop_error(t3r_status status, const t3r_runtime *rt, const t3r_frame *frame,
+                              const t3r_camera *camera, const uint8_t *rgb_out, const uint16_t *depth_out,
+                              const t3r_camera *undistorted, char *text, size_t text_bytes);
+
 /* Returns the version of the library, "major.minor.patch". */
 const char *t3r_version(void);
 

@@ -3,13 +3,13 @@
 #include "arena.h"
 #include "core/config.h"
 #include "core/fixed.h"
+#include "plan_checks.h"
 #include "state/state.h"
 
 t3r_status t3r_plan_bytes_as(uint64_t digest, const t3r_config *config, size_t *min_bytes, size_t *bytes)
 {
     T3R_REFUSE_UNLESS(digest == t3r_header_interface(), T3R_ERR_INTERFACE);
-    T3R_REFUSE_UNLESS(config != NULL && min_bytes != NULL && bytes != NULL, T3R_ERR_ARGUMENT);
-    const t3r_status status = t3r_config_check(config);
+    const t3r_status status = t3r_plan_bytes_checks(config, min_bytes, bytes, NULL);
     if (status == T3R_OK) {
         t3r_layout layout;
         (void)t3r_lay_out(config, 0, &layout); /* for the two sums */
@@ -42,15 +42,6 @@ t3r_status t3r_plan_as(uint64_t digest, const t3r_config *config, t3r_plan_info 
     return T3R_OK;
 }
 
-/* With so many Gaussians at most, and no larger budget. */
-static t3r_config with_room_for(const t3r_config *config, uint32_t most)
-{
-    t3r_config changed = *config;
-    changed.max_gaussians = most;
-    changed.gaussians = T3R_MIN(config->gaussians, most);
-    return changed;
-}
-
 /* An arena too large to be addressed fits nowhere. */
 static bool fits(const t3r_config *config, size_t bytes)
 {
@@ -61,29 +52,17 @@ static bool fits(const t3r_config *config, size_t bytes)
 t3r_status t3r_plan_within_as(uint64_t digest, size_t bytes, t3r_config *config)
 {
     T3R_REFUSE_UNLESS(digest == t3r_header_interface(), T3R_ERR_INTERFACE);
-    T3R_REFUSE_UNLESS(config != NULL, T3R_ERR_ARGUMENT);
-    const t3r_config one = with_room_for(config, 1);
-    if (config->max_gaussians > T3R_MAX_GAUSSIANS || config->gaussians == 0 ||
-        config->gaussians > config->max_gaussians) {
-        return T3R_ERR_CONFIG;
-    }
-    const t3r_status status = t3r_config_check(&one);
-    if (status != T3R_OK) {
-        return status;
-    }
-    if (!fits(&one, bytes)) {
-        return T3R_ERR_ARENA;
-    }
+    T3R_PASS(t3r_plan_within_checks(bytes, config, NULL));
     uint32_t low = 1, high = config->max_gaussians; /* `low` fits; an arena grows with its Gaussians */
     while (low < high) {                            /* halves at most 2^24 candidates */
         uint32_t middle = low + (high - low + 1) / 2;
-        const t3r_config tried = with_room_for(config, middle);
+        const t3r_config tried = t3r_with_room_for(config, middle);
         if (fits(&tried, bytes)) {
             low = middle;
         } else {
             high = middle - 1;
         }
     }
-    *config = with_room_for(config, low);
+    *config = t3r_with_room_for(config, low);
     return T3R_OK;
 }

@@ -17,6 +17,23 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 enum { MOST_GAUSSIANS = 300, MOST_CALLS = 40, MOST_ARENA = 8 << 20 };
 
+/* Requires a documented status, and that an error has a sentence of its own: the checks that find it agree with those
+ * of the call. */
+static void require_reason(t3r_status status, const char *sentence)
+{
+    require_status(status);
+    REQUIRE(sentence[0] != '\0' &&
+            (status == T3R_OK || status == T3R_ERR_CANCELLED || strcmp(sentence, t3r_error_text(status)) != 0));
+}
+
+/* Makes a call, which may be refused, and asks for the reason. */
+#define CALL(status, function, ...)                                                                                    \
+    do {                                                                                                               \
+        char text[T3R_ERROR_BYTES];                                                                                    \
+        (status) = function(__VA_ARGS__);                                                                              \
+        require_reason((status), function##_error((status), __VA_ARGS__, text, sizeof text));                          \
+    } while (0)
+
 /* ---- arguments ----------------------------------------------------------------------------------- */
 
 static t3r_config take_config(input *in)
@@ -48,16 +65,20 @@ static void wild_config(input *in, t3r_config c)
     uint32_t field = below(in, sizeof c / sizeof(uint32_t)), value = take32(in);
     memcpy((uint8_t *)&c + field * sizeof value, &value, sizeof value);
     t3r_plan_info plan;
-    t3r_status status = t3r_plan(&c, &plan);
+    t3r_status status;
+    CALL(status, t3r_plan, &c, &plan);
     REQUIRE(status == (t3r_config_error(&c) == NULL ? T3R_OK : T3R_ERR_CONFIG));
     t3r_config most = c;
     const size_t bytes = take32(in);
-    REQUIRE(t3r_plan_within(bytes, &most) != T3R_OK || (t3r_plan(&most, &plan) == T3R_OK && plan.min_bytes <= bytes));
+    t3r_status within;
+    CALL(within, t3r_plan_within, bytes, &most);
+    REQUIRE(within != T3R_OK || (t3r_plan(&most, &plan) == T3R_OK && plan.min_bytes <= bytes));
     status = t3r_plan(&c, &plan);
+    t3r_status opened;
     t3r_runtime *rt;
     uint8_t nothing[1];
-    REQUIRE(t3r_init(&rt, nothing, 0, &c) != T3R_OK);
-    REQUIRE(rt == NULL);
+    CALL(opened, t3r_init, &rt, nothing, 0, &c);
+    REQUIRE(opened != T3R_OK && rt == NULL);
     REQUIRE(status != T3R_OK || (plan.min_bytes <= plan.bytes && plan.min_bytes >= T3R_HEADER_BYTES));
 }
 
@@ -98,8 +119,8 @@ static void call_render(session *s, input *in)
     t3r_camera camera = take_camera(in);
     uint32_t width = take_side(in), height = take_side(in), padding = below(in, 4);
     picture first = picture_of(width, height, padding), second = picture_of(width, height, padding);
-    t3r_status status = t3r_render(s->rt, &camera, &first.target);
-    require_status(status);
+    t3r_status status;
+    CALL(status, t3r_render, s->rt, &camera, &first.target);
     if (status == T3R_OK) {
         REQUIRE(width <= s->config.render_width && height <= s->config.render_height);
         REQUIRE(t3r_render_passes(s->rt) >= 1);
@@ -125,7 +146,8 @@ static void call_develop(session *s, input *in)
     size_t pixels = (size_t)s->config.width * s->config.height;
     uint8_t *rgb = allocate(pixels * 3);
     uint16_t *depth = allocate(pixels * 2);
-    require_status(t3r_develop(s->rt, &held.frame, &camera, rgb, depth, &undistorted));
+    t3r_status status;
+    CALL(status, t3r_develop, s->rt, &held.frame, &camera, rgb, depth, &undistorted);
     free(rgb);
     free(depth);
     free_frame(&held);
@@ -135,7 +157,8 @@ static void call_add_view(session *s, input *in)
 {
     t3r_camera camera = take_camera(in);
     held_frame held = take_frame(in);
-    require_status(t3r_add_view(s->rt, &held.frame, &camera));
+    t3r_status status;
+    CALL(status, t3r_add_view, s->rt, &held.frame, &camera);
     free_frame(&held);
 }
 
@@ -163,9 +186,8 @@ static void call_add_rows(session *s, input *in)
         if (part.depth != NULL) {
             part.depth += (size_t)(depth_rows == 0 ? 0 : depth_row) * part.depth_stride_bytes;
         }
-        status = t3r_add_rows(s->rt, &part, &camera, row < part.height ? row : part.height, rows, depth_row + wrong,
-                              depth_rows);
-        require_status(status);
+        CALL(status, t3r_add_rows, s->rt, &part, &camera, row < part.height ? row : part.height, rows,
+             depth_row + wrong, depth_rows);
         REQUIRE(wrong == 0 || status != T3R_OK || s->config.depth == T3R_DEPTH_STEREO);
     }
     free_frame(&held);
@@ -178,10 +200,11 @@ static void call_stream(session *s, input *in)
         t3r_camera camera = take_camera(in);
         held_frame held = take_frame(in);
         t3r_stream_report report;
-        t3r_status status = t3r_stream_keyframe(s->rt, &held.frame, &camera, take8(in) & 1 ? &report : NULL);
-        require_status(status);
+        t3r_stream_report *const wanted = take8(in) & 1 ? &report : NULL;
+        t3r_status status, compared;
+        CALL(status, t3r_stream_keyframe, s->rt, &held.frame, &camera, wanted);
         uint32_t overlap_q8 = 0;
-        require_status(t3r_stream_overlap(s->rt, &camera, held.frame.width, held.frame.height, &overlap_q8));
+        CALL(compared, t3r_stream_overlap, s->rt, &camera, held.frame.width, held.frame.height, &overlap_q8);
         REQUIRE(overlap_q8 <= 256);
         REQUIRE(s->config.stream || status != T3R_OK);
         t3r_scene scene;
@@ -201,7 +224,8 @@ static void call_scene(session *s, input *in)
         }
         frame.exponent = (int32_t)take32(in);
     }
-    require_status(t3r_scene_begin(s->rt, &frame));
+    t3r_status status;
+    CALL(status, t3r_scene_begin, s->rt, &frame);
 }
 
 /* Moves the arena to a new place and forgets the old one. */
@@ -214,7 +238,9 @@ static void call_move(session *s)
     s->arena = moved;
     REQUIRE(t3r_attach(&s->rt, s->arena, s->arena_bytes) == T3R_OK);
     t3r_runtime *rt;
-    REQUIRE(t3r_attach(&rt, s->arena, s->arena_bytes / 2) != T3R_OK && rt == NULL);
+    t3r_status status;
+    CALL(status, t3r_attach, &rt, s->arena, s->arena_bytes / 2);
+    REQUIRE(status != T3R_OK && rt == NULL);
 }
 
 /* Makes planes of exactly the bytes that may be read, for at most all views; some are missing, some strides wrong.
@@ -248,7 +274,12 @@ static void call_build(session *s, input *in, uint32_t parts)
                            .head = (t3r_head)(parts & HEAD ? below(in, T3R_HEAD_COUNT + 1) : 0)};
     const bool sound = !(parts & IMPORTANCE) || take_importance(s, in, planes, &request);
     t3r_scene scene;
-    t3r_status status = take8(in) & 1 ? t3r_rebuild(s->rt, &request, &scene) : t3r_reconstruct(s->rt, &request, &scene);
+    t3r_status status;
+    if (take8(in) & 1) {
+        CALL(status, t3r_rebuild, s->rt, &request, &scene);
+    } else {
+        CALL(status, t3r_reconstruct, s->rt, &request, &scene);
+    }
     check_scene(s, status, &scene, request.gaussians != 0 ? request.gaussians : s->config.gaussians);
     REQUIRE(status != T3R_OK || sound);
     for (uint32_t v = 0; v < s->config.views; v++) {
@@ -276,8 +307,8 @@ static void call_bind(session *s, input *in)
         weights = make_weights(small_shape, small_layers, 8, 8, 1, &bytes);
     }
     uint32_t kind = below(in, 6);
-    t3r_status status = t3r_bind_head(s->rt, kind == 0 ? NULL : weights, kind == 1 ? bytes - 1 : bytes);
-    require_status(status);
+    t3r_status status;
+    CALL(status, t3r_bind_head, s->rt, kind == 0 ? NULL : weights, kind == 1 ? bytes - 1 : bytes);
     REQUIRE(kind != 1 || status != T3R_OK);
     REQUIRE(kind != 0 || status == T3R_OK);
 }
@@ -323,7 +354,8 @@ static void call(session *s, input *in)
     case 6:
         for (uint32_t n = 1 + below(in, 16); n > 0; n--) {
             t3r_gaussian g = take_gaussian(in);
-            require_status(t3r_scene_append(s->rt, &g));
+            t3r_status status;
+            CALL(status, t3r_scene_append, s->rt, &g);
         }
         break;
     case 7:
