@@ -49,8 +49,7 @@ static t3r_status start(t3r_host *host, const t3r_config *config, char *error, s
     size_t least, bytes;
     t3r_status status = t3r_plan_bytes(config, &least, &bytes);
     if (status != T3R_OK) {
-        const char *wrong = t3r_config_error(config);
-        t3r_reason(error, error_bytes, "%s", wrong != NULL ? wrong : t3r_error_text(status));
+        (void)t3r_plan_bytes_error(status, config, &least, &bytes, error, error_bytes);
         return status;
     }
     if (posix_memalign(&host->arena, T3R_ARENA_ALIGN, bytes) != 0) {

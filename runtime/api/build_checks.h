@@ -150,4 +150,25 @@ T3R_CHECKS t3r_rebuild_checks(const t3r_runtime *rt, const t3r_request *request,
     return T3R_OK;
 }
 
+/* Checks what t3r_rebuild_least() adds to a rebuild. */
+T3R_CHECKS t3r_least_checks(const t3r_runtime *rt, const t3r_request *request, uint32_t least_psnr_q8,
+                            const t3r_target *picture, const t3r_scene *scene, const t3r_least *found, t3r_fault *fault)
+{
+    T3R_PASS(t3r_runtime_checks(rt, fault));
+    T3R_MISUSE(fault, picture != NULL, T3R_ERR_ARGUMENT, "picture is NULL");
+    T3R_MISUSE(fault, scene != NULL, T3R_ERR_ARGUMENT, "scene is NULL");
+    T3R_MISUSE(fault, found != NULL, T3R_ERR_ARGUMENT, "found is NULL");
+    T3R_MISUSE(fault, T3R_FEATURE_LOSS, T3R_ERR_UNSUPPORTED,
+               "this library was built without losses (T3R_FEATURE_REFINEMENT, T3R_FEATURE_EXTRAS)");
+    T3R_MISUSE(fault, least_psnr_q8 >= 1 && least_psnr_q8 <= T3R_MAX_PSNR_Q8, T3R_ERR_ARGUMENT,
+               "least_psnr_q8 is @: a PSNR is 1..#, in 1/256 dB (100 dB)", least_psnr_q8, T3R_MAX_PSNR_Q8);
+    T3R_MISUSE(fault, request == NULL || request->max_loss_q8 == 0, T3R_ERR_ARGUMENT,
+               "request.max_loss_q8 is #: it must be 0 with a PSNR", request->max_loss_q8);
+    T3R_MISUSE(fault, picture->rgb != NULL, T3R_ERR_ARGUMENT, "picture.rgb is NULL: it is memory for a view");
+    T3R_MISUSE(fault, picture->width == rt->config.width && picture->height == rt->config.height, T3R_ERR_ARGUMENT,
+               "picture is of # x # pixels: it must be of the working size, # x #", picture->width, picture->height,
+               rt->config.width, rt->config.height);
+    return T3R_OK;
+}
+
 #endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Builds as few Gaussians as draw the context views well enough: tries numbers of them, and measures each. */
-#include "api/checks.h"
-#include "core/features.h"
+#include "api/build_checks.h"
 #include "core/fixed.h"
 #include "state/state.h"
 
@@ -94,23 +93,13 @@ static t3r_status find_least(search *s, uint32_t most)
     return status == T3R_OK && tried != taken ? try_number(s, taken) : status;
 }
 
-/* Whether the picture has room for a view of the working size. */
-static bool is_picture(const t3r_config *config, const t3r_target *picture)
-{
-    return picture->rgb != NULL && picture->width == config->width && picture->height == config->height;
-}
-
 t3r_status t3r_rebuild_least(t3r_runtime *rt, const t3r_request *request, uint32_t least_psnr_q8,
                              const t3r_target *picture, t3r_scene *scene, t3r_least *found)
 {
-    T3R_REFUSE_UNLESS(rt != NULL && picture != NULL && scene != NULL && found != NULL, T3R_ERR_ARGUMENT);
-    T3R_REFUSE_UNLESS(T3R_FEATURE_LOSS, T3R_ERR_UNSUPPORTED);
+    T3R_PASS(t3r_least_checks(rt, request, least_psnr_q8, picture, scene, found, NULL));
     *found = (t3r_least){0};
     search s = {.rt = rt, .psnr_q8 = least_psnr_q8, .picture = picture, .scene = scene, .found = found};
     s.request = request != NULL ? *request : (t3r_request){0};
-    T3R_REFUSE_UNLESS(least_psnr_q8 >= 1 && least_psnr_q8 <= T3R_MAX_PSNR_Q8 && s.request.max_loss_q8 == 0 &&
-                          is_picture(&rt->config, picture),
-                      T3R_ERR_ARGUMENT);
     const uint32_t budget = s.request.gaussians != 0 ? s.request.gaussians : rt->config.gaussians;
     return find_least(&s, T3R_MIN(budget, T3R_MAX(rt->valid_points, 1u)));
 }

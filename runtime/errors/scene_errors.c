@@ -42,6 +42,27 @@ const char *t3r_rebuild_error(t3r_status status, const t3r_runtime *rt, const t3
     return t3r_sentence(status, found, &fault, text, text_bytes);
 }
 
+/* Checks the rebuilds and the pictures of t3r_rebuild_least(), which chooses the number of Gaussians itself. */
+static t3r_status searched(const t3r_runtime *rt, const t3r_request *request, const t3r_target *picture,
+                           const t3r_scene *scene, t3r_fault *fault)
+{
+    t3r_request tried = request != NULL ? *request : (t3r_request){0};
+    t3r_build_order order;
+    tried.gaussians = 1;
+    T3R_PASS(t3r_rebuild_checks(rt, &tried, scene, &order, fault));
+    return t3r_target_checks(rt, picture, fault);
+}
+
+const char *t3r_rebuild_least_error(t3r_status status, const t3r_runtime *rt, const t3r_request *request,
+                                    uint32_t least_psnr_q8, const t3r_target *picture, const t3r_scene *scene,
+                                    const t3r_least *found, char *text, size_t text_bytes)
+{
+    t3r_fault fault;
+    t3r_status refused = t3r_least_checks(rt, request, least_psnr_q8, picture, scene, found, &fault);
+    refused = refused == T3R_OK ? searched(rt, request, picture, scene, &fault) : refused;
+    return t3r_sentence(status, refused, &fault, text, text_bytes);
+}
+
 const char *t3r_get_scene_error(t3r_status status, const t3r_runtime *rt, const t3r_scene *scene, char *text,
                                 size_t text_bytes)
 {

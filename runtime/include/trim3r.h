@@ -770,6 +770,9 @@ const char *t3r_reconstruct_error(t3r_status status, const t3r_runtime *rt, cons
                                   const t3r_scene *scene, char *text, size_t text_bytes);
 const char *t3r_rebuild_error(t3r_status status, const t3r_runtime *rt, const t3r_request *request,
                               const t3r_scene *scene, char *text, size_t text_bytes);
+const char *t3r_rebuild_least_error(t3r_status status, const t3r_runtime *rt, const t3r_request *request,
+                                    uint32_t least_psnr_q8, const t3r_target *picture, const t3r_scene *scene,
+                                    const t3r_least *found, char *text, size_t text_bytes);
 const char *t3r_stream_keyframe_error(t3r_status status, const t3r_runtime *rt, const t3r_frame *frame,
                                       const t3r_camera *camera, const t3r_stream_report *report, char *text,
                                       size_t text_bytes);

@@ -142,11 +142,6 @@ int live_build_keep(live_build *build, const t3r_capture_frame *frame)
     return CLI_OK;
 }
 
-static int frame_error(t3r_status status, const t3r_capture_frame *frame)
-{
-    return cli_error(CLI_BAD_INPUT, "frame %" PRIu32 ": %s", frame->index, t3r_error_text(status));
-}
-
 /* Counts the valid points of all views, in the arena that the build will use next. */
 static int count_valid_points(live_build *build, const t3r_capture_frame *const *frames)
 {
@@ -163,7 +158,7 @@ static int count_valid_points(live_build *build, const t3r_capture_frame *const 
         t3r_camera camera;
         status = t3r_develop(runtime, &frames[v]->frame, &frames[v]->camera, build->rgb, build->depth, &camera);
         if (status != T3R_OK) {
-            return frame_error(status, frames[v]);
+            return reconstruction_view_error(status, runtime, NULL, frames[v]->index, frames[v]);
         }
         for (size_t i = 0; i < pixels; i++) {
             r->valid_points += build->depth[i] != 0;
@@ -212,7 +207,7 @@ int live_build_make(live_build *build, const t3r_capture_frame *newest)
     for (uint32_t v = 0; v < r->context_count; v++) {
         t3r_status status = t3r_add_view(r->runtime, &frames[v]->frame, &frames[v]->camera);
         if (status != T3R_OK) {
-            return frame_error(status, frames[v]);
+            return reconstruction_view_error(status, r->runtime, NULL, frames[v]->index, frames[v]);
         }
     }
     double added = cli_now();
@@ -220,5 +215,5 @@ int live_build_make(live_build *build, const t3r_capture_frame *newest)
     r->add_views_seconds = added - start;
     r->build_seconds = cli_now() - added;
     build->builds++;
-    return status == T3R_OK ? CLI_OK : reconstruction_error(status, "build", &r->config, r->arena_bytes);
+    return status == T3R_OK ? CLI_OK : reconstruction_make_error(r, status, "build");
 }

@@ -43,7 +43,7 @@ int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluatio
         return code;
     }
     t3r_status status = t3r_render(r->runtime, camera, &target);
-    return status == T3R_OK ? CLI_OK : reconstruction_error(status, "render", &r->config, r->arena_bytes);
+    return status == T3R_OK ? CLI_OK : reconstruction_render_error(status, "render", r->runtime, camera, &target);
 }
 
 /* ---- shared by the rows of a case --------------------------------------------------------------------------- */

@@ -12,15 +12,24 @@
 
 enum { SIDE = 256, VIEWS = 2, GAUSSIANS = 6000 };
 
-static t3r_status build(t3r_runtime *rt, t3r_capture *source, t3r_scene *scene)
+static t3r_status build(t3r_runtime *rt, t3r_capture *source, t3r_scene *scene, char *error, size_t error_bytes)
 {
     t3r_capture_frame frame;
-    t3r_status status = t3r_bind_head(rt, t3r_head_small, t3r_head_small_bytes);
-    for (int v = 0; v < VIEWS && status == T3R_OK; v++) {
-        const bool there = t3r_capture_next(source, &frame) == T3R_CAPTURE_FRAME && frame.has_pose;
-        status = there ? t3r_add_view(rt, &frame.frame, &frame.camera) : T3R_ERR_CAMERA;
+    (void)t3r_bind_head(rt, t3r_head_small, t3r_head_small_bytes);
+    for (int v = 0; v < VIEWS; v++) {
+        if (t3r_capture_next(source, &frame) != T3R_CAPTURE_FRAME || !frame.has_pose) {
+            snprintf(error, error_bytes, "there is no frame %d with a pose", v);
+            return T3R_ERR_CAMERA;
+        }
+        const t3r_status status = t3r_add_view(rt, &frame.frame, &frame.camera);
+        if (status != T3R_OK) {
+            (void)t3r_add_view_error(status, rt, &frame.frame, &frame.camera, error, error_bytes);
+            return status;
+        }
     }
-    return status == T3R_OK ? t3r_reconstruct(rt, NULL, scene) : status;
+    const t3r_status status = t3r_reconstruct(rt, NULL, scene);
+    (void)t3r_reconstruct_error(status, rt, NULL, scene, error, error_bytes);
+    return status;
 }
 
 int main(int argc, char **argv)
@@ -37,8 +46,7 @@ int main(int argc, char **argv)
     t3r_scene scene;
     t3r_status status = t3r_host_open(&host, &config, 0, error, sizeof error); /* 0: a thread per processor */
     if (status == T3R_OK) {
-        status = build(t3r_host_runtime(host), source, &scene);
-        snprintf(error, sizeof error, "%s", t3r_error_text(status));
+        status = build(t3r_host_runtime(host), source, &scene, error, sizeof error);
     }
     if (status == T3R_OK) {
         status = t3r_scene_write(argv[2], &scene, 0, error, sizeof error);

@@ -44,13 +44,15 @@ static int develop(const t3r_frame *frame, const t3r_camera *camera, developed *
     if (out->rgb == NULL || out->depth == NULL || posix_memalign(&arena, T3R_ARENA_ALIGN, plan.min_bytes) != 0) {
         return t3r_reason(error, error_bytes, "out of memory");
     }
-    status = t3r_init(&runtime, arena, plan.min_bytes, &config);
-    status = status == T3R_OK ? t3r_set_cpu(runtime, t3r_cpu_features()) : status;
-    if (status == T3R_OK) {
-        status = t3r_develop(runtime, frame, &identified, out->rgb, out->depth, &out->camera);
+    (void)t3r_init(&runtime, arena, plan.min_bytes, &config);
+    (void)t3r_set_cpu(runtime, t3r_cpu_features());
+    status = t3r_develop(runtime, frame, &identified, out->rgb, out->depth, &out->camera);
+    if (status != T3R_OK) {
+        (void)t3r_develop_error(status, runtime, frame, &identified, out->rgb, out->depth, &out->camera, error,
+                                error_bytes);
     }
     free(arena);
-    return status == T3R_OK ? 0 : t3r_reason(error, error_bytes, "%s", t3r_error_text(status));
+    return status == T3R_OK ? 0 : -1;
 }
 
 /* Inverse depth is linear on a plane: bilinear in it. 0 where the 4 x 4 around are not one surface. */

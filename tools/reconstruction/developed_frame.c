@@ -22,15 +22,14 @@ int developed_capture(const t3r_capture_frame *frame, const char *path, uint32_t
         return status != T3R_OK ? reconstruction_error(status, "image stage", &config, 0)
                                 : cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    status = t3r_init(&runtime, arena, plan.min_bytes, &config);
-    status = status == T3R_OK ? t3r_set_cpu(runtime, t3r_cpu_features()) : status;
-    if (status == T3R_OK) {
-        status = t3r_develop(runtime, &frame->frame, &frame->camera, rgb, depth, camera);
-    }
+    (void)t3r_init(&runtime, arena, plan.min_bytes, &config);
+    (void)t3r_set_cpu(runtime, t3r_cpu_features());
+    status = t3r_develop(runtime, &frame->frame, &frame->camera, rgb, depth, camera);
+    char reason[T3R_ERROR_BYTES];
+    const char *const text =
+        t3r_develop_error(status, runtime, &frame->frame, &frame->camera, rgb, depth, camera, reason, sizeof reason);
     free(arena);
-    return status == T3R_OK
-               ? CLI_OK
-               : cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, index, t3r_error_text(status));
+    return status == T3R_OK ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, index, text);
 }
 
 int developed_frame(const t3r_recording *recording, const char *path, uint32_t index, uint32_t width, uint32_t height,

@@ -183,11 +183,6 @@ void reconstruction_close(reconstruction *r)
 
 /* ---- from a recording --------------------------------------------------------------------------------------- */
 
-static int frame_error(const char *path, uint32_t frame, t3r_status status)
-{
-    return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", path, frame, t3r_error_text(status));
-}
-
 t3r_camera reconstruction_camera(const t3r_camera *camera, uint32_t from_width, uint32_t from_height, uint32_t width,
                                  uint32_t height)
 {
@@ -206,10 +201,20 @@ static int stereo_error(const t3r_runtime *runtime, const reconstruction *r, con
                      r->context[partner], r->context_count > 2 ? ", nor any other two" : "", t3r_pair_text(pair));
 }
 
-static int build_error(const reconstruction *r, t3r_status status, const char *path)
+int reconstruction_make_error(const reconstruction *r, t3r_status status, const char *what)
 {
-    return status == T3R_ERR_STEREO ? stereo_error(r->runtime, r, path)
-                                    : reconstruction_error(status, path, &r->config, r->arena_bytes);
+    return status == T3R_ERR_STEREO ? stereo_error(r->runtime, r, what)
+                                    : cli_error(CLI_BAD_INPUT, "%s: %s", what, r->reason);
+}
+
+/* Builds a scene; r->reason gets the reason of an error. */
+static t3r_status make(reconstruction *r, const t3r_request *request)
+{
+    const t3r_status status = t3r_reconstruct(r->runtime, request, &r->scene);
+    if (status != T3R_OK) {
+        (void)t3r_reconstruct_error(status, r->runtime, request, &r->scene, r->reason, sizeof r->reason);
+    }
+    return status;
 }
 
 /* Counts points by stereo: only the analysis knows which points exist, so it runs one with as little else as
@@ -229,11 +234,12 @@ static int count_matched_points(const reconstruction *r, const t3r_capture_frame
     t3r_status status = T3R_OK;
     for (uint32_t v = 0; v < r->context_count && code == CLI_OK; v++) {
         status = t3r_add_view(counted.runtime, &frames[v].frame, &frames[v].camera);
-        code = status == T3R_OK ? CLI_OK : frame_error(path, r->context[v], status);
+        code = status == T3R_OK ? CLI_OK
+                                : reconstruction_view_error(status, counted.runtime, path, r->context[v], &frames[v]);
     }
     if (code == CLI_OK) {
-        status = t3r_reconstruct(counted.runtime, NULL, &counted.scene);
-        code = status == T3R_OK ? CLI_OK : build_error(&counted, status, path);
+        status = make(&counted, NULL);
+        code = status == T3R_OK ? CLI_OK : reconstruction_make_error(&counted, status, path);
     }
     if (code == CLI_OK) {
         *points = (reconstruction_points){.valid = counted.scene.valid_points,
@@ -351,12 +357,16 @@ static t3r_status make_least(reconstruction *r, const reconstruction_options *op
     t3r_status status = T3R_ERR_ARENA;
     if (rgb != NULL) {
         request.gaussians = 1; /* for the analysis alone */
-        status = t3r_reconstruct(r->runtime, &request, &r->scene);
+        status = make(r, &request);
         request.gaussians = 0;
+    } else {
+        snprintf(r->reason, sizeof r->reason, "out of memory");
     }
     if (status == T3R_OK) {
-        status = t3r_rebuild_least(r->runtime, &request, (uint32_t)(options->min_psnr * 256 + 0.5), &picture, &r->scene,
-                                   &r->least);
+        const uint32_t psnr_q8 = (uint32_t)(options->min_psnr * 256 + 0.5);
+        status = t3r_rebuild_least(r->runtime, &request, psnr_q8, &picture, &r->scene, &r->least);
+        (void)t3r_rebuild_least_error(status, r->runtime, &request, psnr_q8, &picture, &r->scene, &r->least, r->reason,
+                                      sizeof r->reason);
     }
     free(rgb);
     return status;
@@ -369,7 +379,7 @@ t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *
         .importance = planes,
         .importance_stride_bytes = r->config.width * 2,
     };
-    return options->min_psnr > 0 ? make_least(r, options, request) : t3r_reconstruct(r->runtime, &request, &r->scene);
+    return options->min_psnr > 0 ? make_least(r, options, request) : make(r, &request);
 }
 
 void reconstruction_configure(reconstruction *r, const reconstruction_options *options)
@@ -449,7 +459,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     for (uint32_t v = 0; v < r->context_count; v++) {
         t3r_status status = t3r_add_view(r->runtime, &frames[v].frame, &frames[v].camera);
         if (status != T3R_OK) {
-            return frame_error(path, r->context[v], status);
+            return reconstruction_view_error(status, r->runtime, path, r->context[v], &frames[v]);
         }
     }
     double added = cli_now();
@@ -457,7 +467,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     t3r_status status = reconstruction_make(r, options, planes);
     r->build_seconds = cli_now() - added;
     cli_progress_end();
-    return status == T3R_OK ? CLI_OK : build_error(r, status, path);
+    return status == T3R_OK ? CLI_OK : reconstruction_make_error(r, status, path);
 }
 
 /* The same, after reading the importance for the allocation `given`. */
@@ -562,7 +572,10 @@ static int append_loaded(reconstruction *r, const scene_eye *eye)
     uint32_t index = 0;
     t3r_status status = scene_append_all(r->runtime, &r->loaded, eye, &index);
     if (status != T3R_OK && index > 0) {
-        return cli_error(CLI_BAD_INPUT, "Gaussian %" PRIu32 ": %s", index - 1, t3r_error_text(status));
+        char reason[T3R_ERROR_BYTES];
+        return cli_error(
+            CLI_BAD_INPUT, "Gaussian %" PRIu32 ": %s", index - 1,
+            t3r_scene_append_error(status, r->runtime, &r->loaded.gaussians[index - 1], reason, sizeof reason));
     }
     if (status == T3R_OK) {
         status = t3r_get_scene(r->runtime, &r->scene);

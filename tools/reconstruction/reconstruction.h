@@ -95,7 +95,8 @@ typedef struct reconstruction {
     double give_up_at;        /* cli_now() at which the run is cancelled; 0 = never */
     uint64_t stage_hash[T3R_STAGE_COUNT]; /* the reports of a stage that reports several times are chained */
     bool stage_hashed[T3R_STAGE_COUNT];
-    bool uncounted; /* hashes reported now are left out */
+    bool uncounted;               /* hashes reported now are left out */
+    char reason[T3R_ERROR_BYTES]; /* of the error of reconstruction_make() */
 } reconstruction;
 
 /* The report on a build, by any method. */
@@ -140,6 +141,8 @@ int reconstruction_allocate(reconstruction *r, const reconstruction_options *opt
 void reconstruction_request(reconstruction *r, const reconstruction_options *options);
 /* Builds from the views added to r->scene; `planes` are the importance for the allocation `given`, else NULL. */
 t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes);
+/* Explains its error; `what` is put before the reason. */
+int reconstruction_make_error(const reconstruction *r, t3r_status status, const char *what);
 /* Returns hooks that collect hashes into `r` and use its threads, without a progress line. */
 t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *options);
 

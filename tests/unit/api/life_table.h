@@ -46,6 +46,7 @@ typedef struct life_outcome {
     X("`t3r_develop()`", develop, SAME, NO, NO, NO, NO, NO, NO)                                                        \
     X("`t3r_reconstruct()`", reconstruct, NO, TO(BUILT), TO(BUILT), TO(BUILT), TO(BUILT), TO(BUILT), NO)               \
     X("`t3r_rebuild()`", rebuild, NO, NO, NO, NO, NO, TO(BUILT), NO)                                                   \
+    X("`t3r_rebuild_least()`", rebuild_least, NO, NO, NO, NO, NO, TO(BUILT), NO)                                       \
     X("`t3r_get_scene()`", get_scene, NO, NO, NO, NO, SAME, NO, SAME)                                                  \
     X("`t3r_render()`", render, NO, NO, NO, NO, TO(ALONE), NO, SAME)                                                   \
     X("`t3r_scene_begin()`", begin, TO(ALONE), TO(ALONE), TO(ALONE), TO(ALONE), TO(ALONE), TO(ALONE), TO(ALONE))       \
@@ -88,6 +89,7 @@ static const struct {
     life_outcome outcome;
 } others[] = {
     {KEEPING, AT_rebuild, BUILT, TO(BUILT)},
+    {KEEPING, AT_rebuild_least, BUILT, TO(BUILT)},
     {KEEPING, AT_render, BUILT, TO(BUILT)},
     {KEEPING, AT_cancel_rebuild, BUILT, AFTER(CANCELLED, ANALYSED)},
     {KEEPING, AT_cancel_render, BUILT, AFTER(CANCELLED, BUILT)},

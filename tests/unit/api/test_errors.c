@@ -398,6 +398,23 @@ TEST(requests)
                 request.importance_stride_bytes = 2 * SIDE);
 }
 
+TEST(least_budgets)
+{
+    t3r_least found;
+    WITH(keep_analysis, 1);
+    add(1);
+    REFUSED("no picture for a PSNR", T3R_ERR_ARGUMENT, t3r_rebuild_least, rt, NULL, 256, NULL, &scene, &found);
+    REFUSED("no place for what is found", T3R_ERR_ARGUMENT, t3r_rebuild_least, rt, NULL, 256, &target, &scene, NULL);
+    REFUSED("a PSNR of 200 dB", T3R_ERR_ARGUMENT, t3r_rebuild_least, rt, NULL, 200 * 256, &target, &scene, &found);
+    request.max_loss_q8 = 256;
+    REFUSED("a PSNR with a loss", T3R_ERR_ARGUMENT, t3r_rebuild_least, rt, &request, 256, &target, &scene, &found);
+    target.rgb = NULL;
+    REFUSED("no memory for a view", T3R_ERR_ARGUMENT, t3r_rebuild_least, rt, NULL, 256, &target, &scene, &found);
+    good_arguments();
+    target.width = SIDE / 2;
+    REFUSED("a picture of another size", T3R_ERR_ARGUMENT, t3r_rebuild_least, rt, NULL, 256, &target, &scene, &found);
+}
+
 TEST(streams)
 {
     empty();

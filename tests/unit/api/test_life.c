@@ -105,6 +105,13 @@ static t3r_status rebuild(void)
     return t3r_rebuild(rt, NULL, &scene);
 }
 
+static t3r_status rebuild_least(void)
+{
+    const t3r_target target = {.width = SIDE, .height = SIDE, .rgb = drawn, .rgb_stride_bytes = 3 * SIDE};
+    t3r_least found;
+    return t3r_rebuild_least(rt, NULL, 20 * 256, &target, &scene, &found);
+}
+
 static t3r_status get_scene(void)
 {
     return t3r_get_scene(rt, &scene);

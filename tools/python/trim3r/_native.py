@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The package's shared library, and what calls of it have in common."""
 import pathlib
-from typing import Any, Callable
+import re
+from typing import Any, Callable, Sequence
 
 import numpy as np
 
@@ -12,6 +13,7 @@ ffi: Any = _ffi
 lib: Any = ffi.dlopen(str(pathlib.Path(__file__).with_name("libtrim3r_python.so")))
 ERROR_BYTES = 512
 INTERFACE: int = lib.t3r_interface() # the declarations are of the headers that the library was compiled with
+_CALLS = {"reconstruct": "build", "scene_begin": "load", "scene_append": "load"} # the package's names; others are the same
 _STATUS_NAMES = {getattr(lib, name): name for name in dir(lib) if name.startswith("T3R_ERR_")}
 
 
@@ -20,10 +22,32 @@ def text_of(pointer: Any) -> str:
     return "" if pointer == ffi.NULL else str(ffi.string(pointer).decode("utf-8", "replace"))
 
 
-def check(status: int, what: str = "") -> None:
-    """Raises the error of a t3r_status that is not T3R_OK; `what` is put before the library's words."""
+def _in_python(text: str) -> str:
+    """A sentence of the library with the names that the package has for things."""
+    text = re.sub(r"\bt3r_(\w+)\(\)", lambda match: _CALLS.get(match[1], match[1]) + "()", text)
+    return re.sub(r"\bconfig\.", "", text).replace("NULL", "None")
+
+
+def _reason(status: int, call: str, arguments: Sequence[Any]) -> str:
+    """The sentence about an error of a call, or the words for its status."""
+    explain = getattr(lib, call.removesuffix("_as") + "_error", None)
+    if explain is None:
+        return text_of(lib.t3r_error_text(status))
+    text = ffi.new("char[]", lib.T3R_ERROR_BYTES)
+    same = arguments[1:] if call.endswith("_as") else arguments # without the digest
+    return _in_python(text_of(explain(status, *same, text, lib.T3R_ERROR_BYTES)))
+
+
+def check(status: int, call: str, *arguments: Any, what: str = "") -> None:
+    """Raises the error of a t3r_status that is not T3R_OK, for the reason that the library finds in the arguments of the
+    call; `what` is put before it."""
     if status != lib.T3R_OK:
-        raise error_of(_STATUS_NAMES[status], (f"{what}: " if what else "") + text_of(lib.t3r_error_text(status)))
+        raise error_of(_STATUS_NAMES[status], (f"{what}: " if what else "") + _reason(status, call, arguments))
+
+
+def called(call: str, *arguments: Any, what: str = "") -> None:
+    """Calls a function of the library by its name, and raises its error."""
+    check(getattr(lib, call)(*arguments), call, *arguments, what=what)
 
 
 def value_named(kind: str, name_of: Callable[[int], Any], count: int, name: str) -> int:

@@ -2,10 +2,9 @@
 """Settings: a t3r_config of names and numbers."""
 from typing import Any, Dict, Mapping, Optional, Union
 
-from ._native import INTERFACE, check, ffi, lib, text_of, value_named
+from ._native import INTERFACE, called, ffi, lib, text_of, value_named
 from ._settings import SETTINGS
 from .arguments import setting
-from .errors import InputError
 from .heads import Head
 from .image_stage import default_config
 
@@ -41,9 +40,7 @@ def configuration(width: int, height: int, views: int, gaussians: Optional[int],
         if isinstance(value, str):
             value = setting_value(name, value)
         setattr(config, name, setting(name, value))
-    reason = lib.t3r_config_error(config)
-    if reason != ffi.NULL:
-        raise InputError(text_of(reason), "T3R_ERR_CONFIG")
+    called("t3r_plan_bytes_as", INTERFACE, config, ffi.new("size_t *"), ffi.new("size_t *"))
     return config
 
 
@@ -67,7 +64,7 @@ def preset(name: str) -> Dict[str, Any]:
     """
     value = value_named("a preset", lib.t3r_preset_name, lib.T3R_PRESET_COUNT, name)
     before, after, weights = default_config(8, 8, 1, 1), default_config(8, 8, 1, 1), ffi.new("const char **")
-    check(lib.t3r_set_preset_as(INTERFACE, value, after, weights))
+    called("t3r_set_preset_as", INTERFACE, value, after, weights)
     changed = {name: getattr(after, name) for name in SETTINGS
                if getattr(after, name) != getattr(before, name) and name != "head"}
     return {"head": text_of(weights[0]), "settings": changed}

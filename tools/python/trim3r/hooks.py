@@ -2,7 +2,7 @@
 """Callbacks of the library while it works: progress, hashes of stages, threads."""
 from typing import Any, Callable, Dict, Optional
 
-from ._native import check, ffi, lib
+from ._native import called, ffi, lib
 from .errors import StateError
 from .stages import STAGES
 
@@ -37,7 +37,7 @@ class Hooks:
                                         "stage_hash": self._on_hash})
         if self._threads != ffi.NULL:
             hooks.parallel_for = lib.t3r_threads_run
-        check(lib.t3r_set_hooks(runtime, hooks))
+        called("t3r_set_hooks", runtime, hooks)
 
     def run(self, function: Callable[..., int], *arguments: Any) -> int:
         """Calls a function of the library and returns its status, or raises what a callback raised."""

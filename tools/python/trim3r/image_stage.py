@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ._native import INTERFACE, address, check, ffi, lib
+from ._native import INTERFACE, address, called, ffi, lib
 from .arguments import setting
 from .camera import Camera
 from .errors import InputError
@@ -21,8 +21,8 @@ def arena_of(plan_bytes: int) -> "np.ndarray[Any, np.dtype[np.uint8]]":
 def default_config(width: int, height: int, views: int, gaussians: int) -> Any:
     """A t3r_config of defaults. Raises InputError where a number is out of its range."""
     config = ffi.new("t3r_config *")
-    check(lib.t3r_default_config_as(INTERFACE, config, ffi.sizeof("t3r_config"), setting("width", width),
-                                    setting("height", height), setting("views", views), setting("gaussians", gaussians)))
+    called("t3r_default_config_as", INTERFACE, config, ffi.sizeof("t3r_config"), setting("width", width),
+           setting("height", height), setting("views", views), setting("gaussians", gaussians))
     return config
 
 
@@ -56,15 +56,15 @@ def develop(frame: Frame, width: int, height: int) -> Frame:
     """
     config = default_config(width, height, 1, 1)
     plan, runtime, undistorted = ffi.new("t3r_plan_info *"), ffi.new("t3r_runtime **"), ffi.new("t3r_camera *")
-    check(lib.t3r_plan_as(INTERFACE, config, plan), f"a size of {width}x{height}")
+    called("t3r_plan_as", INTERFACE, config, plan, what=f"a size of {width}x{height}")
     arena = arena_of(plan.min_bytes)
-    check(lib.t3r_init_as(INTERFACE, runtime, address(arena, "void *"), arena.nbytes, config))
+    called("t3r_init_as", INTERFACE, runtime, address(arena, "void *"), arena.nbytes, config)
     lib.t3r_set_cpu(runtime[0], lib.t3r_cpu_features())
     colour = np.empty((height, width, 3), dtype=np.uint8)
     depth = None if frame.depth is None else np.empty((height, width), dtype="<u2")
     native, kept = frame.native()
     steps = ffi.NULL if depth is None else address(depth, "uint16_t *")
-    check(lib.t3r_develop(runtime[0], native, camera_of(frame).native(frame.size), address(colour, "uint8_t *"), steps,
-                          undistorted))
+    called("t3r_develop", runtime[0], native, camera_of(frame).native(frame.size), address(colour, "uint8_t *"), steps,
+           undistorted)
     del kept
     return Frame(colour, Camera.from_native(undistorted), depth, frame.depth_unit)

@@ -5,16 +5,16 @@ import contextlib
 import os
 import sys
 import threading
-from typing import Any, Callable, Deque, Dict, Iterator, Optional, Tuple
+from typing import Any, Deque, Dict, Iterator, Optional, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._native import INTERFACE, address, check, ffi, lib, text_of
+from ._native import INTERFACE, address, called, check, ffi, lib, text_of
 from .arguments import pair, real, whole
 from .camera import Camera
 from .configuration import Settings, configuration
-from .errors import DepthError, InputError, StateError
+from .errors import InputError, StateError
 from .frame import Frame, check_plane
 from .heads import HeadName, head_of
 from .hooks import Hooks, Progress
@@ -82,15 +82,15 @@ class Reconstructor:
             "depth": depth, "workers": workers, "render_width": render_width, "render_height": render_height,
             "keep_analysis": 1, **settings})
         plan = ffi.new("t3r_plan_info *")
-        check(lib.t3r_plan_as(INTERFACE, self._config, plan))
+        called("t3r_plan_as", INTERFACE, self._config, plan)
         if arena_bytes is not None and whole("arena_bytes", arena_bytes, 0, sys.maxsize) < plan.min_bytes:
             raise InputError(f"an arena of {arena_bytes} bytes is too small: it takes {plan.min_bytes}", "T3R_ERR_ARENA")
         self._arena = arena_of(plan.bytes if arena_bytes is None else arena_bytes)
         runtime = ffi.new("t3r_runtime **")
-        check(lib.t3r_init_as(INTERFACE, runtime, address(self._arena, "void *"), self._arena.nbytes, self._config))
+        called("t3r_init_as", INTERFACE, runtime, address(self._arena, "void *"), self._arena.nbytes, self._config)
         lib.t3r_set_cpu(runtime[0], lib.t3r_cpu_features())
         if self._head.nbytes and views > 0:
-            check(lib.t3r_bind_head(runtime[0], self._head.weights, self._head.nbytes), "head")
+            called("t3r_bind_head", runtime[0], self._head.weights, self._head.nbytes, what="head")
         self._hooks = Hooks(progress, workers)
         self._hooks.bind(runtime[0])
         self._runtime = runtime[0]
@@ -121,7 +121,7 @@ class Reconstructor:
             camera = camera_of(frame).native(frame.size)
             if self._config.warm: # which discards the scene, and makes room
                 self._go_on()
-            self._check(lib.t3r_add_view, runtime, native, camera)
+            self._check("t3r_add_view", runtime, native, camera)
             del kept
             self._points.append(_measured(frame, self._config))
 
@@ -171,7 +171,7 @@ class Reconstructor:
             rows, depth_rows = strip.size[1], 0 if strip.depth is None else strip.depth.shape[0]
             if self._config.warm: # which discards the scene
                 self._go_on()
-            self._check(lib.t3r_add_rows, runtime, native, camera, row, rows, depth_row, depth_rows)
+            self._check("t3r_add_rows", runtime, native, camera, row, rows, depth_row, depth_rows)
             del kept
             stereo = self._config.depth == lib.T3R_DEPTH_STEREO
             is_whole = row + rows == height and (stereo or depth_row + depth_rows == depth_height)
@@ -183,7 +183,7 @@ class Reconstructor:
         """Discards views and scene; the settings stay."""
         with self._at_work() as runtime:
             self._go_on()
-            self._check(lib.t3r_reset, runtime)
+            self._check("t3r_reset", runtime)
             self._points.clear()
 
     # ---- scenes ----
@@ -222,7 +222,7 @@ class Reconstructor:
         StateError
             There are no views.
         """
-        return self._make(lib.t3r_reconstruct, gaussians, keep, max_loss, allocate, head, importance)
+        return self._make("t3r_reconstruct", gaussians, keep, max_loss, allocate, head, importance)
 
     def rebuild(self, gaussians: Optional[int] = None, *, keep: Optional[float] = None, max_loss: float = 0,
                 allocate: Optional[str] = None, head: Optional[HeadName] = None,
@@ -231,7 +231,7 @@ class Reconstructor:
 
         Raises StateError also where there is no analysis.
         """
-        return self._make(lib.t3r_rebuild, gaussians, keep, max_loss, allocate, head, importance)
+        return self._make("t3r_rebuild", gaussians, keep, max_loss, allocate, head, importance)
 
     def load(self, scene: Scene) -> None:
         """Takes a scene from elsewhere to be drawn, in the place of views and scene.
@@ -246,10 +246,10 @@ class Reconstructor:
         with self._at_work() as runtime:
             self._go_on()
             self._points.clear()
-            self._check(lib.t3r_scene_begin, runtime, scene.native_frame())
+            self._check("t3r_scene_begin", runtime, scene.native_frame())
             first = address(gaussians, "const t3r_gaussian *")
             for index in range(len(gaussians)):
-                check(lib.t3r_scene_append(runtime, first + index), f"Gaussian {index}")
+                called("t3r_scene_append", runtime, first + index, what=f"Gaussian {index}")
 
     # ---- pictures ----
 
@@ -289,7 +289,7 @@ class Reconstructor:
         if not out.flags.writeable:
             raise ValueError("out is read-only")
         with self._at_work() as runtime:
-            self._check(lib.t3r_render, runtime, camera.native((width, height)), target_of(out))
+            self._check("t3r_render", runtime, camera.native((width, height)), target_of(out))
         return out
 
     def picture(self, camera: Camera, size: Optional[Tuple[int, int]] = None) -> Picture:
@@ -300,9 +300,9 @@ class Reconstructor:
         target = target_of(colour)
         put_planes(target, depth, alpha)
         with self._at_work() as runtime:
-            self._check(lib.t3r_render, runtime, camera.native((width, height)), target)
+            self._check("t3r_render", runtime, camera.native((width, height)), target)
             scene = ffi.new("t3r_scene *")
-            self._check(lib.t3r_get_scene, runtime, scene)
+            self._check("t3r_get_scene", runtime, scene)
         return Picture(colour, depth, alpha, scene.frame.exponent)
 
     # ---- properties ----
@@ -373,24 +373,24 @@ class Reconstructor:
         return (whole("width", width, 1, self._config.render_width, "T3R_ERR_ARGUMENT"),
                 whole("height", height, 1, self._config.render_height, "T3R_ERR_ARGUMENT"))
 
-    def _check(self, function: Callable[..., int], *arguments: Any) -> None:
-        check(self._hooks.run(function, *arguments))
+    def _check(self, call: str, *arguments: Any) -> None:
+        check(self._hooks.run(getattr(lib, call), *arguments), call, *arguments)
 
     def _go_on(self) -> None:
         """Scenes that were made so far hold no longer."""
         self._generation += 1
 
-    def _make(self, function: Callable[..., int], gaussians: Optional[int], keep: Optional[float], max_loss: float,
+    def _make(self, call: str, gaussians: Optional[int], keep: Optional[float], max_loss: float,
               allocate: Optional[str], head: Optional[HeadName], importance: Optional[Importance]) -> Scene:
         with self._at_work() as runtime, self._bound(runtime, head) as head_value:
             budget = self._budget(runtime, gaussians, keep)
             request, kept = request_of(self._config, len(self._points), budget, max_loss, allocate, importance)
             request.head = head_value
             self._go_on()
-            if function == lib.t3r_reconstruct:
+            if call == "t3r_reconstruct":
                 self._hooks.hashes.clear()
             scene = ffi.new("t3r_scene *")
-            self._check_build(function, runtime, request, scene)
+            self._check(call, runtime, request, scene)
             del kept
             return self._scene(scene)
 
@@ -403,18 +403,11 @@ class Reconstructor:
         head = head_of(name)
         try:
             if head.nbytes:
-                check(lib.t3r_bind_head(runtime, head.weights, head.nbytes), os.fspath(name))
+                called("t3r_bind_head", runtime, head.weights, head.nbytes, what=os.fspath(name))
             yield head.value
         finally:
             if head.nbytes:
                 lib.t3r_bind_head(runtime, self._head.weights, self._head.nbytes)
-
-    def _check_build(self, function: Callable[..., int], runtime: Any, request: Any, scene: Any) -> None:
-        status = self._hooks.run(function, runtime, request, scene)
-        if status == lib.T3R_ERR_STEREO:
-            reason = text_of(lib.t3r_pair_text(lib.t3r_stereo_pair(runtime, 0, ffi.new("uint32_t *"))))
-            raise DepthError(f"no two views give depth: {reason}", "T3R_ERR_STEREO")
-        check(status)
 
     def _budget(self, runtime: Any, gaussians: Optional[int], keep: Optional[float]) -> int:
         """Returns the budget in Gaussians; 0 = the constructor's."""
@@ -435,7 +428,7 @@ class Reconstructor:
         scene = ffi.new("t3r_scene *")
         if lib.t3r_get_scene(runtime, scene) != lib.T3R_OK:
             request = ffi.new("t3r_request *", {"gaussians": 1, "head": lib.T3R_HEAD_ANALYTIC})
-            self._check_build(lib.t3r_reconstruct, runtime, request, scene)
+            self._check("t3r_reconstruct", runtime, request, scene)
         return int(scene.valid_points)
 
     def _scene(self, scene: Any) -> Scene:

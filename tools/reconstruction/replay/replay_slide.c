@@ -28,9 +28,7 @@ static int add_frame(slide_run *s, uint32_t frame)
         return code;
     }
     t3r_status status = t3r_add_view(s->r.runtime, &captured.frame, &captured.camera);
-    return status == T3R_OK
-               ? CLI_OK
-               : cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
+    return status == T3R_OK ? CLI_OK : reconstruction_view_error(status, s->r.runtime, s->path, frame, &captured);
 }
 
 /* Builds the scene of the frame and the previous one. */
@@ -50,7 +48,7 @@ static int build_at(slide_run *s, uint32_t frame)
     s->milliseconds[s->scenes - 1] = (cli_now() - start) * 1000;
     cli_progress_end();
     if (status != T3R_OK) {
-        return reconstruction_error(status, s->path, &s->r.config, s->r.arena_bytes);
+        return reconstruction_make_error(&s->r, status, s->path);
     }
     s->scenes++;
     return CLI_OK;

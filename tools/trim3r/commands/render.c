@@ -303,7 +303,7 @@ static int render_one(const render_options *o, reconstruction *r, const t3r_came
         while (from[named] == NULL) {
             named++;
         }
-        return reconstruction_error(status, from[named], &r->config, r->arena_bytes);
+        return reconstruction_render_error(status, from[named], r->runtime, view, &target);
     }
     if (shows_nothing(p->alpha_q15, pixels)) {
         (void)cli_error(CLI_OK, "warning: view %" PRIu32 " shows nothing of the scene: no Gaussian is in front of it",

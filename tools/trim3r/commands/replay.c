@@ -250,7 +250,7 @@ static int draw_target(const t3r_recording *recording, const char *path, reconst
     work_times_end(&view->times, WORK_DRAW);
     cli_progress_end();
     if (status != T3R_OK) {
-        return reconstruction_error(status, path, &r->config, r->arena_bytes);
+        return reconstruction_render_error(status, path, r->runtime, &camera, &target);
     }
     hash_tiles(view);
     view->hash = t3r_hash_bytes(reconstruction_hash(r), view->rgb, (size_t)view->width * view->height * 3);
