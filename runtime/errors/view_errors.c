@@ -2,12 +2,14 @@
 /* Sentences about errors of calls that take a frame. */
 #include "api/adding_checks.h"
 #include "api/keyframe_checks.h"
+#include "image/develop_checks.h"
 #include "sentence.h"
 
-/* Writes the sentence of an error that the image stage finds in a frame that passed the checks. */
-static t3r_status developed(t3r_status status, const t3r_runtime *rt, t3r_fault *fault)
+/* Writes the sentence of an error that the image stage finds in a frame that passed the checks. These do not find it
+ * again, and the call may have discarded the rows before. */
+static t3r_status developed(t3r_status status, t3r_status found, const t3r_runtime *rt, t3r_fault *fault)
 {
-    switch (status) {
+    switch (found == status || rt == NULL ? T3R_OK : status) {
     case T3R_ERR_CAMERA:
         t3r_note(fault, "camera.distortion_q24: more than half of the picture lies beyond what this lens can show", 0,
                  0, 0, 0);
@@ -17,7 +19,7 @@ static t3r_status developed(t3r_status status, const t3r_runtime *rt, t3r_fault 
                  rt->config.width, rt->config.height, 0, 0);
         return status;
     default:
-        return T3R_OK;
+        return found;
     }
 }
 
@@ -28,7 +30,7 @@ const char *t3r_add_view_error(t3r_status status, const t3r_runtime *rt, const t
     t3r_frame shown;
     t3r_camera resized;
     const t3r_status found = t3r_add_view_checks(rt, frame, camera, &shown, &resized, &fault);
-    return t3r_sentence(status, found == T3R_OK ? developed(status, rt, &fault) : found, &fault, text, text_bytes);
+    return t3r_sentence(status, developed(status, found, rt, &fault), &fault, text, text_bytes);
 }
 
 const char *t3r_add_rows_error(t3r_status status, const t3r_runtime *rt, const t3r_frame *frame,
@@ -42,7 +44,7 @@ const char *t3r_add_rows_error(t3r_status status, const t3r_runtime *rt, const t
     t3r_strips after;
     const t3r_status found = t3r_add_rows_checks(rt, frame, camera, row, rows, depth_row, depth_rows, &shown, &resized,
                                                  &strip, &after, &fault);
-    return t3r_sentence(status, found == T3R_OK ? developed(status, rt, &fault) : found, &fault, text, text_bytes);
+    return t3r_sentence(status, developed(status, found, rt, &fault), &fault, text, text_bytes);
 }
 
 const char *t3r_develop_error(t3r_status status, const t3r_runtime *rt, const t3r_frame *frame,
@@ -53,7 +55,7 @@ const char *t3r_develop_error(t3r_status status, const t3r_runtime *rt, const t3
     t3r_fault fault;
     t3r_camera resized;
     const t3r_status found = t3r_develop_call_checks(rt, frame, camera, rgb_out, undistorted, &resized, &fault);
-    return t3r_sentence(status, found == T3R_OK ? developed(status, rt, &fault) : found, &fault, text, text_bytes);
+    return t3r_sentence(status, developed(status, found, rt, &fault), &fault, text, text_bytes);
 }
 
 /* Writes the sentence of an error that a stream finds in a frame that passed the checks. */
@@ -65,7 +67,7 @@ static t3r_status streamed(t3r_status status, const t3r_runtime *rt, const t3r_f
     }
     T3R_CHECK(fault, status != T3R_ERR_NO_DEPTH || frame->depth != NULL, T3R_ERR_NO_DEPTH,
               "frame.depth is NULL: a stream's frames have a depth plane");
-    return developed(status, rt, fault);
+    return developed(status, T3R_OK, rt, fault);
 }
 
 const char *t3r_stream_keyframe_error(t3r_status status, const t3r_runtime *rt, const t3r_frame *frame,
@@ -80,11 +82,21 @@ const char *t3r_stream_keyframe_error(t3r_status status, const t3r_runtime *rt, 
     return t3r_sentence(status, found, &fault, text, text_bytes);
 }
 
+/* Writes the sentence of an error that the comparison with the newest keyframe finds in a camera that passed the
+ * checks. */
+static t3r_status compared(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
+                           t3r_fault *fault)
+{
+    t3r_camera resized;
+    T3R_PASS(t3r_resized_checks(rt, camera, width, height, &resized, fault));
+    return t3r_far_checks(camera, &rt->frame, fault);
+}
+
 const char *t3r_stream_overlap_error(t3r_status status, const t3r_runtime *rt, const t3r_camera *camera, uint32_t width,
                                      uint32_t height, const uint32_t *overlap_q8, char *text, size_t text_bytes)
 {
     t3r_fault fault;
     t3r_status found = t3r_overlap_checks(rt, camera, width, height, overlap_q8, &fault);
-    found = found == T3R_OK ? t3r_far_checks(camera, &rt->frame, &fault) : found;
+    found = found == T3R_OK ? compared(rt, camera, width, height, &fault) : found;
     return t3r_sentence(status, found, &fault, text, text_bytes);
 }

@@ -321,6 +321,14 @@ TEST(strips)
     REFUSED("a strip of depth twice", T3R_ERR_STATE, t3r_add_rows, rt, &frame, &camera, 8, 8, 0, 8);
     camera.cx_q16++;
     REFUSED("another camera for the second strip", T3R_ERR_STATE, t3r_add_rows, rt, &frame, &camera, 8, 8, 8, 8);
+    empty();
+    memset(depth, 0, sizeof depth);
+    assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, 8, 0, 8), T3R_OK);
+    char said[T3R_ERROR_BYTES];
+    const t3r_status blind = t3r_add_rows(rt, &frame, &camera, 8, 24, 8, 24); /* which discards the rows before */
+    assert_int_equal(blind, T3R_ERR_NO_DEPTH);
+    assert_non_null(
+        strstr(t3r_add_rows_error(blind, rt, &frame, &camera, 8, 24, 8, 24, said, sizeof said), "no measurement"));
     WITH(warm, 1);
     add(2);
     REFUSED("a strip that would replace a view", T3R_ERR_STATE, t3r_add_rows, rt, &frame, &camera, 0, 8, 0, 8);
@@ -441,6 +449,10 @@ TEST(streams)
     assert_int_equal(t3r_stream_keyframe(rt, &frame, &camera, NULL), T3R_OK);
     frame.depth = NULL;
     REFUSED("a keyframe without depth", T3R_ERR_NO_DEPTH, t3r_stream_keyframe, rt, &frame, &camera, &report);
+    camera.cx_q16 = 16383 << 16;
+    REFUSED("an overlap by a principal point out of range after resizing", T3R_ERR_CAMERA, t3r_stream_overlap, rt,
+            &camera, 2, 2, &overlap_q8);
+    good_arguments();
     camera.position_q32[2] = INT64_C(1) << 50;
     REFUSED("a keyframe far from the map", T3R_ERR_CAMERA, t3r_stream_keyframe, rt, &frame, &camera, &report);
 }
