@@ -21,10 +21,11 @@ def lists_and_ranges():
     check(hash_of("0-2") == hash_of("0,1,2") == hash_of("0:2"), "0-2 is not 0,1,2")
     check(context_of("1:5:2") == [1, 3, 5] and context_of("0:4:3,5") == [0, 3, 5], "steps")
     check(context_of("all") == list(range(6)), "all")
-    for text, why in (("3-0", "ends before it begins"), ("0:5:0", "steps of 0"), ("0-16", "names too many"),
-                      ("0-", "such as 0-3"), ("-1", "such as 0-3"), ("0,,1", "such as 0-3"), ("auto,1", "such as 0-3"),
-                      ("4294967296", "such as 0-3"), ("0:4294967295", "names too many")):
-        expect(2, "build", "room.mcap", f"--context={text}", "--keep", 10, "-o", "s.ply", err=why)
+    for text, why in {"3-0": "ends before it begins", "0:5:0": "steps of 0", "0-16": "names too many",
+                      "0:4294967295": "names too many"}.items():
+        expect(2, "build", "room.mcap", "--context", text, "--keep", 10, "-o", "s.ply", err=why)
+    for text in ("0-", "-1", "0,,1", "auto,1", "4294967296"):
+        expect(2, "build", "room.mcap", f"--context={text}", "--keep", 10, "-o", "s.ply", err="takes numbers and ranges")
     expect(2, "build", "room.mcap", "--context", "0-2,1", "--keep", 10, "-o", "s.ply", err="names frame 1 twice")
     expect(1, "build", "room.mcap", "--context", "5-7", "--keep", 10, "-o", "s.ply", err="there is no frame 6")
     code, _, message = run("view", "room.mcap", "--compare", "3-5", "--context", "0:2:2", "-o", "v.html")

@@ -145,7 +145,7 @@ void option_frames(struct argp_state *state, const char *option, const char *tex
 {
     const char *why = index_ranges_parse(text, frames, T3R_MAX_VIEWS, count);
     if (why != NULL) {
-        argp_error(state, "--%s %s: %s; up to %u frames are named as in 0,2 or 0-3 or 0:11:2", option, text, why,
+        argp_error(state, "--%s %s: '%s'; up to %u frames are named as in 0,2 or 0-3 or 0:11:2", option, why, text,
                    T3R_MAX_VIEWS);
     }
 }

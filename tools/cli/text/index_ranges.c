@@ -49,7 +49,7 @@ const char *index_ranges_parse(const char *text, uint32_t *values, uint32_t most
     for (;; text++) {
         range r;
         if (!read_range(&text, &r) || (*text != '\0' && *text != ',')) {
-            return "takes numbers and ranges such as 0-3 or 0:11:2, with commas between";
+            return "takes numbers and ranges with commas between";
         }
         if (r.last < r.first) {
             return "has a range that ends before it begins";

@@ -11,14 +11,14 @@
 #include "reconstruction/reconstruction.h"
 
 #define POINTS_OF_FRAME (SURFACE_CELLS / 4) /* every second cell of every second row */
-#define GAIN_LEAST 0.01                     /* of what all points could gain, for one more frame */
+#define GAIN_LEAST 0.02                     /* of what all points could gain, for one more frame */
 #define PARTNER_LEAST 0.15                  /* of a frame's surface, seen from another place by one other frame */
 #define ANGLE_LEAST 0.02                    /* radians at a point between two views that tell its depth */
 #define ANGLE_MOST 0.7                      /* and between two in which it still looks alike */
 
 /* What one more view of a point is worth, by how many views have it: by sensor the first shows it, by stereo the
- * second measures it. The others average noise. */
-static const double worth[2][3] = {[T3R_DEPTH_SENSOR] = {1, 0.1, 0.02}, [T3R_DEPTH_STEREO] = {0.3, 0.7, 0.05}};
+ * second measures it. More views of the same draw new pictures no better, so they alone bring no frame in. */
+static const double worth[2][3] = {[T3R_DEPTH_SENSOR] = {1, 0.05, 0}, [T3R_DEPTH_STEREO] = {0.3, 0.7, 0.02}};
 
 /* A point of some candidate's surface. */
 typedef struct scene_point {
