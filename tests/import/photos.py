@@ -22,8 +22,10 @@ except ImportError:
     sys.exit(77)
 
 from checks import check, done  # noqa: E402
+from folder_makers import quaternion
 from frames import picture, read
 from program import TRIM3R, expect, expect_json, run
+import ros_bag as ros
 
 WIDTH, HEIGHT, PHOTOS = 192, 144, 4
 FOCAL_35MM = 30 # mm, nearest to the room's lens
@@ -136,6 +138,17 @@ def scene_of_others():
     report = expect_json("scene", "posed", "-o", "posed.ply")
     check(report["kind"] == "transforms.json" and report["depth"] == "stereo" and not report["estimated"], f"a folder: {report}")
     check("--poses" not in expect(0, "scene", "posed", "--dry-run", "-o", "posed.ply"), "given poses are estimated")
+    # a bag
+    bag = ros.Bag()
+    for i, rgb in enumerate(ROOM["image"]):
+        ns, place, (w, x, y, z) = (i + 1) * ros.SECOND, ROOM["pose"][i][:3, 3], quaternion(ROOM["pose"][i])
+        bag.put("/cam/camera_info", ros.INFO, ns, ros.info(ns, "cam", (k[0, 0], k[1, 1], k[0, 2], k[1, 2]), (WIDTH, HEIGHT)))
+        bag.put("/pose", ros.POSE, ns, ros.pose(ns, "map", place, (x, y, z, w)))
+        bag.put("/cam/image_raw", ros.IMAGE, ns, ros.image(ns, "cam", "rgb8", rgb))
+    bag.write("bag.mcap")
+    report = expect_json("scene", "bag.mcap", "-o", "bag.ply")
+    check(report["posed_frames"] == PHOTOS and not report["estimated"] and report["depth"] == "stereo" and
+          all(p["psnr"] > 22 for p in report["pictures"] if p["chosen"]), f"a bag: {report}")
     # what cannot become a scene
     os.makedirs("one")
     shutil.copy(glob.glob("plain/*.png")[0], "one/a.png")

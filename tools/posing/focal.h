@@ -12,8 +12,8 @@
 
 /* Estimates the focal length that all views share, of which their rays assume FOCAL_USUAL of the longer side, and
  * corrects the rays. It is the one with which the motions of some pairs explain most of their matches; lengths near the
- * usual one win where pairs do not tell. Returns the factor to the assumed length, 1 where no pair has enough matches.
- * Deterministic. */
+ * usual one win where the pairs do not decide. Returns the factor to the assumed length, 1 where no pair has enough
+ * matches. Deterministic. */
 double focal_estimate(pose_view *views, uint32_t count);
 
 #endif

@@ -13,10 +13,10 @@
 #define POINTS_OF_FRAME (SURFACE_CELLS / 4) /* every second cell of every second row */
 #define GAIN_LEAST 0.02                     /* of what all points could gain, for one more frame */
 #define PARTNER_LEAST 0.15                  /* of a frame's surface, seen from another place by one other frame */
-#define ANGLE_LEAST 0.02                    /* radians at a point between two views that tell its depth */
+#define ANGLE_LEAST 0.02                    /* radians at a point between two views that give its depth */
 #define ANGLE_MOST 0.7                      /* and between two in which it still looks alike */
 
-/* What one more view of a point is worth, by how many views have it: by sensor the first shows it, by stereo the
+/* Worth of one more view of a point, by the number of views that have it: by sensor the first shows it, by stereo the
  * second measures it. More views of the same draw new pictures no better, so they alone bring no frame in. */
 static const double worth[2][3] = {[T3R_DEPTH_SENSOR] = {1, 0.05, 0}, [T3R_DEPTH_STEREO] = {0.3, 0.7, 0.02}};
 
@@ -158,7 +158,7 @@ static double angle_between(const view_surface *a, const view_surface *b, const 
     return acos(fmin(1, fmax(-1, cosine)));
 }
 
-/* Whether two views of a point tell its depth by stereo. */
+/* Whether two views of a point give its depth by stereo. */
 static bool measures(const view_surface *a, const view_surface *b, const double place[3])
 {
     const double angle = angle_between(a, b, place);

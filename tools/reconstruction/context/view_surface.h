@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a frame sees of the scene, coarsely: its camera, a small grid of depths, and how sharp its picture is. */
+/* The surface that a frame sees, coarsely: its camera, a small grid of depths, and how sharp its picture is. */
 #ifndef TRIM3R_TOOLS_VIEW_SURFACE_H
 #define TRIM3R_TOOLS_VIEW_SURFACE_H
 
@@ -30,7 +30,7 @@ void view_surface_assume(view_surface *surface, double depth);
 /* Returns in point[] the world's point in the middle of a cell; false if its depth is unknown. */
 bool view_surface_point(const view_surface *surface, uint32_t cell, double point[3]);
 
-/* Whether the point lies in the picture, and not behind the surface that was measured there. */
+/* Whether the point lies in the picture, and not farther away than the surface that was measured there. */
 bool view_surface_sees(const view_surface *surface, const double point[3]);
 
 /* Returns the share of the points of `of` that `by` sees, too; 0 if none is known. */
