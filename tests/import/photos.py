@@ -158,6 +158,7 @@ def scene_of_others():
     expect(1, "scene", "absent", "-o", "no.ply", err="No such file")
     expect(2, "scene", "plain", "-o", "no.txt", err="no.txt")
     expect(2, "scene", "plain", "--keep", 5, "--gaussians", 5, "-o", "no.ply", err="exclude each other")
+    expect(0, "scene", "room.mcap", "--min-psnr", 20, "-o", "few.ply")
     check(not glob.glob("no.*"), f"files are left: {glob.glob('no.*')}")
 
 

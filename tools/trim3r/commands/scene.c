@@ -26,7 +26,7 @@
 typedef struct scene_request {
     const char *input, *output;
     const char *recording; /* NULL = not kept */
-    const char *intrinsics, *gaussians, *keep;
+    const char *intrinsics, *gaussians, *keep, *min_psnr;
     uint32_t width, height; /* 0 = at most LONGEST_SIDE */
     bool shows, json;       /* shows: prints the commands, and runs none */
 } scene_request;
@@ -39,8 +39,8 @@ static void check_options(struct argp_state *state, const scene_request *o)
         argp_error(state, "PHOTOS, a folder, a bag or a recording is missing");
     } else if (o->output == NULL) {
         argp_error(state, "-o SCENE.ply or -o PAGE.html is missing");
-    } else if (o->gaussians != NULL && o->keep != NULL) {
-        argp_error(state, "--gaussians and --keep exclude each other");
+    } else if ((o->gaussians != NULL) + (o->keep != NULL) + (o->min_psnr != NULL) > 1) {
+        argp_error(state, "--gaussians, --keep and --min-psnr exclude each other");
     } else if (file_kind_named(o->output) != FILE_PAGE) {
         scene_output_option(state, "-o", o->output);
     }
@@ -78,6 +78,10 @@ static const struct argp_option argp_options[] = {
      "lens of pictures, as for import: fx,fy,cx,cy[,k1,k2,p1,p2,k3] (EXIF's focal length, else an estimate)", 0},
     {"gaussians", OPTION_TO(scene_request, gaussians), "Z", 0, "number of Gaussians (as for --keep 10%)", 0},
     {"keep", OPTION_TO(scene_request, keep), "P%", 0, "percent of the valid points to retain (10%)", 0},
+    {"min-psnr", OPTION_TO(scene_request, min_psnr), "DB", 0,
+     "decibels with which the chosen frames must be drawn, by as few Gaussians as they need, instead of a number "
+     "(none)",
+     0},
     {"dry-run", OPTION_TO(scene_request, shows), NULL, 0, "print the commands that do the same, and run none", 0},
     {"json", OPTION_TO(scene_request, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
@@ -99,6 +103,7 @@ static const struct argp argp = {
            "Examples:\n"
            "  trim3r scene photos -o scene.ply\n"
            "  trim3r scene photos -o page.html\n"
+           "  trim3r scene photos --min-psnr 26 -o scene.ply\n"
            "  trim3r scene photos --dry-run -o scene.ply\n"
            "  trim3r scene bag.mcap --keep 5% --recording bag-frames.mcap -o scene.spz",
 };
@@ -150,7 +155,9 @@ static void make_lines(plan *p, const scene_request *o, const char *recording)
     if (sized && !p->imports) {
         line_add_size(&p->build, "--working", width, height);
     }
-    if (o->gaussians != NULL) {
+    if (o->min_psnr != NULL) {
+        line_add_option(&p->build, "--min-psnr", o->min_psnr);
+    } else if (o->gaussians != NULL) {
         line_add_option(&p->build, "--gaussians", o->gaussians);
     } else {
         line_add_option(&p->build, "--keep", o->keep != NULL ? o->keep : "10%");
