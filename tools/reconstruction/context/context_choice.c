@@ -11,20 +11,22 @@
 #include "reconstruction/reconstruction.h"
 
 #define POINTS_OF_FRAME (SURFACE_CELLS / 4) /* every second cell of every second row */
-#define GAIN_LEAST 0.02                     /* of what all points could gain, for one more frame */
+#define GAIN_LEAST 0.01                     /* of what all points could gain, for one more frame */
 #define PARTNER_LEAST 0.15                  /* of a frame's surface, seen from another place by one other frame */
+#define ANGLE_NEAR 0.2                      /* radians between two directions in which a point looks alike */
 #define ANGLE_LEAST 0.02                    /* radians at a point between two views that give its depth */
-#define ANGLE_MOST 0.7                      /* and between two in which it still looks alike */
+#define ANGLE_MOST 0.7                      /* and between two that can be matched */
 
 /* Worth of one more view of a point, by the number of views that have it: by sensor the first shows it, by stereo the
  * second measures it. More views of the same draw new pictures no better, so they alone bring no frame in. */
-static const double worth[2][3] = {[T3R_DEPTH_SENSOR] = {1, 0.05, 0}, [T3R_DEPTH_STEREO] = {0.3, 0.7, 0.02}};
+static const double worth[2][3] = {[T3R_DEPTH_SENSOR] = {1, 0.05, 0}, [T3R_DEPTH_STEREO] = {0.3, 0.7, 0.005}};
 
 /* A point of some candidate's surface. */
 typedef struct scene_point {
     double place[3];
     uint32_t views; /* chosen frames that count for it */
     uint32_t first; /* the first of them, an index of candidates */
+    uint32_t owner; /* the candidate of whose surface it is */
 } scene_point;
 
 typedef struct candidates {
@@ -84,23 +86,60 @@ static int look(candidates *c, const t3r_recording *recording, const char *path,
                            c->count, least, why);
 }
 
-/* Measures the scene's depth by stereo of two candidates, small; 0 if they give none. */
+static int ascending(const void *a, const void *b)
+{
+    const double p = *(const double *)a, q = *(const double *)b;
+    return (p > q) - (p < q);
+}
+
+/* Returns the median depth of a scene's Gaussians before a camera; 0 if none is before it. */
+static double median_depth(const t3r_scene *scene, const pinhole *camera)
+{
+    double *depths = malloc((scene->count + 1) * sizeof *depths), median = 0;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < scene->count && depths != NULL; i++) {
+        double place[3], pixel[2];
+        for (int k = 0; k < 3; k++) {
+            place[k] = ldexp((double)scene->frame.origin_q32[k], -32) +
+                       ldexp(scene->gaussians[i].position_q20[k], scene->frame.exponent - 20);
+        }
+        count += pinhole_project(camera, place, pixel, &depths[count]);
+    }
+    if (count > 0) {
+        qsort(depths, count, sizeof *depths, ascending);
+        median = depths[count / 2];
+    }
+    free(depths);
+    return median;
+}
+
+/* Measures the scene's depth by stereo of two candidates, in a small and coarse scene; 0 if they give none. */
 static double depth_of_pair(const candidates *c, uint32_t a, uint32_t b, const t3r_recording *recording,
                             const char *path)
 {
-    enum { LONGEST = 192 };
+    enum { LONGEST = 192, GAUSSIANS = 500 };
     reconstruction_options options;
-    reconstruction_points points = {.depth = 0};
+    reconstruction r;
     const view_surface *s = &c->surfaces[a];
     const uint32_t longest = s->width > s->height ? s->width : s->height;
     reconstruction_defaults(&options);
     options.config.depth = T3R_DEPTH_STEREO;
     options.config.width = longest > LONGEST ? s->width * LONGEST / longest : s->width;
     options.config.height = longest > LONGEST ? s->height * LONGEST / longest : s->height;
+    options.config.allocate = T3R_ALLOCATE_UNIFORM;
+    options.config.refine = 0;
+    options.head = "analytic";
+    options.hash = false;
+    options.gaussians = GAUSSIANS;
     options.context_count = 2;
     options.context[0] = c->frames[a];
     options.context[1] = c->frames[b];
-    return reconstruction_count(&points, recording, path, &options) == CLI_OK ? points.depth : 0;
+    if (reconstruction_build(&r, recording, path, &options) != CLI_OK) {
+        return 0;
+    }
+    const double depth = median_depth(&r.scene, &s->camera);
+    reconstruction_close(&r);
+    return depth;
 }
 
 /* Assumes for all frames the depth that the first two neighbours that can be matched have. */
@@ -121,29 +160,6 @@ static int assume_depth(candidates *c, const t3r_recording *recording, const cha
     return depth > 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "--context auto: %s", why);
 }
 
-/* Takes every second cell of every second row of all frames, and finds which frames see it. */
-static int make_points(candidates *c)
-{
-    c->points = calloc((size_t)c->count * POINTS_OF_FRAME, sizeof *c->points);
-    c->seen = calloc((size_t)c->count * c->count * POINTS_OF_FRAME, sizeof *c->seen);
-    if (c->points == NULL || c->seen == NULL) {
-        return cli_error(CLI_BAD_INPUT, "out of memory");
-    }
-    for (uint32_t i = 0; i < c->count * POINTS_OF_FRAME; i++) {
-        const uint32_t at = i % POINTS_OF_FRAME, across = SURFACE_ACROSS / 2;
-        const uint32_t cell = at / across * 2 * SURFACE_ACROSS + at % across * 2;
-        c->point_count += view_surface_point(&c->surfaces[i / POINTS_OF_FRAME], cell, c->points[c->point_count].place);
-    }
-    for (uint32_t i = 0; i < c->count; i++) {
-        for (uint32_t k = 0; k < c->point_count; k++) {
-            c->seen[(size_t)i * c->point_count + k] = view_surface_sees(&c->surfaces[i], c->points[k].place);
-        }
-    }
-    return CLI_OK;
-}
-
-/* ---- choosing -------------------------------------------------------------------------------------------------- */
-
 static double angle_between(const view_surface *a, const view_surface *b, const double place[3])
 {
     double along[2][3], dot = 0, squares[2] = {0};
@@ -157,6 +173,35 @@ static double angle_between(const view_surface *a, const view_surface *b, const 
     const double cosine = dot / sqrt(squares[0] * squares[1]);
     return acos(fmin(1, fmax(-1, cosine)));
 }
+
+/* Takes every second cell of every second row of all frames, and finds which frames see it from a like direction: only
+ * these can draw it for the frame that it is of. */
+static int make_points(candidates *c)
+{
+    c->points = calloc((size_t)c->count * POINTS_OF_FRAME, sizeof *c->points);
+    c->seen = calloc((size_t)c->count * c->count * POINTS_OF_FRAME, sizeof *c->seen);
+    if (c->points == NULL || c->seen == NULL) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    for (uint32_t i = 0; i < c->count * POINTS_OF_FRAME; i++) {
+        const uint32_t at = i % POINTS_OF_FRAME, across = SURFACE_ACROSS / 2;
+        const uint32_t cell = at / across * 2 * SURFACE_ACROSS + at % across * 2;
+        const uint32_t owner = i / POINTS_OF_FRAME;
+        c->points[c->point_count].owner = owner;
+        c->point_count += view_surface_point(&c->surfaces[owner], cell, c->points[c->point_count].place);
+    }
+    for (uint32_t i = 0; i < c->count; i++) {
+        for (uint32_t k = 0; k < c->point_count; k++) {
+            const scene_point *p = &c->points[k];
+            c->seen[(size_t)i * c->point_count + k] =
+                view_surface_sees(&c->surfaces[i], p->place) &&
+                angle_between(&c->surfaces[i], &c->surfaces[p->owner], p->place) <= ANGLE_NEAR;
+        }
+    }
+    return CLI_OK;
+}
+
+/* ---- choosing -------------------------------------------------------------------------------------------------- */
 
 /* Whether two views of a point give its depth by stereo. */
 static bool measures(const view_surface *a, const view_surface *b, const double place[3])

@@ -10,9 +10,9 @@
 
 /* Chooses 1 to T3R_MAX_VIEWS frames, or 2 and more for T3R_DEPTH_STEREO, in ascending order into frames[]: of at most
  * CONTEXT_CANDIDATES frames with pose, intrinsics and the depth that is needed, spread evenly, and never `except`. The
- * next frame is always the one that adds most: surface that no chosen frame sees, or by stereo none from another
- * place; a blurred frame counts for less. The choice ends where a frame adds little. Deterministic. Returns an exit
- * status of cli.h. */
+ * next frame is always the one that adds most: surface that no chosen frame sees from a like direction, or by
+ * stereo none from another place; a blurred frame counts for less. The choice ends where a frame adds little.
+ * Deterministic. Returns an exit status of cli.h. */
 int context_choose(const t3r_recording *recording, const char *path, t3r_depth depth, uint32_t except,
                    uint32_t frames[T3R_MAX_VIEWS], uint32_t *count);
 
