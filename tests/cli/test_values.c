@@ -2,6 +2,7 @@
 /* Values on the command line: lists, percentages, sizes, budgets, hashes. */
 #include "cli/cli.h"
 #include "cli/tables/json_output.h"
+#include "cli/text/index_ranges.h"
 #include "reconstruction/reconstruction.h"
 #include "test.h"
 
@@ -43,6 +44,36 @@ TEST(parses_counts)
         assert_int_equal(cli_parse_list_counts(bad[i], values, 3, &count), -1);
     }
     assert_int_equal(cli_parse_list_u32("1k", values, 3, &count), -1);
+}
+
+TEST(parses_ranges)
+{
+    static const struct {
+        const char *text;
+        uint32_t count, values[4];
+    } good[] = {
+        {"7", 1, {7}},
+        {"0-3", 4, {0, 1, 2, 3}},
+        {"2:4", 3, {2, 3, 4}},
+        {"0:7:3", 3, {0, 3, 6}},
+        {"0:6:3", 3, {0, 3, 6}},
+        {"5,1-2,0", 4, {5, 1, 2, 0}},
+        {"3-3,4:4:9", 2, {3, 4}},
+        {"4294967294-4294967295", 2, {UINT32_MAX - 1, UINT32_MAX}},
+        {"1:4294967295:4294967295", 1, {1}},
+    };
+    static const char *const bad[] = {
+        "",   ",",  "1,", ",1",  "-1",  "1-",    "1:",  "1-2-3",     "1-2:3",        "1:2:",       "1:2:3:4",
+        " 1", "1 ", "x",  "2-1", "2:1", "0:3:0", "0-4", "0,1,2,3,4", "0:4294967295", "4294967296", "0-4294967296"};
+    uint32_t values[4], count = 0;
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) {
+        assert_null(index_ranges_parse(good[i].text, values, 4, &count));
+        assert_int_equal(count, good[i].count);
+        assert_memory_equal(values, good[i].values, count * sizeof *values);
+    }
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        assert_non_null(index_ranges_parse(bad[i], values, 4, &count));
+    }
 }
 
 TEST(parses_percentages)

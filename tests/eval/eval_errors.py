@@ -32,8 +32,8 @@ with tempfile.TemporaryDirectory() as folder:
     refuse(USAGE, "--context and --target", [room, "--target", "1", "--keep", "10"])
     for keep in ("0", "101", "10,", "ten", "-5", ""):
         refuse(USAGE, "--keep takes percentages", [*one, f"--keep={keep}"])
-    for context in ("0,", "a", ",".join(str(i) for i in range(17))):
-        refuse(USAGE, "--context takes", [room, "--context", context, "--target", "1", "--keep", "10"])
+    for context, why in {"0,": "takes numbers", "a": "takes numbers", ",".join(str(i) for i in range(17)): "names too many"}.items():
+        refuse(USAGE, f"--context {why}", [room, "--context", context, "--target", "1", "--keep", "10"])
     refuse(USAGE, "--target takes", [room, "--context", "0,2", "--target", "1,3", "--keep", "10"])
     refuse(USAGE, "--depth", [*one, "--keep", "10", "--depth", "radar"])
     refuse(USAGE, "--head", [*one, "--keep", "10", "--head", "huge"])

@@ -113,8 +113,9 @@ def other_commands():
     """Commands that need a recording name the kind of each folder, and the command that converts it."""
     folders = {name: kind for name, (_, kind) in KINDS.items()} | {"alone": "pictures"}
     for path, kind in folders.items():
+        options = " --poses estimate" if path == "alone" else ""
         for command in commands_of(path):
-            expect(1, *command, err=f"{path}: a folder ({kind}); first make a recording of it: trim3r import {path} -o")
+            expect(1, *command, err=f"{path}: a folder ({kind}); first make a recording of it: trim3r import {path}{options} -o")
     os.makedirs("unpacked")
     write("unpacked/meta.json", b"{}")
     words = {"empty": "no pictures", "crashed": "ros2 bag reindex", "unpacked": "zipped", "films/film.webp": "dwebp",

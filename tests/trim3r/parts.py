@@ -14,6 +14,7 @@ from program import HEADS, TRIM3R, check, expect, fill_disk, in_scratch, room, w
 SIZE = ("--size", "64x64")
 # For each command, a line that succeeds and prints something; and its outputs.
 LINES = {
+    "scene": (["room.mcap", "-o", "out.ply"], ["out.ply"]),
     "import": (["posed", "-o", "out.mcap"], ["out.mcap"]),
     "capture": (["--source", "replay:room.mcap", "-o", "out.mcap"], []), # a truncated recording is one, too
     "room": ([*SIZE, "-o", "out.mcap"], ["out.mcap"]),

@@ -223,20 +223,22 @@ static void check(struct argp_state *state, capture_options *o)
         argp_error(state, "--source is missing (--list shows what there is)");
     } else if (o->output == NULL && o->scene == NULL && !o->hash) {
         argp_error(state, "-o REC.mcap or --build SCENE.ply is missing");
-    } else if (o->scene == NULL && (o->every > 0 || budget || o->build.context_count > 0 || o->local)) {
+    } else if (o->scene == NULL && (o->every > 0 || budget || reconstruction_names_context(&o->build) || o->local)) {
         argp_error(state, "--every, --local, --context and budgets belong to --build");
     } else if (o->scene != NULL && o->build.config.allocate == T3R_ALLOCATE_GIVEN) {
         argp_error(state, "--allocate given needs a recording: trim3r build");
     } else if (o->build.config.depth == T3R_DEPTH_STEREO) {
         argp_error(state, "--depth stereo needs a recording: trim3r build");
-    } else if (o->streams && (o->scene == NULL || o->local || o->build.context_count > 0 ||
+    } else if (o->streams && (o->scene == NULL || o->local || reconstruction_names_context(&o->build) ||
                               reconstruction_chooses(&o->build) || o->build.keep_percent > 0)) {
         argp_error(state,
                    "--stream needs --build SCENE.ply, and takes no --local, --context, --auto, --min-psnr or --keep");
     } else if (!o->streams && live_options_given(&o->live, &o->build.config) != NULL) {
         argp_error(state, "--%s belongs to --stream", live_options_given(&o->live, &o->build.config));
-    } else if (o->every > 0 && o->build.context_count > 0) {
+    } else if (o->every > 0 && reconstruction_names_context(&o->build)) {
         argp_error(state, "--every and --context exclude each other");
+    } else if (o->build.context_kind != CONTEXT_LISTED) {
+        argp_error(state, "--context lists the frames of a capture; all and auto need a recording: trim3r build");
     } else if (o->poses == NULL && (o->has_offset || o->pose_topic != NULL || o->strict)) {
         argp_error(state, "--clock-offset, --pose-topic and --strict belong to --poses");
     } else if ((o->max_bytes > 0 || o->sync || o->stored.unchunked || o->stored.compression != T3R_COMPRESSION_NONE) &&

@@ -13,6 +13,7 @@
 #include "import/estimation/recording_poses.h"
 #include "import/folders/planar_recording.h"
 #include "import/import_source.h"
+#include "reconstruction/context/context_frames.h"
 
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 
@@ -140,19 +141,25 @@ static int list_triplets(evaluation_cases *cases)
     return CLI_OK;
 }
 
-static int list_given(evaluation_cases *cases, const uint32_t *context, uint32_t context_count, uint32_t target)
+static int list_given(evaluation_cases *cases, const reconstruction_options *settings, uint32_t target)
 {
     cases->list = calloc(cases->input_count, sizeof *cases->list);
     if (cases->list == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
     for (; cases->count < cases->input_count; cases->count++) {
+        uint32_t context[T3R_MAX_VIEWS], count;
         evaluation_case *what = &cases->list[cases->count];
+        const int code = context_frames(cases->recordings[cases->count], cases->inputs[cases->count], settings, target,
+                                        context, &count);
+        if (code != CLI_OK) {
+            return code;
+        }
         *what = (evaluation_case){.recording = cases->recordings[cases->count],
                                   .path = cases->inputs[cases->count],
                                   .scene = cases->names[cases->count],
                                   .target = target};
-        set_context(what, context, context_count);
+        set_context(what, context, count);
     }
     return CLI_OK;
 }
@@ -254,12 +261,11 @@ static int fill_contexts(evaluation_cases *cases, const reconstruction_options *
 int evaluation_cases_of_recordings(evaluation_cases *cases, char **inputs, uint32_t count,
                                    const reconstruction_options *settings, uint32_t target)
 {
-    const uint32_t context_count = settings->context_count;
     int code = begin(cases, inputs, count);
     cases->poses = settings->poses;
     code = code == CLI_OK ? open_recordings(cases) : code;
     if (code == CLI_OK) {
-        code = context_count > 0 ? list_given(cases, settings->context, context_count, target) : list_triplets(cases);
+        code = reconstruction_names_context(settings) ? list_given(cases, settings, target) : list_triplets(cases);
     }
     return code == CLI_OK && settings->context_views > 2 ? fill_contexts(cases, settings) : code;
 }

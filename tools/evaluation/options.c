@@ -57,7 +57,7 @@ static void check_options(struct argp_state *state, evaluation_options *o)
     if (evaluation_name_parts(o->inputs, o->input_count, pair) == 0) {
         argp_error(state, "%s and %s would have the same name", o->inputs[pair[0]], o->inputs[pair[1]]);
     }
-    if (o->planar && (o->has_target || o->settings.context_count > 0)) {
+    if (o->planar && (o->has_target || reconstruction_names_context(&o->settings))) {
         argp_error(state, "--planar takes images, not --context and --target");
     }
     if (o->planar && o->settings.context_views > 2) {
@@ -65,6 +65,9 @@ static void check_options(struct argp_state *state, evaluation_options *o)
     }
     if (o->settings.context_views > 2 && o->settings.context_count > o->settings.context_views) {
         argp_error(state, "--context names more frames than --views");
+    }
+    if (o->settings.context_views > 2 && o->settings.context_kind != CONTEXT_LISTED) {
+        argp_error(state, "--views adds frames to a listed --context, not to all or auto");
     }
     if (o->planar && o->settings.poses != POSES_GIVEN) {
         argp_error(state, "--poses belongs to a recording, not to --planar");
@@ -78,7 +81,7 @@ static void check_options(struct argp_state *state, evaluation_options *o)
     if (o->planar && o->settings.config.width != 0) {
         argp_error(state, "--working belongs to a recording; --size sets the size of --planar");
     }
-    if (o->has_target != (o->settings.context_count > 0)) {
+    if (o->has_target != reconstruction_names_context(&o->settings)) {
         argp_error(state,
                    "--context and --target belong together; without both, all triplets of the recording are taken");
     }
@@ -119,7 +122,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         state->child_inputs[2] = &o->settings.scene_flags;
         return 0;
     case KEY_CONTEXT:
-        option_frames(state, "context", arg, o->settings.context, &o->settings.context_count);
+        reconstruction_parse_context(state, arg, &o->settings);
         return 0;
     case KEY_TARGET:
         o->target = option_number(state, "target", arg, 0, UINT32_MAX);
@@ -159,8 +162,10 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS | OPTION_FOLDER),
     {NULL, 0, NULL, 0, "What is compared:", 1},
-    {"context", KEY_CONTEXT, "A,B,...", 0,
-     "frames that the scene is made of; one named twice counts once (all triplets that the recording carries)", 0},
+    {"context", KEY_CONTEXT, "LIST|all|auto", 0,
+     "frames that the scene is made of: 0,2 or 0-3 or 0:11:2, one named twice counting once; all but the target; or "
+     "auto, of all but the target (all triplets that the recording carries)",
+     0},
     {"target", KEY_TARGET, "T", 0, "frame to compare the rendered view with; the method never sees it", 0},
     {"views", KEY_VIEWS, "N", 0,
      "frames of every context, 2..16 (2: the triplet's own, or --context); those nearest to the target are added", 0},

@@ -5,51 +5,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "core/camera.h"
+#include "reconstruction/context/pinhole.h"
 
 #define WITHIN (1.0 / 20)
-
-/* A pinhole camera in floats. */
-typedef struct pinhole {
-    double fx, fy, cx, cy, rotation[9], position[3]; /* rotation: camera to world, by rows */
-} pinhole;
-
-static pinhole pinhole_of(const t3r_camera *camera)
-{
-    pinhole p = {.fx = ldexp(camera->fx_q16, -16),
-                 .fy = ldexp(camera->fy_q16, -16),
-                 .cx = ldexp(camera->cx_q16, -16),
-                 .cy = ldexp(camera->cy_q16, -16)};
-    int32_t rotation_q30[9];
-    t3r_camera_rotation(camera->rotation_q30, rotation_q30);
-    for (int i = 0; i < 9; i++) {
-        p.rotation[i] = ldexp(rotation_q30[i], -30);
-    }
-    for (int i = 0; i < 3; i++) {
-        p.position[i] = ldexp((double)camera->position_q32[i], -32);
-    }
-    return p;
-}
-
-static void point_of(const pinhole *p, double u, double v, double z, double point[3])
-{
-    const double ray[3] = {(u - p->cx) / p->fx * z, (v - p->cy) / p->fy * z, z};
-    for (int i = 0; i < 3; i++) {
-        const double *row = &p->rotation[3 * (size_t)i];
-        point[i] = row[0] * ray[0] + row[1] * ray[1] + row[2] * ray[2] + p->position[i];
-    }
-}
-
-/* Returns a point in the camera's own frame. */
-static void into(const pinhole *p, const double point[3], double own[3])
-{
-    for (size_t i = 0; i < 3; i++) {
-        own[i] = 0;
-        for (size_t k = 0; k < 3; k++) {
-            own[i] += p->rotation[3 * k + i] * (point[k] - p->position[k]);
-        }
-    }
-}
 
 /* Whether the view measured depth z at (x, y) or beside it. */
 static bool measured(const seen_view *view, uint32_t width, uint32_t height, long x, long y, double z)
@@ -69,14 +27,12 @@ static bool measured(const seen_view *view, uint32_t width, uint32_t height, lon
 static bool saw(const seen_view *view, uint32_t width, uint32_t height, const double point[3])
 {
     const pinhole p = pinhole_of(view->camera);
-    double own[3];
-    into(&p, point, own);
-    if (own[2] <= 0) {
+    double pixel[2], z;
+    if (!pinhole_project(&p, point, pixel, &z)) {
         return false;
     }
-    const double x = p.fx * own[0] / own[2] + p.cx, y = p.fy * own[1] / own[2] + p.cy;
-    const bool inside = x > -0.5 && y > -0.5 && x < width - 0.5 && y < height - 0.5;
-    return inside && measured(view, width, height, lround(x), lround(y), own[2]);
+    const bool inside = pixel[0] > -0.5 && pixel[1] > -0.5 && pixel[0] < width - 0.5 && pixel[1] < height - 0.5;
+    return inside && measured(view, width, height, lround(pixel[0]), lround(pixel[1]), z);
 }
 
 void seen_mask(uint8_t *seen, uint32_t width, uint32_t height, const seen_view *target, const seen_view *context,
@@ -88,7 +44,7 @@ void seen_mask(uint8_t *seen, uint32_t width, uint32_t height, const seen_view *
             const size_t i = (size_t)v * width + u;
             double point[3];
             seen[i] = 0;
-            point_of(&p, u, v, target->depth[i] * target->unit, point);
+            pinhole_point(&p, u, v, target->depth[i] * target->unit, point);
             for (uint32_t c = 0; c < context_count && target->depth[i] != 0 && seen[i] == 0; c++) {
                 seen[i] = saw(&context[c], width, height, point) ? 255 : 0;
             }

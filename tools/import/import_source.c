@@ -38,8 +38,9 @@ static void explain_folder(const char *path, char *text, size_t bytes)
     posed_folder folder;
     const posed_folder_options options = posed_folder_look(path);
     if (posed_folder_open(path, &options, &folder, reason, sizeof reason) == 0) {
-        (void)t3r_reason(text, bytes, "%s: a folder (%s); first make a recording of it: trim3r import %s -o NAME.mcap",
-                         path, folder.kind, path);
+        (void)t3r_reason(text, bytes,
+                         "%s: a folder (%s); first make a recording of it: trim3r import %s%s -o NAME.mcap", path,
+                         folder.kind, path, options.without_poses ? " --poses estimate" : "");
     } else {
         (void)t3r_reason(text, bytes, "%s", reason);
     }

@@ -82,12 +82,20 @@ static int point_rows(png_work *work, const picture *p)
     return 0;
 }
 
-/* Returns the orientation that the chunk eXIf states. */
-static uint32_t png_orientation(png_work *work)
+/* Stores what the camera stated. */
+static void keep_exif(picture *out, const uint8_t *tiff, size_t count)
+{
+    const exif_facts facts = exif_read(tiff, count);
+    out->orientation = facts.orientation;
+    out->focal_35mm = facts.focal_35mm;
+}
+
+/* Reads the chunk eXIf. */
+static void read_png_exif(png_work *work, picture *out)
 {
     png_unknown_chunkp chunks = NULL;
-    return png_get_unknown_chunks(work->png, work->info, &chunks) > 0 ? exif_orientation(chunks[0].data, chunks[0].size)
-                                                                      : EXIF_UPRIGHT;
+    const bool there = png_get_unknown_chunks(work->png, work->info, &chunks) > 0;
+    keep_exif(out, there ? chunks[0].data : NULL, there ? chunks[0].size : 0);
 }
 
 /* Moves the last channel, which is alpha, from the samples into a plane; drops it if every pixel is opaque. */
@@ -142,7 +150,7 @@ static int png_decode(png_work *work, picture *out)
     out->height = png_get_image_height(work->png, work->info);
     out->channels = grey ? 1 : 3;
     out->bits = colour_type == PNG_COLOR_TYPE_GRAY && depth == 16 ? 16 : 8;
-    out->orientation = png_orientation(work);
+    read_png_exif(work, out);
     if (work->want.header_only) {
         return 0;
     }
@@ -266,16 +274,16 @@ static void jpeg_on_message(j_common_ptr jpeg, int level)
     }
 }
 
-/* Returns the orientation that a marker with EXIF states. */
-static uint32_t jpeg_orientation(const struct jpeg_decompress_struct *jpeg)
+/* Reads the first marker with EXIF. */
+static void read_jpeg_exif(const struct jpeg_decompress_struct *jpeg, picture *out)
 {
     static const char name[] = "Exif\0";
-    for (const struct jpeg_marker_struct *marker = jpeg->marker_list; marker != NULL; marker = marker->next) {
-        if (marker->data_length > sizeof name && memcmp(marker->data, name, sizeof name) == 0) {
-            return exif_orientation(marker->data + sizeof name, marker->data_length - sizeof name);
-        }
+    const struct jpeg_marker_struct *marker = jpeg->marker_list;
+    while (marker != NULL && (marker->data_length <= sizeof name || memcmp(marker->data, name, sizeof name) != 0)) {
+        marker = marker->next;
     }
-    return EXIF_UPRIGHT;
+    const bool there = marker != NULL;
+    keep_exif(out, there ? marker->data + sizeof name : NULL, there ? marker->data_length - sizeof name : 0);
 }
 
 static void jpeg_refuse(j_common_ptr jpeg, const char *reason)
@@ -297,7 +305,7 @@ static int jpeg_decode(jpeg_work *work, FILE *file, picture *out)
         (uint64_t)work->jpeg.image_width * work->jpeg.image_height > PICTURE_LARGEST_PIXELS) {
         jpeg_fail(work, "image exceeds the largest size");
     }
-    out->orientation = jpeg_orientation(&work->jpeg);
+    read_jpeg_exif(&work->jpeg, out);
     if (work->want.header_only) {
         out->width = work->jpeg.image_width;
         out->height = work->jpeg.image_height;

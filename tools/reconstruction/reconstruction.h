@@ -22,6 +22,13 @@
 
 typedef enum arena_choice { ARENA_FULL, ARENA_MIN, ARENA_BYTES } arena_choice;
 
+/* The source of the context frames. */
+typedef enum context_kind {
+    CONTEXT_LISTED, /* `context`, or the first two */
+    CONTEXT_ALL,    /* all frames of the recording */
+    CONTEXT_AUTO    /* those that context_choose() chooses */
+} context_kind;
+
 #define RECONSTRUCTION_MAX_LOSS 0.5 /* dB, for --auto */
 
 /* Settings from the command line. reconstruction_defaults() fills every field. */
@@ -30,7 +37,8 @@ typedef struct reconstruction_options {
      * a width of 0 is the first context frame's size, a render_width of 0 the working size. */
     t3r_config config;
     uint32_t context[T3R_MAX_VIEWS]; /* frame indices of the context views */
-    uint32_t context_count;          /* 0 = the first two frames */
+    uint32_t context_count;          /* 0 = the first two frames, or as context_kind says */
+    context_kind context_kind;       /* others than CONTEXT_LISTED are replaced before a build: context_frames.h */
     uint32_t context_views;          /* for `eval --views`: frames of a case; 2 = the triplet's own */
     poses_source poses;              /* set by callers: source of the context views' poses */
     uint32_t gaussians;              /* budget as a count; 0 = keep_percent decides */
@@ -73,6 +81,10 @@ extern const struct argp reconstruction_argp; /* both */
 
 /* Parses the value of --arena, for parsers without the children; reports a usage error if it is none. */
 void reconstruction_parse_arena(struct argp_state *state, const char *text, reconstruction_options *options);
+/* Parses the value of --context likewise. */
+void reconstruction_parse_context(struct argp_state *state, const char *text, reconstruction_options *options);
+/* Whether the options say of which frames the scene is made. */
+bool reconstruction_names_context(const reconstruction_options *options);
 
 typedef struct reconstruction {
     t3r_config config;

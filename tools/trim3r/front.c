@@ -19,6 +19,7 @@
 #include "trim3r/commands/commands.h"
 
 static const trim3r_command product[] = {
+    {"scene", command_scene, "turn photos, a folder, a bag or a recording into a scene"},
     {"import", command_import, "turn a folder of posed pictures into a recording"},
     {"capture", command_capture, "record a live camera, or turn it straight into Gaussians"},
     {"room", command_room, "write the built-in room as a recording"},
@@ -75,7 +76,8 @@ static void list_commands(const trim3r_extension *added)
 
 static const char about[] = "Turn a few camera frames into a budgeted set of 3-D Gaussians, and draw views of\n"
                             "it, in integers.\n";
-static const char data_flow[] = "  import|capture|room > REC.mcap > build > SCENE.ply > render > view.png\n"
+static const char data_flow[] = "  photos|DIR|BAG|REC.mcap > scene > SCENE.ply or PAGE.html\n\n"
+                                "  import|capture|room > REC.mcap > build > SCENE.ply > render > view.png\n"
                                 "                        REC.mcap > eval > scores.csv\n"
                                 "                        REC.mcap > replay > hashes\n\n"
                                 "  trim3r room -o room.mcap\n"

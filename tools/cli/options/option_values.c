@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "cli/text/index_ranges.h"
 #include "trim3r.h"
 
 error_t option_field(int key, char *argument, struct argp_state *state)
@@ -142,9 +143,10 @@ void option_counts(struct argp_state *state, const char *option, const char *tex
 
 void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count)
 {
-    if (cli_parse_list_u32(text, frames, T3R_MAX_VIEWS, count) != 0) {
-        argp_error(state, "--%s takes 1 to %u frame indices with commas between, not '%s'", option, T3R_MAX_VIEWS,
-                   text);
+    const char *why = index_ranges_parse(text, frames, T3R_MAX_VIEWS, count);
+    if (why != NULL) {
+        argp_error(state, "--%s %s: '%s'; up to %u frames are named as in 0,2 or 0-3 or 0:11:2", option, why, text,
+                   T3R_MAX_VIEWS);
     }
 }
 

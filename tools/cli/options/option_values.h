@@ -42,7 +42,7 @@ void option_keep(struct argp_state *state, const char *text, double *percents, u
 /* Parses 1 to `most` such numbers in [1, high], separated by commas. */
 void option_counts(struct argp_state *state, const char *option, const char *text, uint32_t high, uint32_t *counts,
                    uint32_t most, uint32_t *count);
-/* Parses 1 to T3R_MAX_VIEWS frame indices, separated by commas. */
+/* Parses 1 to T3R_MAX_VIEWS frame indices, or ranges of them (index_ranges.h). */
 void option_frames(struct argp_state *state, const char *option, const char *text, uint32_t *frames, uint32_t *count);
 /* Returns all non-option arguments; for ARGP_KEY_ARGS. */
 void option_arguments(struct argp_state *state, char ***arguments, uint32_t *count);

@@ -367,7 +367,7 @@ static int import_opened(const recording_import_request *r, t3r_recording *recor
     const report made = {recording, &frames, &totals, &losses, &estimated};
     if (code == CLI_OK && r->json) {
         print_json(&made);
-    } else if (code == CLI_OK) {
+    } else if (code == CLI_OK && !r->quiet) {
         print_text(r->output, &made);
     }
     bag_frames_close(&frames);

@@ -17,6 +17,7 @@ typedef struct recording_import_request {
     const bag_options *bag;
     const recording_options *stored;
     bool json;
+    bool quiet; /* prints nothing but errors */
 } recording_import_request;
 
 /* Writes the recording and prints what was used for what. Returns an exit status of cli.h. */

@@ -8,19 +8,24 @@
 #include "cli/cli.h"
 #include "core/little_endian.h"
 #include "host/reason.h"
+#include "import/estimation/focal_lengths.h"
 #include "import/frames/frame.h"
 #include "messages/fixed_camera.h"
+#include "posing/focal.h"
 
 static int look_at(const char *directory, const posed_folder *folder, uint32_t index, const uint32_t size[2],
                    pose_view *view, t3r_camera *camera, char *error, size_t error_bytes)
 {
     import_buffers buffers;
     t3r_recorded_frame recorded;
-    const posed_frame *from = &folder->frames[index];
+    posed_frame from = folder->frames[index];
     uint32_t sides[2];
-    const bool large = import_picture_size(directory, from, &sides[0], &sides[1], error, error_bytes) == 0 &&
-                       (sides[0] > T3R_MAX_SIDE || sides[1] > T3R_MAX_SIDE);
-    int status = import_frame(directory, from, NULL, large ? size[0] : 0, large ? size[1] : 0, &buffers, &recorded,
+    const bool known = import_picture_size(directory, &from, &sides[0], &sides[1], error, error_bytes) == 0;
+    const bool large = known && (sides[0] > T3R_MAX_SIDE || sides[1] > T3R_MAX_SIDE);
+    if (known && focal_length_is_unknown(&from)) {
+        from.intrinsics.fx = FOCAL_USUAL * fmax(sides[0], sides[1]);
+    }
+    int status = import_frame(directory, &from, NULL, large ? size[0] : 0, large ? size[1] : 0, &buffers, &recorded,
                               error, error_bytes);
     if (status == 0) {
         (void)t3r_fixed_camera(&recorded.camera, camera); /* cannot fail: import_frame() has checked it */
@@ -61,6 +66,15 @@ static void set_pose(posed_frame *frame, const t3r_camera *camera)
     }
 }
 
+/* Estimates the focal length of the frames without one, which they share. */
+static void estimate_focal_length(const char *directory, posed_folder *folder, pose_view *views)
+{
+    const double share = FOCAL_USUAL * focal_estimate(views, folder->frame_count);
+    focal_lengths_set(directory, folder, share);
+    (void)t3r_reason(folder->focal, sizeof folder->focal,
+                     "estimated from the pictures, %.2f of the longer side; --intrinsics gives it", share);
+}
+
 static int estimate(const char *directory, posed_folder *folder, const uint32_t size[2], poses_source source,
                     pose_view *views, rigid *poses, t3r_camera *cameras, pose_account *accounts, char *error,
                     size_t error_bytes)
@@ -68,14 +82,20 @@ static int estimate(const char *directory, posed_folder *folder, const uint32_t 
     if (poses_check_count(folder->frame_count, error, error_bytes) != 0) {
         return -1;
     }
+    focal_lengths_from_exif(directory, folder);
+    bool unknown = false;
     for (uint32_t i = 0; i < folder->frame_count; i++) {
         char reason[512];
+        unknown = unknown || focal_length_is_unknown(&folder->frames[i]);
         cli_progress("looking for features", i, folder->frame_count);
         const int status = look_at(directory, folder, i, size, &views[i], &cameras[i], reason, sizeof reason);
         if (status != 0) {
             (void)t3r_reason(error, error_bytes, "frame %u: %s", i, reason);
             return status;
         }
+    }
+    if (unknown) {
+        estimate_focal_length(directory, folder, views);
     }
     if (poses_estimate(views, folder->frame_count, source, NULL, poses, accounts, error, error_bytes) != 0) {
         return -1;

@@ -78,7 +78,7 @@ static void print_text(const char *directory, const posed_folder *folder, const 
         printf("camera:   fx %.6g, fy %.6g, cx %.6g, cy %.6g, lens distortion %s\n", s->camera.fx, s->camera.fy,
                s->camera.cx, s->camera.cy, distortion_name(&s->camera));
     } else {
-        printf("camera:   none: import needs --intrinsics fx,fy,cx,cy\n");
+        printf("camera:   none: import needs --intrinsics fx,fy,cx,cy, or --poses estimate\n");
     }
     if (s->posed_frames > 0) {
         printf("poses:    of %u frames\n", s->posed_frames);

@@ -163,6 +163,12 @@ int posed_folder_open(const char *directory, const posed_folder_options *options
     if (options != NULL && options->without_poses) {
         return picture_folder_read(directory, options, out, error, error_bytes);
     }
+    if (picture_folder_is(directory)) {
+        return t3r_reason(error, error_bytes,
+                          "%s: pictures without poses: --poses estimate finds them, or trim3r scene makes a scene at "
+                          "once: trim3r scene %s -o scene.ply",
+                          directory, directory);
+    }
     if (picture_folder_foreign(directory, &out->left_out) == 0 && out->left_out.frames.count > 0) {
         return t3r_reason(error, error_bytes, "%s: no poses, and %s", directory, out->left_out.frames.lines[0]);
     }

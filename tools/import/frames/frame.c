@@ -71,8 +71,8 @@ static int find_turn(const posed_frame *frame, const picture *p, bool *turn, cha
                      frame->image, p->orientation);
 }
 
-int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
-                        size_t error_bytes)
+int import_picture_facts(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height,
+                         uint32_t *focal_35mm, char *error, size_t error_bytes)
 {
     picture header = {0};
     bool turn = false;
@@ -84,8 +84,16 @@ int import_picture_size(const char *directory, const posed_frame *frame, uint32_
     const bool swap = turn && header.orientation >= EXIF_SWAPS_FROM;
     *width = swap ? header.height : header.width;
     *height = swap ? header.width : header.height;
+    *focal_35mm = header.focal_35mm;
     free(path);
     return status;
+}
+
+int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
+                        size_t error_bytes)
+{
+    uint32_t focal_35mm;
+    return import_picture_facts(directory, frame, width, height, &focal_35mm, error, error_bytes);
 }
 
 int import_depth_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,

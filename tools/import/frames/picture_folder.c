@@ -91,10 +91,6 @@ int picture_folder_read(const char *directory, const posed_folder_options *optio
     memset(out, 0, sizeof *out);
     out->kind = "pictures";
     out->depth_unit = 0.001;
-    if (options->intrinsics == NULL && !options->without_intrinsics) {
-        return t3r_reason(error, error_bytes, "%s: pictures without intrinsics; give --intrinsics fx,fy,cx,cy",
-                          directory);
-    }
     if (picture_folder_foreign(directory, &out->left_out) != 0) {
         return t3r_reason(error, error_bytes, "out of memory");
     }

@@ -53,6 +53,7 @@ typedef struct posed_folder {
     bool depth_unit_given;
     double exr_length; /* world units per 1 of depth in OpenEXR; 0: unspecified, taken as 1 */
     left_out left_out;
+    char focal[128];   /* where focal lengths that the folder did not give came from; "" = it gave them */
     text_list remarks; /* remarks for the user on how the folder was read */
 } posed_folder;
 

@@ -56,6 +56,22 @@ void reconstruction_parse_arena(struct argp_state *state, const char *text, reco
     }
 }
 
+void reconstruction_parse_context(struct argp_state *state, const char *text, reconstruction_options *o)
+{
+    o->context_kind = strcmp(text, "all") == 0    ? CONTEXT_ALL
+                      : strcmp(text, "auto") == 0 ? CONTEXT_AUTO
+                                                  : CONTEXT_LISTED;
+    o->context_count = 0;
+    if (o->context_kind == CONTEXT_LISTED) {
+        option_frames(state, "context", text, o->context, &o->context_count);
+    }
+}
+
+bool reconstruction_names_context(const reconstruction_options *o)
+{
+    return o->context_count > 0 || o->context_kind != CONTEXT_LISTED;
+}
+
 static void check_settings(struct argp_state *state, reconstruction_options *o)
 {
     if ((o->config.allocate == T3R_ALLOCATE_GIVEN) != (o->importance != NULL)) {
@@ -124,7 +140,10 @@ const struct argp reconstruction_settings_argp = {
 
 static const struct argp_option budget[] = {
     {NULL, 0, NULL, 0, "Views and budget:", 10},
-    {"context", KEY_CONTEXT, "A,B,...", 0, "frames that the scene is made of, 1..16 (the first two)", 0},
+    {"context", KEY_CONTEXT, "LIST|all|auto", 0,
+     "frames that the scene is made of, 1..16: 0,2 or 0-3 or 0:11:2; all; or auto, sharp ones that together see most, "
+     "from different places (the first two)",
+     0},
     {"gaussians", KEY_GAUSSIANS, "Z", 0,
      "number of Gaussians, such as 13107 or 10k: exactly Z, or all valid points if there are fewer", 0},
     {"keep", KEY_KEEP, "P%", 0, "percent of the valid points to retain, rounded half up to a number", 0},
@@ -137,7 +156,7 @@ static error_t parse_budget(int key, char *arg, struct argp_state *state)
     uint32_t count;
     switch (key) {
     case KEY_CONTEXT:
-        option_frames(state, "context", arg, o->context, &o->context_count);
+        reconstruction_parse_context(state, arg, o);
         return 0;
     case KEY_GAUSSIANS:
         o->gaussians = option_number(state, "gaussians", arg, 1, T3R_MAX_GAUSSIANS);

@@ -18,6 +18,7 @@
 #include "import/import_source.h"
 #include "reconstruction/aligned_poses.h"
 #include "reconstruction/colmap_start.h"
+#include "reconstruction/context/context_frames.h"
 #include "reconstruction/options/poses_option.h"
 #include "reconstruction/options/settings.h"
 #include "reconstruction/reconstruction.h"
@@ -86,6 +87,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             argp_error(state, "REC.mcap is missing");
         } else if (o->output == NULL && o->colmap == NULL) {
             argp_error(state, "-o SCENE.ply is missing");
+        } else if (o->settings.context_kind == CONTEXT_AUTO && o->settings.poses != POSES_GIVEN) {
+            argp_error(state, "--context auto chooses by poses: first trim3r import %s --poses %s -o POSED.mcap",
+                       o->recording, poses_name(o->settings.poses));
         } else if (o->settings.gaussians == 0 && o->settings.keep_percent <= 0 &&
                    !reconstruction_chooses(&o->settings)) {
             argp_error(state, "the budget is missing: --gaussians Z, --keep P%%, --auto or --min-psnr DB");
@@ -105,6 +109,7 @@ const struct argp build_argp = {
     .doc = "Make exactly Z Gaussians of a recording's context frames, or with --auto or --min-psnr as few as they need."
            "\vExamples:\n"
            "  trim3r build room.mcap --context 0,2 --keep 10% -o scene.ply\n"
+           "  trim3r build room.mcap --context auto --gaussians 13107 -o scene.ply\n"
            "  trim3r build room.mcap --gaussians 13107 --head analytic -o scene.ply\n"
            "  trim3r build room.mcap --head tiny --refine 4 --fit-passes off -o s.ply\n"
            "  trim3r build room.mcap --keep 5% --allocate paper --arena min -o s.ply\n"
@@ -333,16 +338,6 @@ static void print_text(const build_options *o, const reconstruction_account *acc
     }
 }
 
-/* Makes the default explicit: the first two frames. */
-static void name_context(reconstruction_options *settings, const t3r_recording *recording)
-{
-    if (settings->context_count == 0) {
-        settings->context_count = t3r_recording_frame_count(recording) < 2 ? 1 : 2;
-        settings->context[0] = 0;
-        settings->context[1] = 1;
-    }
-}
-
 void build_defaults(build_options *o)
 {
     *o = (build_options){0};
@@ -366,8 +361,10 @@ int build_run(build_options *o)
         code = cli_error(CLI_BAD_INPUT, "%s", error);
     }
     found f = {0};
-    if (code == CLI_OK && o->settings.poses != POSES_GIVEN) {
-        name_context(&o->settings, recording);
+    code = code == CLI_OK ? context_resolve(&o->settings, recording, o->recording) : code;
+    if (code == CLI_OK && o->settings.poses == POSES_GIVEN) {
+        context_warn_of_strangers(recording, o->recording, &o->settings);
+    } else if (code == CLI_OK) {
         code = recording_pose_views(recording, o->recording, o->settings.context, o->settings.context_count,
                                     o->settings.poses, f.estimated);
         work_times_end(&times, WORK_POSES);
@@ -391,7 +388,9 @@ int build_run(build_options *o)
         if (code == CLI_OK) {
             code = aligned_poses_of(recording, o->recording, &account, f.aligned);
         }
-        if (code == CLI_OK && o->json) {
+        if (code == CLI_OK && o->after != NULL) {
+            code = o->after(o->user, recording, &r, &account);
+        } else if (code == CLI_OK && o->json) {
             print_json(o, &account, &r, recording, &f, &times);
         } else if (code == CLI_OK) {
             print_text(o, &account, &r, &f, &times);

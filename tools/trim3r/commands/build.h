@@ -14,6 +14,10 @@ typedef struct build_options {
     int flags;          /* SCENE_FILE_... */
     bool profile, json;
     reconstruction_options settings;
+    /* Called in place of the report, while the scene is there. Returns an exit status of cli.h. NULL: the report is
+     * printed. */
+    int (*after)(void *user, const t3r_recording *recording, reconstruction *r, const reconstruction_account *account);
+    void *user;
 } build_options;
 
 /* Sets defaults for build_argp, which parses into build_options *. The method is trim3r. */

@@ -4,6 +4,7 @@
 #ifndef TRIM3R_TOOLS_COMMANDS_H
 #define TRIM3R_TOOLS_COMMANDS_H
 
+int command_scene(int argc, char **argv);
 int command_import(int argc, char **argv);
 int command_capture(int argc, char **argv);
 int command_info(int argc, char **argv);

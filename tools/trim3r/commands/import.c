@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r import: a posed folder to a recording. */
-#include "trim3r/commands/commands.h"
+#include "trim3r/commands/import.h"
 
-#include <argp.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +11,6 @@
 #include "cli/files/whole_file.h"
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
-#include "cli/options/recording_options.h"
 #include "cli/tables/json_output.h"
 #include "host/reason.h"
 #include "import/bags/recording_import.h"
@@ -23,24 +21,11 @@
 #include "import/frames/left_out.h"
 #include "import/frames/rejected.h"
 #include "import/import_source.h"
-#include "import/pointmaps/import_pointmaps.h"
 #include "recording/recording.h"
 #include "trim3r.h"
+#include "trim3r/commands/commands.h"
 
 #define ERROR_BYTES 1024
-
-typedef struct options {
-    const char *directory;
-    const char *output;
-    uint32_t width, height; /* 0 = as the pictures are */
-    double intrinsics[INTRINSICS_NUMBERS];
-    uint32_t intrinsics_count; /* 0 = not given */
-    poses_source poses;
-    pointmap_options pointmaps;
-    bool json;
-    bag_options bag;
-    recording_options stored;
-} options;
 
 /* The data to write: the folder's frames and derived data. */
 typedef struct material {
@@ -57,7 +42,7 @@ typedef struct totals {
 
 enum { KEY_INTRINSICS = 0x100, KEY_POSES, KEY_CONFIDENCE, KEY_UNIT };
 
-static void check_options(struct argp_state *state, const options *o)
+static void check_options(struct argp_state *state, const import_options *o)
 {
     if (o->directory == NULL) {
         argp_error(state, "DIR is missing");
@@ -69,7 +54,7 @@ static void check_options(struct argp_state *state, const options *o)
 
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
-    options *o = state->input;
+    import_options *o = state->input;
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &o->bag;
@@ -120,14 +105,14 @@ static const struct argp_option argp_options[] = {
     {"intrinsics", KEY_INTRINSICS, "LIST", 0,
      "colour camera of a TUM RGB-D folder, of a folder of pose texts, of pictures alone or of a bag: " INTRINSICS_FORM
      " in pixels, (0, 0) being the centre of the top-left pixel (known where the name of the folder has freiburg1, "
-     "freiburg2 or freiburg3 in it)",
+     "freiburg2 or freiburg3 in it; with --poses estimate that of EXIF, else an estimate)",
      0},
     {"poses", KEY_POSES, POSES_PLACEHOLDER, 0,
      "source of the poses: given (default), those of the folder; estimate, from features that frames share, with depth "
      "where two of them have it, or of all frames from pointmaps; estimate-colour, from colour alone, without "
      "pointmaps",
      0},
-    {"pointmaps", OPTION_TO(options, pointmaps.file), "FILE.npz", OPTION_READS,
+    {"pointmaps", OPTION_TO(import_options, pointmaps.file), "FILE.npz", OPTION_READS,
      "depth of all frames: one pointmap each, in the frames' order", 0},
     {"min-confidence", KEY_CONFIDENCE, "C", 0,
      "least confidence of a pointmap's point; points below it get no depth (all points are kept)", 0},
@@ -136,13 +121,13 @@ static const struct argp_option argp_options[] = {
      "or of depth made from pointmaps "
      "(integer_depth_scale of the folder, else a power of two with which the median has 4096 to 8192 steps)",
      0},
-    {"json", OPTION_TO(options, json), NULL, 0, "print one JSON object on stdout", 0},
+    {"json", OPTION_TO(import_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
 
 static const struct argp_child children[] = {{&bag_argp, 0, NULL, 0}, {&recording_argp, 0, NULL, 0}, {0}};
 
-static const struct argp parser = {
+const struct argp import_argp = {
     .options = argp_options,
     .children = children,
     .parser = parse_option,
@@ -194,6 +179,7 @@ static const struct argp parser = {
         "  trim3r import scene --size 256x256 -o scene.mcap\n"
         "  trim3r import rgbd_dataset_freiburg1_desk -o desk.mcap\n"
         "  trim3r import desk --intrinsics 525,525,319.5,239.5 -o desk.mcap\n"
+        "  trim3r import photos --size 640x480 --poses estimate -o p.mcap\n"
         "  trim3r import photos --intrinsics 900,900,640,480 --poses estimate -o p.mcap\n"
         "  trim3r import photos --pointmaps dust3r.npz --min-confidence 3 -o p.mcap\n"
         "  trim3r import bag.mcap --fixed-frame map -o rec.mcap\n"
@@ -215,7 +201,8 @@ static char *source_name(const char *directory, const char *kind)
     return name;
 }
 
-static int write_frame(t3r_recorder *recorder, const options *o, material *m, uint32_t index, totals *t, char *error)
+static int write_frame(t3r_recorder *recorder, const import_options *o, material *m, uint32_t index, totals *t,
+                       char *error)
 {
     const posed_frame *frame = &m->folder.frames[index];
     picture depth = {0};
@@ -247,7 +234,7 @@ static int write_frame(t3r_recorder *recorder, const options *o, material *m, ui
     return status;
 }
 
-static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, material *m,
+static int write_frames(t3r_recorder *recorder, FILE *stream, const import_options *o, material *m,
                         const t3r_recording_header *header, totals *t, char *error)
 {
     const posed_folder *folder = &m->folder;
@@ -267,7 +254,7 @@ static int write_frames(t3r_recorder *recorder, FILE *stream, const options *o, 
     return 0;
 }
 
-static int write_recording(const options *o, material *m, totals *t, char *error)
+static int write_recording(const import_options *o, material *m, totals *t, char *error)
 {
     t3r_whole_file file;
     char *source = source_name(o->directory, m->folder.kind);
@@ -306,6 +293,9 @@ static void print_json(const material *m, const totals *t)
     cJSON_AddNumberToObject(json, "width", t->width);
     cJSON_AddNumberToObject(json, "height", t->height);
     json_add_integer(json, "bytes", (int64_t)t->bytes);
+    if (folder->focal[0] != '\0') {
+        cJSON_AddStringToObject(json, "focal_length", folder->focal);
+    }
     left_out_add_json(&folder->left_out, json);
     text_list_add_json(&folder->remarks, json, "remarks");
     if (m->pointmaps.count > 0) {
@@ -320,13 +310,16 @@ static void print_json(const material *m, const totals *t)
     json_print(json);
 }
 
-static void print_text(const options *o, const material *m, const totals *t)
+static void print_text(const import_options *o, const material *m, const totals *t)
 {
     const posed_folder *folder = &m->folder;
     printf("%s: %u frames of %ux%u (%u with depth), %u triplets, %llu bytes\n", o->output, folder->frame_count,
            t->width, t->height, t->depth_frames, folder->triplet_count, (unsigned long long)t->bytes);
     if (t->unposed > 0) {
         printf("without a pose: %u frames\n", t->unposed);
+    }
+    if (folder->focal[0] != '\0') {
+        printf("focal length: %s\n", folder->focal);
     }
     left_out_print(&folder->left_out);
     text_list_print(&folder->remarks, "remark");
@@ -343,13 +336,13 @@ static void print_text(const options *o, const material *m, const totals *t)
 }
 
 /* Reads the folder's lists, then applies the options: pointmaps, poses. */
-static int prepare(const options *o, material *m, char *error)
+static int prepare(const import_options *o, material *m, char *error)
 {
     bool estimate = o->poses != POSES_GIVEN;
     posed_folder_options how = {.intrinsics = o->intrinsics_count != 0 ? o->intrinsics : NULL,
                                 .depth_unit = o->pointmaps.depth_unit,
                                 .without_poses = estimate || o->pointmaps.file != NULL,
-                                .without_intrinsics = o->pointmaps.file != NULL};
+                                .without_intrinsics = estimate || o->pointmaps.file != NULL};
     if (posed_folder_open(o->directory, &how, &m->folder, error, ERROR_BYTES) != 0) {
         return -1;
     }
@@ -381,7 +374,7 @@ static int prepare(const options *o, material *m, char *error)
 }
 
 /* Poses, where they are to be estimated, and the recording: a status of import_frame(). */
-static int make(const options *o, material *m, totals *t, char *error)
+static int make(const import_options *o, material *m, totals *t, char *error)
 {
     char reason[ERROR_BYTES - 300];
     *t = (totals){0};
@@ -402,7 +395,7 @@ static int make(const options *o, material *m, totals *t, char *error)
 }
 
 /* Refuses what --strict refuses. */
-static int check_strict(const options *o, const material *m, char *error)
+static int check_strict(const import_options *o, const material *m, char *error)
 {
     char reason[ERROR_BYTES - 300];
     return !o->bag.topics.strict || left_out_refuse(&m->folder.left_out, reason, sizeof reason) == 0
@@ -411,7 +404,7 @@ static int check_strict(const options *o, const material *m, char *error)
 }
 
 /* The same without frames that cannot be used, where there are such. Pointmaps go with all pictures. */
-static int make_of_what_can_be_used(const options *o, material *m, totals *t, char *error)
+static int make_of_what_can_be_used(const import_options *o, material *m, totals *t, char *error)
 {
     char reason[ERROR_BYTES - 300];
     const int status = check_strict(o, m, error) == 0 ? make(o, m, t, error) : -1;
@@ -427,7 +420,7 @@ static int make_of_what_can_be_used(const options *o, material *m, totals *t, ch
 /* ---- a recording or a bag --------------------------------------------------------------------------------------- */
 
 /* Makes the lens of --intrinsics for all colour images. Returns 0, or -1 with a reason. */
-static int given_lens(const options *o, t3r_camera *camera, char *error)
+static int given_lens(const import_options *o, t3r_camera *camera, char *error)
 {
     const double *n = o->intrinsics;
     const t3r_recorded_camera given = {
@@ -445,7 +438,7 @@ static int given_lens(const options *o, t3r_camera *camera, char *error)
     return wrong == NULL ? 0 : t3r_reason(error, ERROR_BYTES, "--intrinsics: %s", wrong);
 }
 
-static int import_recording(const options *o)
+static int import_recording(const import_options *o)
 {
     if (o->pointmaps.file != NULL || o->pointmaps.confidence_least != -HUGE_VAL) {
         return cli_error(CLI_BAD_USAGE, "%s is a recording: pointmaps belong to folders", o->directory);
@@ -473,12 +466,16 @@ static int import_recording(const options *o)
                                                             .depth_unit_q40 = unit_q40,
                                                             .bag = &o->bag,
                                                             .stored = &o->stored,
-                                                            .json = o->json});
+                                                            .json = o->json,
+                                                            .quiet = o->after != NULL});
+    if (code == CLI_OK && o->after != NULL) {
+        o->after(o->user, NULL, NULL);
+    }
     free(source);
     return code;
 }
 
-static int import_folder(const options *o)
+static int import_folder(const import_options *o)
 {
     if (o->bag.given != NULL) {
         return cli_error(CLI_BAD_USAGE, "%s is for bags and recordings, and %s is none", o->bag.given, o->directory);
@@ -499,6 +496,8 @@ static int import_folder(const options *o)
     }
     if (status != 0) {
         status = cli_error(CLI_BAD_INPUT, "%s", error);
+    } else if (o->after != NULL) {
+        o->after(o->user, &m.folder, m.accounts);
     } else if (o->json) {
         print_json(&m, &t);
     } else {
@@ -510,19 +509,30 @@ static int import_folder(const options *o)
     return status;
 }
 
-int command_import(int argc, char **argv)
+void import_defaults(import_options *o)
 {
-    options o = {0};
-    o.pointmaps.confidence_least = -HUGE_VAL;
-    file_options_parse(&parser, argc, argv, &o);
+    *o = (import_options){0};
+    o->pointmaps.confidence_least = -HUGE_VAL;
+}
+
+int import_run(const import_options *o)
+{
     const char *advice;
-    switch (import_source_of(o.directory, &advice)) {
+    switch (import_source_of(o->directory, &advice)) {
     case IMPORT_RECORDING:
-        return import_recording(&o);
+        return import_recording(o);
     case IMPORT_FOREIGN:
-        return cli_error(CLI_BAD_INPUT, "%s: %s", o.directory, advice);
+        return cli_error(CLI_BAD_INPUT, "%s: %s", o->directory, advice);
     case IMPORT_FOLDER:
     default:
-        return import_folder(&o);
+        return import_folder(o);
     }
+}
+
+int command_import(int argc, char **argv)
+{
+    import_options o;
+    import_defaults(&o);
+    file_options_parse(&import_argp, argc, argv, &o);
+    return import_run(&o);
 }

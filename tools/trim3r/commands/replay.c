@@ -16,6 +16,7 @@
 #include "cli/tables/json_output.h"
 #include "core/hash.h"
 #include "import/import_source.h"
+#include "reconstruction/context/context_frames.h"
 #include "reconstruction/options/settings.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_error.h"
@@ -91,7 +92,7 @@ static void check_stream(struct argp_state *state, const replay_options *o)
     scene_output_option(state, "-o", live->scene);
     live_options_check(state, live);
     if (o->streams &&
-        (o->settings.context_count > 0 || reconstruction_chooses(&o->settings) ||
+        (reconstruction_names_context(&o->settings) || reconstruction_chooses(&o->settings) ||
          o->settings.config.depth == T3R_DEPTH_STEREO || o->settings.config.allocate == T3R_ALLOCATE_GIVEN)) {
         argp_error(state, "--stream takes no --context, --auto, --min-psnr, --allocate given or --depth stereo");
     }
@@ -147,8 +148,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
             o->settings.keep_percent = 10;
         }
         check_stream(state, o);
-        if (o->slides &&
-            (o->streams || o->settings.context_count > 0 || o->settings.config.allocate == T3R_ALLOCATE_GIVEN)) {
+        if (o->slides && (o->streams || reconstruction_names_context(&o->settings) ||
+                          o->settings.config.allocate == T3R_ALLOCATE_GIVEN)) {
             argp_error(state, "--slide takes no --stream, --context or --allocate given");
         }
         return 0;
@@ -304,7 +305,9 @@ static int replay(const replay_options *o, const t3r_recording *recording, const
                   const work_times *reading)
 {
     reconstruction r;
-    int code = reconstruction_build(&r, recording, o->recording, &o->settings);
+    reconstruction_options settings = o->settings;
+    int code = context_resolve(&settings, recording, o->recording);
+    code = code == CLI_OK ? reconstruction_build(&r, recording, o->recording, &settings) : code;
     if (code != CLI_OK) {
         return code;
     }

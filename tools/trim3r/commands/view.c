@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* trim3r view: a scene, a recording or both, in a browser. */
-#include "trim3r/commands/commands.h"
+#include "trim3r/commands/view.h"
 
-#include <argp.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,9 +15,10 @@
 #include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
 #include "import/import_source.h"
-#include "reconstruction/reconstruction.h"
+#include "reconstruction/context/context_frames.h"
 #include "scene/scene_file.h"
 #include "scene/scene_options.h"
+#include "trim3r/commands/commands.h"
 #include "viewer/camera_path.h"
 #include "viewer/follow.h"
 #include "viewer/page.h"
@@ -27,17 +27,6 @@
 #include "viewer/viewpoints.h"
 
 #define ERROR_BYTES 512
-
-typedef struct view_options {
-    const char *inputs[2];
-    const char *scene, *recording; /* which of them is which; NULL = not given */
-    const char *output;            /* NULL = the page is served */
-    const char *follow;            /* lines of the run that makes the scene; NULL = the scene does not change */
-    uint16_t port;
-    bool json;
-    uint32_t compare[T3R_MAX_VIEWS], compare_count;
-    reconstruction_options settings;
-} view_options;
 
 enum { KEY_PORT = 0x1000, KEY_COMPARE };
 
@@ -111,7 +100,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 }
 
 static const struct argp_child children[] = {{.argp = &reconstruction_argp}, {.argp = &scene_input_argp}, {0}};
-static const struct argp argp = {
+const struct argp view_argp = {
     .options = options,
     .parser = parse,
     .args_doc = "REC.mcap|SCENE.ply [REC.mcap|SCENE.ply]",
@@ -162,7 +151,16 @@ static int prepare_recording(const view_options *o, reconstruction *r, viewpoint
     if (recording == NULL) {
         return CLI_BAD_INPUT;
     }
-    int code = reconstruction_build(r, recording, o->recording, &o->settings);
+    reconstruction_options settings = o->settings;
+    int code = context_resolve(&settings, recording, o->recording);
+    if (code == CLI_OK) {
+        context_warn_of_strangers(recording, o->recording, &settings);
+        code = reconstruction_build(r, recording, o->recording, &settings);
+    }
+    if (code == CLI_OK && o->after != NULL) {
+        const reconstruction_account account = reconstruction_account_of(r);
+        code = o->after(o->user, recording, r, &account);
+    }
     if (code == CLI_OK) {
         code = add_frames(v, o, recording, r);
         camera_path_read(recording, path);
@@ -193,6 +191,9 @@ static int prepare_scene(const scene_file *scene, viewpoints *v, viewer_page *pa
 
 static void tell(const view_options *o, const viewer_page *page, const char *key, const char *where, uint64_t bytes)
 {
+    if (o->after != NULL) {
+        return;
+    }
     if (o->json) {
         cJSON *root = cJSON_CreateObject();
         cJSON_AddStringToObject(root, key, where);
@@ -312,12 +313,15 @@ static int show(const view_options *o, const scene_file *scene, reconstruction *
     return code;
 }
 
-int command_view(int argc, char **argv)
+void view_defaults(view_options *o)
 {
-    view_options o = {.port = 0};
-    reconstruction_defaults(&o.settings);
-    o.settings.config.keep_analysis = 1; /* as the page's own builds: the slider takes the analysis over */
-    file_options_parse(&argp, argc, argv, &o);
+    *o = (view_options){.port = 0};
+    reconstruction_defaults(&o->settings);
+    o->settings.config.keep_analysis = 1; /* as the page's own builds: the slider takes the analysis over */
+}
+
+int view_run(const view_options *o)
+{
     if (!viewer_page_is_built()) {
         return cli_error(
             CLI_BAD_INPUT,
@@ -327,11 +331,19 @@ int command_view(int argc, char **argv)
     char error[ERROR_BYTES] = "";
     scene_file scene = {0};
     reconstruction r = {0};
-    if (o.scene != NULL && scene_file_read(o.scene, o.settings.scene_flags, &scene, error, sizeof error) != 0) {
+    if (o->scene != NULL && scene_file_read(o->scene, o->settings.scene_flags, &scene, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    const int code = show(&o, &scene, &r);
+    const int code = show(o, &scene, &r);
     reconstruction_close(&r);
     scene_file_free(&scene);
     return code;
+}
+
+int command_view(int argc, char **argv)
+{
+    view_options o;
+    view_defaults(&o);
+    file_options_parse(&view_argp, argc, argv, &o);
+    return view_run(&o);
 }
