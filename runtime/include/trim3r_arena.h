@@ -200,8 +200,7 @@
 /* 1 or 0 */
 #define T3R_BUILDS_(shape) (T3R_VIEWS_(shape) > 0 ? (size_t)1 : (size_t)0)
 #define T3R_STREAMS_(shape) (T3R_KEEP_(shape) == T3R_KEEP_MAP ? (size_t)1 : (size_t)0)
-#define T3R_REFINES_(shape)                                                                                            \
-    (T3R_VIEWS_(shape) > 0 && T3R_REFINE_(shape) > 0 ? (size_t)1 : (size_t)0)
+#define T3R_REFINES_(shape) (T3R_VIEWS_(shape) > 0 && T3R_REFINE_(shape) > 0 ? (size_t)1 : (size_t)0)
 /* 1 if planes outlive a build for the next one; a stream keeps its map in any case. */
 #define T3R_FOLLOWS_(shape)                                                                                            \
     (T3R_VIEWS_(shape) > 0 && T3R_KEEP_(shape) != T3R_KEEP_MAP && T3R_WARM_(shape) != 0 ? (size_t)1 : (size_t)0)
