@@ -103,10 +103,12 @@ def bag_folders():
 
 
 def commands_of(path):
-    """The commands that read a recording, each with the path in its place."""
-    return (("build", path, "--gaussians", 50, "-o", "out.ply"), ("replay", path, "--gaussians", 50),
-            ("eval", path, "--gaussians", 50), ("view", path, "--gaussians", 50, "-o", "out.html"),
-            ("render", "s.ply", path, "--view", 0, "-o", "out.png"), ("info", "s.ply", path, "--view", 0))
+    """The commands that read a recording, each with the path in its place; view where the program has its page."""
+    view = ("view", path, "--gaussians", 50, "-o", "out.html")
+    commands = (("build", path, "--gaussians", 50, "-o", "out.ply"), ("replay", path, "--gaussians", 50),
+                ("eval", path, "--gaussians", 50), ("render", "s.ply", path, "--view", 0, "-o", "out.png"),
+                ("info", "s.ply", path, "--view", 0))
+    return commands if "built without the page" in run(*view)[2] else (*commands, view)
 
 
 def other_commands():

@@ -125,7 +125,7 @@ TEST(refused)
     t3r_config config = good_config();
     t3r_runtime *rt = analysed(&config);
     t3r_scene scene;
-    t3r_least found;
+    t3r_least found = {0};
     const t3r_target narrow = {.width = SIDE - 1, .height = SIDE, .rgb = drawn, .rgb_stride_bytes = SIDE * 3};
     const t3r_target without = {.width = SIDE, .height = SIDE};
     const t3r_target *const bad[] = {NULL, &narrow, &without};
