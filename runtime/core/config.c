@@ -207,7 +207,7 @@ t3r_status t3r_config_check(const t3r_config *config)
     return status_of(first_fault(config));
 }
 
-/* Whether t3r_default_config() left it so, or nobody filled it. */
+/* Whether no field is set: t3r_default_config() refused, or was not called. */
 static bool is_blank(const t3r_config *c)
 {
     return c != NULL && (c->width | c->height | c->max_gaussians | c->gaussians) == 0;

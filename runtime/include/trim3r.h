@@ -274,7 +274,7 @@ typedef struct t3r_request {
     uint32_t importance_stride_bytes;
 } t3r_request;
 
-/* What t3r_rebuild_least() found. */
+/* The result of t3r_rebuild_least(). */
 typedef struct t3r_least {
     /* The PSNR of the context view that the scene draws worst, in 1/256 dB, 0..T3R_MAX_PSNR_Q8. */
     uint32_t psnr_q8;

@@ -16,7 +16,7 @@ static _Alignas(4) uint32_t picture_depth[PIXELS + 1];
 static uint16_t picture_alpha[PIXELS + 1], plane[PIXELS + 1];
 static const uint16_t *planes[] = {plane, plane};
 
-/* What the calls below get; good until a case damages one of them. */
+/* The arguments of the calls below, good until a case damages one of them. */
 static t3r_runtime *rt;
 static t3r_config config;
 static t3r_frame frame;

@@ -119,7 +119,7 @@ TEST(not_met)
     }
 }
 
-/* What is refused changes nothing. */
+/* A refused call changes nothing. */
 TEST(refused)
 {
     t3r_config config = good_config();
