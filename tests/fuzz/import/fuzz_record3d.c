@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The metadata of a Record3D export: an error, or poses within the limits and lenses of finite numbers. */
+/* The metadata of a Record3D export: an error, or poses within the limits and lenses of finite numbers, except in
+ * frames that are rejected. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -20,6 +21,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     for (uint32_t i = 0; status == 0 && i < folder.frame_count; i++) {
         const posed_frame *frame = &folder.frames[i];
         double norm = 0;
+        if (frame->rejected) {
+            continue;
+        }
         for (int k = 0; k < 4; k++) {
             norm += frame->pose.rotation[k] * frame->pose.rotation[k];
         }

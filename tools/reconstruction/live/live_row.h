@@ -35,6 +35,12 @@ static inline bool live_row_is_taken(const live_row *row)
     return row->loss == LIVE_WHOLE && row->status == T3R_OK && row->report.refusal == T3R_REFUSAL_NONE;
 }
 
+/* Whether a row that was read from a file can be reported. */
+static inline bool live_row_is_sound(const live_row *row)
+{
+    return (uint32_t)row->loss <= LIVE_NO_INTRINSICS && row->report.refusal < T3R_REFUSAL_COUNT;
+}
+
 /* Returns "taken", or the reason why the frame is no keyframe, in one or two words or as an error text. */
 const char *live_row_decision(const live_row *row);
 /* Returns a new object with all fields. */

@@ -51,7 +51,7 @@ void setting_text(const setting *s, const t3r_config *config, char *text, size_t
         snprintf(text, bytes, "%.4g", value / 256.0);
         break;
     case SETTING_name:
-        snprintf(text, bytes, "%s", s->name(value));
+        snprintf(text, bytes, "%s", value <= s->high ? s->name(value) : "unknown");
         break;
     }
 }

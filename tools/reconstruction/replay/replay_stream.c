@@ -68,7 +68,6 @@ static int draw_live(stream_run *s)
     for (; code == CLI_OK && s->is.drawn < s->is.held_count; s->is.drawn++) {
         held_back *h = &s->held[s->is.drawn];
         code = draw_held(s, h->frame, "live", &h->live_psnr, &h->live_psnr_all);
-        h->has_live = true;
     }
     return code;
 }

@@ -11,7 +11,6 @@
  * keyframe are drawn only at the end. */
 typedef struct held_back {
     uint32_t frame;
-    bool has_live;
     double live_psnr, final_psnr; /* over pixels with depth */
     double live_psnr_all, final_psnr_all;
 } held_back;
@@ -20,7 +19,7 @@ typedef struct held_back {
 typedef struct stream_counts {
     uint32_t next; /* the next frame to take */
     uint32_t row_count, held_count;
-    uint32_t drawn;       /* frames held back that were drawn after a keyframe: the first of them */
+    uint32_t drawn;       /* frames held back that were drawn after a keyframe, from the first on */
     uint64_t views_hash;  /* of all pictures drawn */
     uint64_t frames_hash; /* of the recording up to `next` */
 } stream_counts;

@@ -36,6 +36,19 @@ int stream_save(stream_run *s, const live_row *row)
     return code;
 }
 
+/* Whether rows and frames held back are those of a run over the first `is->next` frames. */
+static bool is_sound(const stream_counts *is, const live_row *rows, const held_back *held)
+{
+    bool sound = is->drawn <= is->held_count;
+    for (uint32_t i = 0; i < is->row_count && sound; i++) {
+        sound = rows[i].frame < is->next && live_row_is_sound(&rows[i]);
+    }
+    for (uint32_t i = 0; i < is->held_count && sound; i++) {
+        sound = held[i].frame < is->next;
+    }
+    return sound;
+}
+
 static int take(stream_run *s, const live_state *state)
 {
     const char *path = s->options->live.state;
@@ -51,9 +64,12 @@ static int take(stream_run *s, const live_state *state)
         state->more_bytes != sizeof is + rows + held || is.frames_hash != hash_frames(s->recording, is.next)) {
         return cli_error(CLI_BAD_INPUT, "%s: the state of another recording than %s", path, s->path);
     }
-    s->is = is;
     memcpy(s->rows, more + sizeof is, rows);
     memcpy(s->held, more + sizeof is + rows, held);
+    if (!is_sound(&is, s->rows, s->held)) {
+        return cli_error(CLI_BAD_INPUT, "%s: damaged", path);
+    }
+    s->is = is;
     s->resumed_at = is.next;
     (void)cli_error(CLI_OK, "%s: continues at frame %" PRIu32 ", after %" PRIu32 " keyframes", path, is.next,
                     s->map.keyframes);
