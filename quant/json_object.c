@@ -50,7 +50,7 @@ static int check_names(const char *where, const cJSON *object, char *error, size
     return status;
 }
 
-/* The same of all objects within; cJSON bounds their depth. */
+/* The same of all objects within; cJSON bounds their depth. NOLINTNEXTLINE(misc-no-recursion) */
 static int check_all_names(const char *where, const cJSON *item, char *error, size_t error_bytes)
 {
     const cJSON *each;

@@ -60,7 +60,9 @@ const char *t3r_sentence(t3r_status status, t3r_status found, const t3r_fault *f
             (void)put_text(&p, fault->after, fault->number, next);
         }
     } else {
-        (void)put_text(&p, t3r_error_text(status), NULL, 0);
+        for (const char *word = t3r_error_text(status); *word != '\0'; word++) {
+            put(&p, *word);
+        }
     }
     *p.at = '\0';
     return text;

@@ -165,8 +165,9 @@ typedef struct settle_job {
 static void settle_points(settle_job *job, const t3r_unprojection *from, t3r_points *points, uint32_t worker)
 {
     const t3r_view *view = job->maps[job->v].view;
+    const uint32_t count = points->count;
     uint8_t validity[T3R_POINTS];
-    for (uint32_t i = 0; i < points->count; i++) {
+    for (uint32_t i = 0; i < count; i++) {
         const uint8_t before = view->validity[(size_t)points->v[i] * view->width + points->u[i]];
         validity[i] = t3r_is_lent(before) ? t3r_marked(T3R_BRIDGED, T3R_MARK_COVERED) : before;
     }
@@ -179,13 +180,13 @@ static void settle_points(settle_job *job, const t3r_unprojection *from, t3r_poi
         const bool settled = (job->settled >> w & 1) != 0;
         t3r_places places;
         job->kernels->locate(&other, points, &places);
-        for (uint32_t i = 0; i < points->count; i++) {
+        for (uint32_t i = 0; i < count; i++) {
             if (t3r_has_depth(validity[i]) && places.pixel[i] != T3R_NO_PIXEL) {
                 validity[i] = judge(validity[i], &job->maps[w], places.pixel[i], places.z_q20[i], settled);
             }
         }
     }
-    for (uint32_t i = 0; i < points->count; i++) {
+    for (uint32_t i = 0; i < count; i++) {
         const size_t pixel = (size_t)points->v[i] * view->width + points->u[i];
         view->validity[pixel] = validity[i];
         view->depth[pixel] = t3r_has_depth(validity[i]) ? view->depth[pixel] : 0;

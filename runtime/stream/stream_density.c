@@ -58,7 +58,8 @@ static void spread_over_rows(void *context, uint32_t begin, uint32_t end, uint32
 void t3r_map_density_find(const t3r_map_density *density)
 {
     t3r_map_discs_find(density->map, density->keyframe, density->workers, density->discs);
-    t3r_run_rows(density->workers, density->keyframe->view->height, spread_over_rows, (void *)(uintptr_t)density);
+    t3r_map_density job = *density;
+    t3r_run_rows(density->workers, density->keyframe->view->height, spread_over_rows, &job);
 }
 
 static int32_t log_density_q10(uint32_t density_q16)
@@ -125,7 +126,8 @@ static void fit_some(void *context, uint32_t begin, uint32_t end, uint32_t worke
 
 void t3r_map_density_fit(const t3r_map_density *density)
 {
-    t3r_run_rows(density->workers, density->map->count, fit_some, (void *)(uintptr_t)density);
+    t3r_map_density job = *density;
+    t3r_run_rows(density->workers, density->map->count, fit_some, &job);
 }
 
 /* --- the keyframe's points ---------------------------------------------------------------------------------------- */

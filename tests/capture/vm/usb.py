@@ -168,7 +168,7 @@ left("still", 1, "no image for")
 if MJPG == "1":
     live = trial.recorded("mjpg", 15)
     missing, _ = account("mjpg", [flat_jpeg.decoded(picture) for picture in blocks])
-    trial.check("Premature end" in missing.get((0, 7), "") and live["corrupted"] == 1, f"mjpg: {missing} {live}")
+    trial.check("premature end" in missing.get((0, 7), "").lower() and live["corrupted"] == 1, f"mjpg: {missing} {live}")
     print(f"mjpg: {live['rate']:.1f} frames/s, without {missing}")
 faults("faults", "no image for", "No such device", "the driver calls it corrupted")
 left("left", 3, "No such device")
