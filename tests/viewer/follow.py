@@ -85,12 +85,14 @@ with tempfile.TemporaryDirectory() as scratch:
     run(TRIM3R, "room", "--size", "160x120", "--frames", FRAMES, "-o", "walk.mcap")
     stream = [TRIM3R, "replay", "walk.mcap", "--stream", "--every", "1", "--gaussians", "3000", "--refine", "6", "--fit-passes",
               "off", "-o", "map.ply", "--snapshot", "4", "--lines", "run.jsonl"]
+    server = subprocess.Popen([TRIM3R, "view", "map.ply", "--follow", "run.jsonl", "--json"], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True)
+    check("run.jsonl: waits until a stream writes it" in server.stderr.readline(), "the viewer waits")
     running = subprocess.Popen(stream, stdout=subprocess.DEVNULL)
     while not os.path.exists("map.ply"):
         check(running.poll() is None, "the run goes on")
         time.sleep(0.01)
     running.send_signal(signal.SIGSTOP)  # until there is a page
-    server = subprocess.Popen([TRIM3R, "view", "map.ply", "--follow", "run.jsonl", "--json"], stdout=subprocess.PIPE, text=True)
     page = browser.Page(program, timeout=120)
     try:
         page.open(json.loads(server.stdout.readline())["address"])

@@ -6,17 +6,14 @@
 
 #include "cli/tables/json_output.h"
 
-static double mean(const capture_times *times)
-{
-    return times->count > 0 ? times->sum_ms / (double)times->count : 0;
-}
-
-static void add_times(cJSON *root, const char *key, const capture_times *times)
+static void add_times(cJSON *root, const char *key, const latency *times)
 {
     if (times->count > 0) {
         cJSON *item = cJSON_AddObjectToObject(root, key);
-        cJSON_AddNumberToObject(item, "mean", mean(times));
-        cJSON_AddNumberToObject(item, "worst", times->worst_ms);
+        cJSON_AddNumberToObject(item, "mean", latency_mean(times));
+        cJSON_AddNumberToObject(item, "median", latency_of_share(times, 50));
+        cJSON_AddNumberToObject(item, "most_95", latency_of_share(times, 95));
+        cJSON_AddNumberToObject(item, "worst", times->worst);
     }
 }
 
@@ -56,7 +53,7 @@ static void print_json(const capture_options *o, const char *name, const t3r_cap
     cJSON_AddStringToObject(root, "clock", t3r_capture_clock(capture));
     cJSON_AddStringToObject(root, "note", t3r_capture_note(capture));
     cJSON_AddNumberToObject(root, "rate", rate_of(a));
-    add_times(root, "latency_ms", &a->latency);
+    add_times(root, "latency_ms", &a->late);
     add_times(root, "frame_ms", &a->work);
     add_times(root, "record_ms", &a->recording);
     add_times(root, "build_ms", &a->building);
@@ -91,7 +88,7 @@ static void print_text(const capture_options *o, const char *name, const t3r_cap
                        const clock_offset *offset)
 {
     const t3r_capture_counts *n = &a->counts;
-    char text[HASH_TEXT_BYTES];
+    char text[HASH_TEXT_BYTES], spread[LATENCY_TEXT_BYTES];
     printf("%s: %" PRIu64 " frames of %ux%u %s, %.1f/s, clock %s\n", name, a->frames, a->width, a->height,
            t3r_pixel_format_name(a->format), rate_of(a), t3r_capture_clock(capture));
     printf("lost:     driver %" PRIu64 ", too slow %" PRIu64 ", corrupted %" PRIu64 ", unreadable %" PRIu64
@@ -109,12 +106,12 @@ static void print_text(const capture_options *o, const char *name, const t3r_cap
         }
         putchar('\n');
     }
-    if (a->latency.count > 0) {
-        printf("latency:  %.1f ms, worst %.1f ms\n", mean(&a->latency), a->latency.worst_ms);
+    if (a->late.count > 0) {
+        printf("latency:  %s\n", latency_text(&a->late, spread));
     }
-    printf("a frame:  %.2f ms, worst %.2f ms\n", mean(&a->work), a->work.worst_ms);
+    printf("a frame:  %s\n", latency_text(&a->work, spread));
     if (a->recording.count > 0) {
-        printf("recorded: %.2f ms, worst %.2f ms\n", mean(&a->recording), a->recording.worst_ms);
+        printf("recorded: %s\n", latency_text(&a->recording, spread));
     }
     if (o->output != NULL) {
         printf("%s: %" PRIu64 " bytes in %" PRIu32 " file%s\n", o->output, a->bytes, a->files,
@@ -122,16 +119,16 @@ static void print_text(const capture_options *o, const char *name, const t3r_cap
     }
     if (a->builds > 0 && o->streams) {
         hash_text(a->scene_hash, text);
-        printf("%s: %" PRIu32 " Gaussians after %" PRIu32
-               " keyframes of %.1f ms (worst %.1f), written in %.1f ms, arena %zu bytes, %s%s\n",
-               o->scene, a->gaussians, a->builds, mean(&a->building), a->building.worst_ms, mean(&a->writing),
-               a->arena_bytes, a->scene_hash != 0 ? "hash " : "no hash: --max-ms", a->scene_hash != 0 ? text : "");
+        printf("keyframe: %s; %.1f a second\n", latency_text(&a->building, spread), latency_rate(&a->building));
+        printf("%s: %" PRIu32 " Gaussians after %" PRIu32 " keyframes, written in %.1f ms, arena %zu bytes, %s%s\n",
+               o->scene, a->gaussians, a->builds, latency_mean(&a->writing), a->arena_bytes,
+               a->scene_hash != 0 ? "hash " : "no hash: --max-ms", a->scene_hash != 0 ? text : "");
     } else if (a->builds > 0) {
         hash_text(a->scene_hash, text);
+        printf("a build:  %s\n", latency_text(&a->building, spread));
         printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, %" PRIu32
-               " builds of %.1f ms (worst %.1f), written in %.1f ms, arena %zu bytes, hash %s\n",
-               o->scene, a->gaussians, a->valid_points, a->builds, mean(&a->building), a->building.worst_ms,
-               mean(&a->writing), a->arena_bytes, text);
+               " builds, written in %.1f ms, arena %zu bytes, hash %s\n",
+               o->scene, a->gaussians, a->valid_points, a->builds, latency_mean(&a->writing), a->arena_bytes, text);
     }
     if (o->hash) {
         hash_text(a->frames_hash, text);

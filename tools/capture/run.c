@@ -49,13 +49,6 @@ static int64_t clock_now_ns(clockid_t id)
     return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
-static void add_time(capture_times *times, double ms)
-{
-    times->count++;
-    times->sum_ms += ms;
-    times->worst_ms = ms > times->worst_ms ? ms : times->worst_ms;
-}
-
 uint64_t capture_frame_hash(uint64_t hash, const t3r_capture_frame *frame)
 {
     const t3r_frame *f = &frame->frame;
@@ -119,9 +112,8 @@ static void draw_line(run_state *s)
     fprintf(stderr, "\r%" PRIu64 " frames, %.1f/s, dropped %" PRIu64 " (%" PRIu64 " slow), corrupted %" PRIu64,
             a->frames, seconds > 0 ? (double)a->frames / seconds : 0, n.dropped_driver + n.dropped_slow, n.dropped_slow,
             n.corrupted);
-    if (a->latency.count > 0) {
-        fprintf(stderr, ", latency %.1f ms (worst %.1f)", a->latency.sum_ms / (double)a->latency.count,
-                a->latency.worst_ms);
+    if (a->late.count > 0) {
+        fprintf(stderr, ", latency %.1f ms (worst %.1f)", latency_mean(&a->late), a->late.worst);
     }
     if (a->builds > 0) {
         fprintf(stderr, ", %" PRIu32 " builds", a->builds);
@@ -209,7 +201,7 @@ static int write_scene(run_state *s)
         scene_file_write(s->plan->scene, &s->build.r.scene, s->plan->scene_flags, NULL, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
-    add_time(&s->account->writing, (cli_now() - start) * 1e3);
+    latency_add(&s->account->writing, (cli_now() - start) * 1e3);
     return CLI_OK;
 }
 
@@ -221,7 +213,7 @@ static int make_scene(run_state *s, const t3r_capture_frame *frame)
         return code;
     }
     const reconstruction *r = &s->build.r;
-    add_time(&a->building, (r->add_views_seconds + r->build_seconds) * 1e3);
+    latency_add(&a->building, (r->add_views_seconds + r->build_seconds) * 1e3);
     a->builds++;
     a->gaussians = r->scene.count;
     a->valid_points = r->valid_points;
@@ -284,7 +276,7 @@ static int follow(run_state *s, const t3r_capture_frame *frame)
         return code;
     }
     if (live_row_is_taken(&row)) {
-        add_time(&a->building, row.milliseconds);
+        latency_add(&a->building, row.milliseconds);
         a->builds++;
         a->gaussians = row.report.gaussians;
         a->scene_hash = row.hash;
@@ -319,7 +311,7 @@ static int handle(run_state *s, t3r_capture_frame *frame)
         code = cli_error(CLI_BAD_INPUT, "%s", s->record->error);
     }
     if (s->record != NULL) {
-        add_time(&a->recording, (cli_now() - start) * 1e3);
+        latency_add(&a->recording, (cli_now() - start) * 1e3);
     }
     if (code == CLI_OK && plan->build != NULL) {
         code = take_into_scene(s, frame);
@@ -328,14 +320,14 @@ static int handle(run_state *s, t3r_capture_frame *frame)
         return code;
     }
     double end = cli_now();
-    add_time(&a->work, (end - start) * 1e3);
+    latency_add(&a->work, (end - start) * 1e3);
     const char *clock = t3r_capture_clock(s->capture);
     bool ours = strcmp(clock, "monotonic") == 0 || strcmp(clock, "arrival") == 0 || strcmp(clock, "boottime") == 0;
     if (ours && !t3r_capture_recorded(s->capture)) {
         int64_t now = clock_now_ns(clock[0] == 'b' ? CLOCK_BOOTTIME : CLOCK_MONOTONIC);
         double ms = (double)(now - frame->stamp_ns) * 1e-6;
         if (ms >= 0 && ms < 60000) { /* else the driver's clock is not the one that it reports */
-            add_time(&a->latency, ms);
+            latency_add(&a->late, ms);
         }
     }
     if (plan->hash) {
@@ -457,7 +449,7 @@ int capture_run(t3r_capture *capture, const capture_plan *plan, capture_account 
     const int saved = live_stream_save(&s.stream); /* also after an error of the camera */
     code = code == CLI_OK ? saved : code;
     if (s.stream.is_open) {
-        add_time(&account->writing, (cli_now() - save_start) * 1e3);
+        latency_add(&account->writing, (cli_now() - save_start) * 1e3);
     }
     live_stream_close(&s.stream);
     if (s.building) {

@@ -12,6 +12,7 @@
 #include "capture/live_stream.h"
 #include "capture/record.h"
 #include "import/poses/trajectory.h"
+#include "reconstruction/live/latency.h"
 #include "trim3r_capture.h"
 
 typedef struct capture_plan {
@@ -37,20 +38,15 @@ typedef struct capture_plan {
     bool quiet;                        /* no progress line */
 } capture_plan;
 
-typedef struct capture_times {
-    uint64_t count;
-    double sum_ms, worst_ms;
-} capture_times;
-
 typedef struct capture_account {
     uint64_t frames, failed, unposed;
     uint32_t width, height;
     t3r_pixel_format format;
-    double seconds;        /* from the first frame to the last */
-    capture_times latency; /* from a frame's stamp to the end of its processing; if the clock is the system's */
-    capture_times work;    /* recording of and building from a frame */
-    capture_times recording, building, writing; /* parts of it: into the recording; a scene; its file */
-    uint64_t frames_hash;                       /* FNV-1a over the delivered frames, in order */
+    double seconds; /* from the first frame to the last */
+    latency late;   /* from a frame's stamp to the end of its processing; if the clock is the system's */
+    latency work;   /* recording of and building from a frame */
+    latency recording, building, writing; /* parts of it: into the recording; a scene; its file */
+    uint64_t frames_hash;                 /* FNV-1a over the delivered frames, in order */
     uint32_t files;
     uint64_t bytes;
     uint32_t builds, gaussians, valid_points;       /* scenes; with a stream keyframes */

@@ -155,7 +155,7 @@ int file_guard_find(void)
         const named_file *file = &guard.files[i];
         const bool is_path = *file->path != '\0' && (file->flags & named_otherwise) == 0;
         struct stat there;
-        if (!writes(file) && is_path && stat(file->path, &there) != 0) {
+        if (!writes(file) && is_path && (file->flags & OPTION_LATER) == 0 && stat(file->path, &there) != 0) {
             return cli_error(CLI_BAD_INPUT, "%s: %s", file->path, strerror(errno));
         }
     }

@@ -15,6 +15,7 @@
 #define OPTION_OR_WORD 0x1000   /* a file, or a word that names none */
 #define OPTION_OR_DEVICE 0x2000 /* a file or a device, optionally preceded by an adapter's name and a colon */
 #define OPTION_PIPE 0x4000      /* the file may also be standard output: "-" (standard_output.h) */
+#define OPTION_LATER 0x8000     /* a file that is read, and may not be there yet */
 #define OPTION_WRITES_BIT 0x200
 /* The value is a file that is written, or with OPTION_FOLDER files in a folder, of these kinds. */
 #define OPTION_WRITES(kinds) (OPTION_WRITES_BIT | (int)(kinds) << 16)

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "cli/tables/json_output.h"
+#include "reconstruction/live/latency.h"
 #include "reconstruction/replay/hash_report.h"
-#include "reconstruction/replay/latency.h"
 #include "reconstruction/replay/stream_run.h"
 
 /* ---- sums over the run ------------------------------------------------------------------------------------------- */
@@ -23,7 +23,7 @@ static means means_of(const stream_run *s)
     means m = {0};
     for (uint32_t i = 0; i < s->is.held_count; i++) {
         const held_back *h = &s->held[i];
-        if (h->has_live && !isnan(h->live_psnr)) {
+        if (i < s->is.drawn && !isnan(h->live_psnr)) {
             m.live += h->live_psnr;
             m.live_all += h->live_psnr_all;
             m.live_count++;
@@ -43,27 +43,21 @@ static means means_of(const stream_run *s)
 
 /* The keyframes, their times and passes. */
 typedef struct work {
-    uint32_t count;
-    latency times; /* all 0 without keyframes */
+    latency times;
     uint64_t passes, planned;
 } work;
 
 static work work_of(const stream_run *s)
 {
-    double *ms = calloc((size_t)s->is.row_count + 1, sizeof *ms);
     work w = {0};
-    for (uint32_t i = 0; i < s->is.row_count && ms != NULL; i++) {
+    for (uint32_t i = 0; i < s->is.row_count; i++) {
         const live_row *row = &s->rows[i];
         if (live_row_is_taken(row)) {
-            ms[w.count++] = row->milliseconds;
+            latency_add(&w.times, row->milliseconds);
             w.passes += row->passes;
             w.planned += row->passes_planned;
         }
     }
-    if (w.count > 0) {
-        w.times = latency_of(ms, w.count);
-    }
-    free(ms);
     return w;
 }
 
@@ -127,7 +121,7 @@ static void add_held(cJSON *root, const stream_run *s)
         const held_back *h = &s->held[i];
         cJSON *item = cJSON_CreateObject();
         json_add_integer(item, "frame", h->frame);
-        if (h->has_live) {
+        if (i < s->is.drawn) {
             add_decibels(item, "live_psnr", h->live_psnr);
             add_decibels(item, "live_psnr_all", h->live_psnr_all);
         }
@@ -149,10 +143,10 @@ static void add_work(cJSON *root, const stream_run *s)
         json_add_integer(root, "resumed_at", s->resumed_at);
     }
     cJSON *times = cJSON_AddObjectToObject(root, "keyframe_ms");
-    cJSON_AddNumberToObject(times, "median", w.times.median);
-    cJSON_AddNumberToObject(times, "most_95", w.times.most);
+    cJSON_AddNumberToObject(times, "median", latency_of_share(&w.times, 50));
+    cJSON_AddNumberToObject(times, "most_95", latency_of_share(&w.times, 95));
     cJSON_AddNumberToObject(times, "worst", w.times.worst);
-    cJSON_AddNumberToObject(root, "keyframes_per_s", w.times.rate);
+    cJSON_AddNumberToObject(root, "keyframes_per_s", latency_rate(&w.times));
     json_add_integer(root, "passes", (int64_t)w.passes);
     json_add_integer(root, "passes_planned", (int64_t)w.planned);
     if (s->options->live.most_ms > 0) {
@@ -234,9 +228,10 @@ void stream_print(const stream_run *s, uint64_t hash)
 {
     const live_options *o = &s->map.options;
     const work w = work_of(s);
-    printf("%s: %" PRIu32 " keyframes of %" PRIu32 " frames\n", s->path, w.count, s->is.next);
-    printf("a keyframe%s: median %.1f ms, 95 %% at most %.1f ms, worst %.1f ms; %.1f a second\n",
-           s->options->no_hash ? " without hashes" : "", w.times.median, w.times.most, w.times.worst, w.times.rate);
+    char spread[LATENCY_TEXT_BYTES];
+    printf("%s: %" PRIu64 " keyframes of %" PRIu32 " frames\n", s->path, w.times.count, s->is.next);
+    printf("a keyframe%s: %s; %.1f a second\n", s->options->no_hash ? " without hashes" : "",
+           latency_text(&w.times, spread), latency_rate(&w.times));
     print_skipped(s);
     print_means(s);
     if (o->scene != NULL) {

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "cli/cli.h"
@@ -31,14 +32,14 @@
 enum { KEY_PORT = 0x1000, KEY_COMPARE };
 
 static const struct argp_option options[] = {
-    OPTION_ARGUMENTS("INPUT", OPTION_READS | OPTION_FOLDER),
+    OPTION_ARGUMENTS("INPUT", OPTION_READS | OPTION_FOLDER | OPTION_LATER),
     {"output", 'o', "view.html", OPTION_WRITES(FILE_PAGE), "page to write, which needs no server (it is served)", 0},
     {"port", KEY_PORT, "N", 0, "port of the server on 127.0.0.1, 0 = any free one (0)", 0},
     {"compare", KEY_COMPARE, "LIST", 0,
      "further frames of the recording to look from and to compare with (the one in the middle of the first two context "
      "frames)",
      0},
-    {"follow", OPTION_TO(view_options, follow), "RUN.jsonl", OPTION_READS,
+    {"follow", OPTION_TO(view_options, follow), "RUN.jsonl", OPTION_READS | OPTION_LATER,
      "lines that replay --stream or capture --stream writes beside SCENE.ply: the page shows the map as it grows, the "
      "camera's path, latency and decisions",
      0},
@@ -320,6 +321,18 @@ void view_defaults(view_options *o)
     o->settings.config.keep_analysis = 1; /* as the page's own builds: the slider takes the analysis over */
 }
 
+/* Waits until another program has written the file. */
+static void wait_for(const char *path)
+{
+    const struct timespec moment = {.tv_nsec = 200000000};
+    if (access(path, F_OK) != 0) {
+        (void)cli_error(CLI_OK, "%s: waits until a stream writes it (Ctrl-C ends it)", path);
+    }
+    while (access(path, F_OK) != 0) {
+        nanosleep(&moment, NULL);
+    }
+}
+
 int view_run(const view_options *o)
 {
     if (!viewer_page_is_built()) {
@@ -331,6 +344,10 @@ int view_run(const view_options *o)
     char error[ERROR_BYTES] = "";
     scene_file scene = {0};
     reconstruction r = {0};
+    if (o->follow != NULL) {
+        wait_for(o->follow);
+        wait_for(o->scene);
+    }
     if (o->scene != NULL && scene_file_read(o->scene, o->settings.scene_flags, &scene, error, sizeof error) != 0) {
         return cli_error(CLI_BAD_INPUT, "%s", error);
     }
