@@ -15,18 +15,20 @@
 #define PAIR_LEAST 64u      /* compared pixels; a pair with fewer is ignored */
 #define STILL_Q30 (1 << 17) /* at level 0: a level ends after shorter steps */
 #define CLIPPED 32u         /* levels: larger differences count as this much */
+#define GUESSES 3           /* times that an aligned pose becomes the guess */
 
 /* How far a view may be from its first pose. */
 typedef struct freedom {
     uint32_t prior_shift; /* twice -log2 of the expected error: radians, and median depths */
     int32_t most_q30;     /* bound of a deviation: radians, and scene units */
     uint32_t halves;      /* log2: the part of a step that is taken */
+    uint32_t pixels;      /* log2: compared pixels, as a multiple of t3r_align_pixels() */
 } freedom;
 
 /* Poses that were given, of views that all move. */
-static const freedom all_given = {.prior_shift = 10, .most_q30 = 1 << 26, .halves = 1};
+static const freedom all_given = {.prior_shift = 10, .most_q30 = 1 << 26, .halves = 1, .pixels = 0};
 /* A pose that was guessed, among views that stay. */
-static const freedom one_guessed = {.prior_shift = 8, .most_q30 = 1 << 28, .halves = 0};
+static const freedom one_guessed = {.prior_shift = 8, .most_q30 = 1 << 28, .halves = 0, .pixels = 3};
 
 typedef struct alignment {
     t3r_runtime *rt;
@@ -117,9 +119,9 @@ static void show_level(alignment *a, uint32_t level)
 }
 
 /* Returns the stride of compared columns and rows, at least 2. */
-static uint32_t stride_of(const t3r_view *view, uint32_t views)
+static uint32_t stride_of(const t3r_view *view, uint32_t most)
 {
-    const uint32_t pixels = view->width * view->height, most = t3r_align_pixels(views);
+    const uint32_t pixels = view->width * view->height;
     uint32_t reliable = 0, stride = 2;
     for (uint32_t i = 0; i < pixels; i++) {
         reliable += t3r_is_reliable(view->validity[i]);
@@ -259,7 +261,7 @@ static void prepare(alignment *a)
     a->count = a->rt->views;
     a->work = t3r_pointmap_work_of(a->rt);
     for (uint32_t v = 0; v < a->count; v++) {
-        a->stride[v] = stride_of(&a->views[v], a->count);
+        a->stride[v] = stride_of(&a->views[v], t3r_align_pixels(a->count) << a->freedom.pixels);
     }
 }
 
@@ -279,7 +281,14 @@ t3r_status t3r_align_view(t3r_runtime *rt, t3r_view *views, uint32_t v)
     alignment a = {
         .rt = rt, .views = views, .first = v, .end = v + 1, .freedom = one_guessed, .steps = T3R_ALIGN_STEPS};
     prepare(&a);
-    return align_levels(&a);
+    t3r_status status = align_levels(&a);
+    for (int i = 0; i < GUESSES && status == T3R_OK; i++) { /* the guess pulls the pose: guess again */
+        t3r_note_placement(&rt->given[v], &rt->camera[v]);
+        memset(rt->deviation_q30[v], 0, sizeof rt->deviation_q30[v]);
+        a.step = T3R_ALIGN_STEPS - T3R_ALIGN_ROUNDS;
+        status = align_level(&a, 0);
+    }
+    return status;
 }
 
 t3r_status t3r_align_views(t3r_runtime *rt, t3r_view *views, uint32_t steps)

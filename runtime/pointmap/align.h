@@ -36,8 +36,8 @@ static inline uint32_t t3r_align_pixels(uint32_t views)
 t3r_status t3r_align_views(t3r_runtime *rt, t3r_view *views, uint32_t steps);
 
 /* Corrects the camera of view v alone, and `views[v].pose`, from a guess on that may be off by a quarter of a radian or
- * of a scene unit. The guess is rt->given[v], with deviation 0, and both are set already. Whether the result is right,
- * the caller finds out. T3R_ERR_CANCELLED leaves the pose of some round. */
+ * of a scene unit. The guess is rt->given[v], with deviation 0, and both are set already; they change. Whether the
+ * result is right, the caller finds out. T3R_ERR_CANCELLED leaves the pose of some round. */
 t3r_status t3r_align_view(t3r_runtime *rt, t3r_view *views, uint32_t v);
 
 #endif

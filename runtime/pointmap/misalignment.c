@@ -112,8 +112,8 @@ static void derivatives(const sighting *s, const int64_t pull_q8[3], const int32
     }
 }
 
-/* Adds one pixel. A view has fewer than 2^16, each with derivatives up to 2^20, a difference up to 2^13 and a weight up
- * to 2^8: sums stay below 2^56. */
+/* Adds one pixel. A view has fewer than 2^18, each with derivatives up to 2^20, a difference up to 2^13 and a weight up
+ * to 2^8: sums stay below 2^58. */
 static void add(t3r_align_sums *sums, const int32_t d[T3R_ALIGN_UNKNOWNS], int32_t difference_q4, int32_t weight_q8)
 {
     for (uint32_t i = 0, at = 0; i < T3R_ALIGN_UNKNOWNS; i++) {

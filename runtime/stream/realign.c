@@ -4,6 +4,7 @@
 #include "core/memory.h"
 #include "motion.h"
 #include "pointmap/align.h"
+#include "pointmap/misalignment.h"
 #include "pointmap/reproject.h"
 #include "state/remembered.h"
 #include "state/state.h"
@@ -119,11 +120,17 @@ static __attribute__((noinline)) bool guess(t3r_runtime *rt, uint32_t slot)
 /* Aligns the slot's camera with the live keyframes, from the guess on. */
 static __attribute__((noinline)) t3r_status align(t3r_runtime *rt, uint32_t slot)
 {
+    const t3r_placement given = rt->given[slot];
+    int32_t deviation_q30[T3R_ALIGN_UNKNOWNS];
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
+    memcpy(deviation_q30, rt->deviation_q30[slot], sizeof deviation_q30);
     t3r_note_placement(&rt->given[slot], &rt->camera[slot]);
     memset(rt->deviation_q30[slot], 0, sizeof rt->deviation_q30[slot]);
-    return t3r_align_view(rt, views, slot);
+    const t3r_status status = t3r_align_view(rt, views, slot);
+    rt->given[slot] = given;
+    memcpy(rt->deviation_q30[slot], deviation_q30, sizeof deviation_q30);
+    return status;
 }
 
 /* Moves the map, and all keyframes but the slot's. */

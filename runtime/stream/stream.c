@@ -244,14 +244,14 @@ static __attribute__((noinline)) t3r_status judge(t3r_runtime *rt, uint32_t slot
     if (!rt->config.gate) {
         return t3r_is_reliable_anywhere(&view) ? T3R_OK : T3R_ERR_NO_DEPTH;
     }
-    const t3r_gate before = rt->gate;
+    t3r_status status = T3R_OK;
     t3r_gate_measure(rt, &view, report);
-    report->refusal = t3r_gate_decide(rt, &view, &rt->camera[slot], report);
-    const t3r_status status =
-        report->moved != 0 && rt->config.align != 0 && rt->config.views > 1 ? t3r_realign(rt, slot, report) : T3R_OK;
-    report->moved = report->moved != 0 && report->realigned == 0 && t3r_gate_contradicts(report);
-    if (status != T3R_OK) {
-        rt->gate = before;
+    if (rt->config.align != 0 && rt->config.views > 1 && t3r_gate_suspects_jump(rt, &view, report)) {
+        status = t3r_realign(rt, slot, report);
+    }
+    if (status == T3R_OK) {
+        report->refusal = t3r_gate_decide(rt, &view, &rt->camera[slot], report);
+        report->moved = report->moved != 0 && t3r_gate_contradicts(report);
     }
     return status;
 }

@@ -188,6 +188,8 @@ void t3r_gate_measure(const t3r_runtime *rt, const t3r_view *view, t3r_stream_re
 
 #define STEP_MOST_Q20 (1 << 19) /* half a scene unit along each axis, from frame to frame */
 
+#define JUMP_AFTER 2u /* frames in a row that contradict the map along one path, before the map may move */
+
 /* Frames in a row that are refused for a reason that may last, before one is taken all the same; 0 = for ever. */
 static const uint8_t patience[T3R_REFUSAL_COUNT] = {
     [T3R_REFUSAL_EXPOSURE] = 16,
@@ -245,6 +247,12 @@ static bool follows_refused(const t3r_runtime *rt, const t3r_view *view)
         near = near && t3r_abs64(step) <= STEP_MOST_Q20;
     }
     return near;
+}
+
+bool t3r_gate_suspects_jump(const t3r_runtime *rt, const t3r_view *view, const t3r_stream_report *report)
+{
+    return rt->gate.refusal == T3R_REFUSAL_CONTRADICTS && rt->gate.refused >= JUMP_AFTER &&
+           fault_of(rt, report) == T3R_REFUSAL_CONTRADICTS && follows_refused(rt, view);
 }
 
 t3r_refusal t3r_gate_decide(t3r_runtime *rt, const t3r_view *view, const t3r_camera *camera, t3r_stream_report *report)

@@ -19,6 +19,9 @@ bool t3r_gate_contradicts(const t3r_stream_report *report);
 /* Whether the frame shows the map by the figures, and clearly better than by those from another pose. */
 bool t3r_gate_agrees(const t3r_stream_report *report, const t3r_stream_report *other);
 
+/* Whether poses may have jumped: the frame contradicts the map, as did frames before it, along one path. */
+bool t3r_gate_suspects_jump(const t3r_runtime *rt, const t3r_view *view, const t3r_stream_report *report);
+
 /* Decides by the figures and by how many frames in a row were refused, and notes the decision for the next frames. Sets
  * report->moved if the frame is taken although it contradicts or misses the map. */
 t3r_refusal t3r_gate_decide(t3r_runtime *rt, const t3r_view *view, const t3r_camera *camera, t3r_stream_report *report);
