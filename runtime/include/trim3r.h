@@ -673,8 +673,8 @@ t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner
  *
  * With `gate`, a frame that cannot be trusted is refused: the call returns T3R_OK, report->refusal has the reason, and
  * the map, the keyframes and their gains are as before. The next frame is then due. Exposure, blur, covering and
- * contradiction may last: after 4 to 32 refusals in a row the next such frame is taken. With `align`, the map moves with
- * poses that jumped, after 2 refusals in a row, if the frame then agrees with it. Else, if the frame that is taken
+ * contradiction may last: after 4 to 32 refusals in a row the next such frame is taken. With `align`, the map moves
+ * with poses that jumped, after 2 refusals in a row, if the frame then agrees with it. Else, if the frame that is taken
  * contradicts the map, and its camera is within half a scene unit of the last one along each axis, a new piece of the
  * map begins. Earlier keyframes are then forgotten, and earlier Gaussians leave as soon as a keyframe covers them and
  * does not show them.
