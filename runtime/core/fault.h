@@ -52,9 +52,15 @@ void t3r_note(t3r_fault *fault, const char *text, int64_t first, int64_t second,
         }                                                                                                              \
     } while (0)
 
-/* A list of checks, and a condition in one. Both instances are inlined, so that the call keeps its size. */
-#define T3R_CHECKS static inline __attribute__((always_inline)) t3r_status
-#define T3R_CONDITION static inline __attribute__((always_inline)) bool
+/* A list of checks, and a condition in one. Both instances are inlined, so that the call keeps its size. Where branches
+ * are counted, they share a function instead: an inlined one has only those that its arguments leave open. */
+#ifdef T3R_CHECKS_APART
+#define T3R_LIST_ static __attribute__((noinline, unused))
+#else
+#define T3R_LIST_ static inline __attribute__((always_inline))
+#endif
+#define T3R_CHECKS T3R_LIST_ t3r_status
+#define T3R_CONDITION T3R_LIST_ bool
 
 /* Checks the argument that most calls have. */
 T3R_CHECKS t3r_runtime_checks(const t3r_runtime *rt, t3r_fault *fault)

@@ -38,7 +38,8 @@ static inline int32_t t3r_depth_q20(t3r_depth_scale scale, uint16_t raw)
     return (int32_t)T3R_MIN(z, (int64_t)T3R_POSITION_MOST_Q20 - 1);
 }
 
-/* Returns the raw steps up to a depth below 2^31, rounded down, at most 65,535. */
+/* Returns the raw steps up to a depth below 2^31, rounded down, at most 65,535. With a shift above 32 they are a
+ * multiple of 2^(shift - 32). */
 static inline uint32_t t3r_depth_steps(t3r_depth_scale scale, uint32_t z_q20)
 {
     const uint32_t shift = T3R_MIN(scale.shift, 32u); /* below 2^63; the quotient is below 2^32, times at most 2^30 */

@@ -35,8 +35,8 @@ def place_of(folder, file, root):
 
 
 def counted(folder, root=RUNTIME):
-    """Returns {(file, function, line): how often each branch there was taken}, added up over all objects of the
-    folder."""
+    """Returns {(file, function, line, number of branches): how often each branch there was taken}, added up over all
+    objects of the folder. An inlined line has fewer branches where a constant decides some: it counts for each number."""
     objects = [path for path in sorted(folder.rglob("*.gcda")) if VECTORS.isdisjoint(path.parts)]
     groups = [objects[at:at + 8] for at in range(0, len(objects), 8)]
     taken = {}
@@ -49,10 +49,8 @@ def counted(folder, root=RUNTIME):
             for line in source["lines"]:
                 ways = [branch["count"] for branch in line["branches"]]
                 if ways:
-                    key = (str(path.relative_to(root)), line.get("function_name", INLINED), line["line_number"])
+                    key = (str(path.relative_to(root)), line.get("function_name", INLINED), line["line_number"], len(ways))
                     before = taken.setdefault(key, [0] * len(ways))
-                    if len(before) != len(ways):
-                        raise ValueError(f"{key}: {len(before)} branches in one object, {len(ways)} in another")
                     taken[key] = [a + b for a, b in zip(before, ways)]
     return taken
 
@@ -60,7 +58,7 @@ def counted(folder, root=RUNTIME):
 def uncovered(taken, root=RUNTIME):
     """Returns {place: how many of its branches were never taken}."""
     lines, found = {}, collections.Counter()
-    for (file, function, line), ways in taken.items():
+    for (file, function, line, _), ways in taken.items():
         missing = sum(count == 0 for count in ways)
         if missing:
             if file not in lines:

@@ -57,7 +57,7 @@ def share(all_branches, taken):
 def files_of(counted):
     """Returns {file: (branches, those taken)}."""
     files = collections.defaultdict(lambda: (0, 0))
-    for (file, _, _), ways in counted.items():
+    for (file, *_), ways in counted.items():
         known, taken = files[file]
         # below 0: gcov subtracts counts, and concurrent threads lose some counts
         files[file] = (known + len(ways), taken + sum(count != 0 for count in ways))

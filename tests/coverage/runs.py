@@ -26,7 +26,7 @@ def build(folder):
     jobs = str(os.cpu_count())
     options = {"T3R_COVERAGE": "ON", "T3R_TESTS": "ON", "T3R_SHARED": "OFF", "T3R_PYTHON_PACKAGE": "OFF", "T3R_LIBCAMERA": "OFF",
                "T3R_OPENCV": "OFF", "T3R_POSES": "OFF", "CMAKE_BUILD_TYPE": "None",
-               "CMAKE_C_FLAGS": "-O1 -U__OPTIMIZE__"} # variants that only an optimized runtime has are not asked for
+               "CMAKE_C_FLAGS": "-O1 -U__OPTIMIZE__ -DT3R_CHECKS_APART"} # no variants that only an optimized runtime has
     quiet("cmake", "-G", "Unix Makefiles", "-Wno-dev", "-S", branches.ROOT, "-B", folder,
           *(f"-D{name}={value}" for name, value in options.items()))
     for area in AREAS:

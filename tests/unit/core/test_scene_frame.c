@@ -95,3 +95,19 @@ TEST(depth_steps)
         }
     }
 }
+
+/* The same units the other way round, from depths at the ends of their range and in between. */
+TEST(steps_up_to_a_depth)
+{
+    uint64_t seed = 7;
+    for (int turn = 0; turn < 63 * 1024; turn++) {
+        const uint32_t noise = (uint32_t)unit_random(&seed), shift = (uint32_t)turn % 63;
+        const t3r_depth_scale scale = {turn % 5 == 0 ? 1u << 31 : turn % 5 == 1 ? UINT32_MAX : noise | 1u << 31, shift};
+        const uint32_t most[] = {0, 1, 2, INT32_MAX, (uint32_t)unit_random(&seed) >> (1 + turn / 63 % 31)};
+        for (size_t i = 0; i < sizeof most / sizeof most[0]; i++) {
+            const uint64_t whole = ((uint64_t)most[i] << (shift < 32 ? shift : 32)) / scale.mantissa;
+            const uint64_t steps = whole << (shift < 32 ? 0 : shift - 32);
+            assert_int_equal(t3r_depth_steps(scale, most[i]), (uint32_t)(steps < 65535 ? steps : 65535));
+        }
+    }
+}
