@@ -13,6 +13,7 @@
 #include "core/fixed.h"
 #include "core/hash.h"
 #include "core/scene_frame.h"
+#include "head/head.h"
 #include "host/cpu.h"
 #include "reconstruction/developed_frame.h"
 #include "reconstruction/importance_pictures.h"
@@ -125,6 +126,19 @@ t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *
 
 /* ---- the arena -------------------------------------------------------------------------------------------- */
 
+/* Returns the bytes with which no stage takes longer than with more: a view is drawn in one pass, and each worker packs
+ * the layers of the head. */
+static size_t full_bytes(const reconstruction *r, const t3r_plan_info *plan)
+{
+    const size_t packed =
+        r->head.weights != NULL ? t3r_head_learned_packed_bytes(r->head.weights, r->config.width) : SIZE_MAX;
+    if (packed == SIZE_MAX) { /* no network, or one that is not packed */
+        return plan->bytes;
+    }
+    const size_t below = plan->buffers[T3R_BUFFER_HEAD_WORK].offset + r->config.workers * T3R_UP_(packed);
+    return T3R_MAX(plan->bytes, below + plan->buffers[T3R_BUFFER_SCENE].bytes);
+}
+
 int reconstruction_allocate(reconstruction *r, const reconstruction_options *options)
 {
     t3r_plan_info plan;
@@ -135,7 +149,7 @@ int reconstruction_allocate(reconstruction *r, const reconstruction_options *opt
     }
     uint64_t bytes = options->arena == ARENA_BYTES ? options->arena_bytes
                      : options->arena == ARENA_MIN ? plan.min_bytes
-                                                   : plan.bytes;
+                                                   : full_bytes(r, &plan);
     if (bytes < plan.min_bytes) {
         return reconstruction_error(T3R_ERR_ARENA, "arena", &r->config, (size_t)bytes);
     }
