@@ -21,6 +21,10 @@ def arena():
         files.add(open(name, "rb").read())
     check(len(hashes) == 1 and len(files) == 1, "arena or threads change the scene")
 
+    few = ["build", recording, "--working", "64x64", "--gaussians", 100, "--refine", 0, "-o", "few.ply", "--force", "--head"]
+    sizes = [expect_json(*few, head, "--arena", size)["arena_bytes"] for head in ("small", "analytic") for size in ("full", "min")]
+    check(sizes[0] - sizes[1] > 50000 and sizes[2] == sizes[3], f"a full arena has room for packed layers where there are any: {sizes}")
+
     views = set()
     for more in (["--arena", "min"], ["--arena", "full"], ["--threads", 3]):
         views.add(expect_json("render", "scene.ply", recording, "--view", 1, "-o", "v.png", *more).get("hash"))
