@@ -235,16 +235,6 @@ static inline t3r_status t3r_camera_fixed(const t3r_recorded_camera *camera, t3r
     return t3r_camera_fixed_as(t3r_host_program(), camera, out, error, error_bytes);
 }
 
-/* ---- pixels ------------------------------------------------------------------------------------------------- */
-
-/* Copies the colours of 4 bytes a pixel, R G B A or, with blue_first, B G R A, to R G B. opaque (may be NULL) gets a
- * byte a pixel in rows without gaps, 1 where alpha is 128 or more, else 0. Returns whether any pixel is opaque. */
-bool t3r_rgb_of_rgba(const uint8_t *rgba, size_t rgba_stride_bytes, uint32_t width, uint32_t height, bool blue_first,
-                     uint8_t *rgb, size_t rgb_stride_bytes, uint8_t *opaque);
-/* Copies a view of t3r_render() to R G B A with its alpha, rounded to nearest. Its colours are over black, which is
- * premultiplied alpha. alpha_q15 may be NULL: all pixels are opaque. */
-void t3r_rgba_of_view(const t3r_target *view, uint8_t *rgba, size_t rgba_stride_bytes);
-
 /* ---- scenes ------------------------------------------------------------------------------------------------- */
 
 /* Reads a scene in the format that its first bytes identify, else its suffix: .ply, .compressed.ply, .splat, .spz, .glb

@@ -108,6 +108,9 @@ T3R_CHECKS t3r_render_checks(const t3r_runtime *rt, const t3r_camera *camera, co
     T3R_MISUSE(fault, target != NULL, T3R_ERR_ARGUMENT, "target is NULL");
     T3R_MISUSE(fault, rt->has_scene, T3R_ERR_STATE, t3r_no_scene_text(rt));
     T3R_PASS(t3r_target_checks(rt, target, fault));
+    T3R_CHECK(fault, camera->distortion == T3R_DISTORTION_NONE, T3R_ERR_CAMERA,
+              "camera.distortion is @: pictures are drawn without distortion, as T3R_DISTORTION_NONE",
+              camera->distortion);
     if (fault == NULL) {
         return t3r_projection_make(camera, &rt->frame, target->width, target->height, projection);
     }

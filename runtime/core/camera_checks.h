@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "camera.h"
+#include "features.h"
 
 #define T3R_FOCAL_LEAST_Q16 (8 << 16)
 #define T3R_PIXELS_MOST_Q16 ((16384 << 16) - 1)
@@ -79,7 +80,7 @@ T3R_CHECKS t3r_camera_checks(const t3r_camera *camera, uint32_t width, uint32_t 
                   T3R_ERR_CAMERA, "camera.position_q32[#] is #: a coordinate is between -# and #, in 1/2^32 world unit",
                   i, camera->position_q32[i], T3R_MAX_POSITION_Q32, T3R_MAX_POSITION_Q32);
     }
-    if (camera->distortion == T3R_DISTORTION_RADTAN) {
+    if (T3R_FEATURE_EXTRAS && camera->distortion == T3R_DISTORTION_RADTAN) { /* without lenses any is refused */
         for (uint32_t i = 2; i < 4; i++) {
             const int32_t p = camera->distortion_q24[i];
             T3R_CHECK(fault, p < T3R_MAX_TANGENTIAL_Q24 && p > -T3R_MAX_TANGENTIAL_Q24, T3R_ERR_CAMERA,

@@ -324,7 +324,12 @@ typedef struct t3r_scene {
     uint32_t valid_points;
 } t3r_scene;
 
-/* The memory that a render writes. Any of the three pictures may be NULL, which omits it. The background is black. */
+/* The memory that a render writes. Any of the three pictures may be NULL, which omits it. The background is black;
+ * t3r_composite_row() draws another one.
+ *
+ * The camera of t3r_render() chooses the part and the scale. For a picture of w x h pixels that shows what another one
+ * of W x H shows: fx' = fx w / W and cx' = (cx + 1/2) w / W - 1/2, and the same along y with h / H. For the part of a
+ * picture that begins at pixel (x, y): cx' = cx - x and cy' = cy - y. Its width and height are the target's. */
 typedef struct t3r_target {
     /* The size in pixels, 1..render_width and 1..render_height. */
     uint32_t width, height;
@@ -715,11 +720,11 @@ t3r_status t3r_scene_append(t3r_runtime *rt, const t3r_gaussian *gaussian);
 t3r_status t3r_harmonics_colour(const int16_t *coefficients_q12, uint32_t degree, const int32_t direction[3],
                                 uint16_t colour_q7[3]);
 
-/* Draws the scene in the arena as seen by the camera. Its distortion is ignored: targets are pinhole. Without
+/* Draws the scene in the arena as seen by the camera, which has no distortion: targets are pinhole. Without
  * keep_analysis and `warm` the views are discarded, because the raster uses the memory of their planes. T3R_ERR_STATE:
  * there is no scene. T3R_ERR_ARGUMENT: sizes or strides are out of range, or depth or alpha is not aligned for its
- * type. T3R_ERR_CAMERA: the camera is more than 1,024 scene units from the origin. T3R_ERR_CANCELLED: the target is
- * partly drawn. */
+ * type. T3R_ERR_CAMERA: out of range; a distortion, which is refused and not drawn; or more than 1,024 scene units from
+ * the origin. T3R_ERR_CANCELLED: the target is partly drawn. */
 t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_target *target);
 
 /* Returns the number of passes over the scene that the last t3r_render() took: 1 if the arena had room for all splats.
@@ -739,6 +744,44 @@ t3r_status t3r_view_camera(const t3r_runtime *rt, uint32_t view, t3r_camera *cam
  * camera of the result. T3R_ERR_STATE unless the runtime is empty. */
 t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint8_t *rgb_out,
                        uint16_t *depth_out, t3r_camera *undistorted);
+
+/* ---- pixels of devices -------------------------------------------------------------------------------------------
+ *
+ * These calls convert rows of pixels in the caller's memory: a camera's to R G B, before t3r_add_view() or
+ * t3r_add_rows(), and R G B to a display's, after t3r_render(). They need no runtime. Input and output must not overlap.
+ * Each rounding is to nearest (SPEC, "Pixels of devices"). A firmware that does not call them links none of them.
+ * T3R_ERR_ARGUMENT: NULL, a row that is too short, or a value without a name; nothing is written. */
+
+/* The layout of a pixel in bytes. */
+typedef uint32_t t3r_packing;
+enum {
+    T3R_PACKED_RGB565,    /* 2 bytes, the low one first: blue in bits 0..4, green in 5..10, red in 11..15 */
+    T3R_PACKED_RGB565_BE, /* the same, with the high byte first, as most camera modules send it */
+    T3R_PACKED_RGBA,      /* 4 bytes: R G B A */
+    T3R_PACKED_BGRA,      /* 4 bytes: B G R A */
+    T3R_PACKING_COUNT
+};
+
+/* The colours of the first two pixels of a Bayer pattern's first row, and then of its second row. */
+typedef uint32_t t3r_bayer;
+enum { T3R_BAYER_RGGB, T3R_BAYER_GRBG, T3R_BAYER_GBRG, T3R_BAYER_BGGR, T3R_BAYER_COUNT };
+
+/* Converts `width` pixels, 1 or more, to R G B. Their alpha is ignored. */
+t3r_status t3r_unpack_row(t3r_packing packing, const uint8_t *packed, uint32_t width, uint8_t *rgb);
+
+/* Converts row `y` of a picture in a Bayer pattern with 8 bits a pixel to R G B of the same width, 2 or more, by
+ * bilinear interpolation. `order` is that of the whole picture. `above` and `below` are rows y - 1 and y + 1. The
+ * picture is mirrored at its edges: the first row has row 1 as `above`, the last row the one before it as `below`. */
+t3r_status t3r_demosaic_row(t3r_bayer order, uint32_t y, const uint8_t *above, const uint8_t *row, const uint8_t *below,
+                            uint32_t width, uint8_t *rgb);
+
+/* Converts `width` pixels R G B, 1 or more, to a display's. alpha_q15 is the row of t3r_target, which becomes the alpha
+ * of RGBA and BGRA; the colours of a view are premultiplied by it. NULL = all pixels are opaque. */
+t3r_status t3r_pack_row(t3r_packing packing, const uint8_t *rgb, const uint16_t *alpha_q15, uint32_t width,
+                        uint8_t *packed);
+
+/* Draws a row of a view over a background colour r g b, in place. rgb and alpha_q15 are rows of t3r_target. */
+t3r_status t3r_composite_row(uint8_t *rgb, const uint16_t *alpha_q15, uint32_t width, const uint8_t background[3]);
 
 /* ---- errors in words ---------------------------------------------------------------------------------------------
  *
@@ -793,6 +836,15 @@ const char *t3r_view_camera_error(t3r_status status, const t3r_runtime *rt, uint
 const char *t3r_develop_error(t3r_status status, const t3r_runtime *rt, const t3r_frame *frame,
                               const t3r_camera *camera, const uint8_t *rgb_out, const uint16_t *depth_out,
                               const t3r_camera *undistorted, char *text, size_t text_bytes);
+const char *t3r_unpack_row_error(t3r_status status, t3r_packing packing, const uint8_t *packed, uint32_t width,
+                                 const uint8_t *rgb, char *text, size_t text_bytes);
+const char *t3r_demosaic_row_error(t3r_status status, t3r_bayer order, uint32_t y, const uint8_t *above,
+                                   const uint8_t *row, const uint8_t *below, uint32_t width, const uint8_t *rgb,
+                                   char *text, size_t text_bytes);
+const char *t3r_pack_row_error(t3r_status status, t3r_packing packing, const uint8_t *rgb, const uint16_t *alpha_q15,
+                               uint32_t width, const uint8_t *packed, char *text, size_t text_bytes);
+const char *t3r_composite_row_error(t3r_status status, const uint8_t *rgb, const uint16_t *alpha_q15, uint32_t width,
+                                    const uint8_t background[3], char *text, size_t text_bytes);
 
 /* Returns the version of the library, "major.minor.patch". */
 const char *t3r_version(void);

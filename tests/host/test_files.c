@@ -153,37 +153,3 @@ TEST_WITH(a_whole_file_replaces_or_leaves, scratch_setup, scratch_teardown)
     assert_non_null(strstr(error, "/nonexistent/x: "));
     assert_int_equal(t3r_write_whole("/dev/full", "x", 1, error, sizeof error), T3R_HOST_ERR_FILE);
 }
-
-TEST(four_channels_become_three)
-{
-    enum { WIDTH = 2, HEIGHT = 2, STRIDE = 11 };
-    uint8_t rgba[HEIGHT][STRIDE] = {{1, 2, 3, 255, 4, 5, 6, 127}, {7, 8, 9, 128, 10, 11, 12, 0}};
-    uint8_t rgb[HEIGHT][8], opaque[HEIGHT * WIDTH];
-    static const uint8_t first[] = {1, 2, 3, 4, 5, 6}, blue[] = {9, 8, 7, 12, 11, 10}, mask[] = {1, 0, 1, 0};
-    assert_true(t3r_rgb_of_rgba(rgba[0], STRIDE, WIDTH, HEIGHT, false, rgb[0], sizeof rgb[0], opaque));
-    assert_memory_equal(rgb[0], first, sizeof first);
-    assert_memory_equal(opaque, mask, sizeof mask);
-    assert_true(t3r_rgb_of_rgba(rgba[0], STRIDE, WIDTH, HEIGHT, true, rgb[0], sizeof rgb[0], NULL));
-    assert_memory_equal(rgb[1], blue, sizeof blue);
-    rgba[0][3] = rgba[1][3] = 0;
-    assert_false(t3r_rgb_of_rgba(rgba[0], STRIDE, WIDTH, HEIGHT, false, rgb[0], sizeof rgb[0], NULL));
-}
-
-TEST(a_view_has_its_coverage_as_alpha)
-{
-    uint8_t rgb[2][6] = {{1, 2, 3, 4, 5, 6}, {7, 8, 9, 10, 11, 12}}, rgba[2][8];
-    uint16_t alpha[2][2] = {{0, 32767}, {16384, 64}};
-    const t3r_target view = {.width = 2,
-                             .height = 2,
-                             .rgb = rgb[0],
-                             .rgb_stride_bytes = sizeof rgb[0],
-                             .alpha_q15 = alpha[0],
-                             .alpha_stride_bytes = sizeof alpha[0]};
-    static const uint8_t with[] = {1, 2, 3, 0, 4, 5, 6, 255, 7, 8, 9, 128, 10, 11, 12, 0};
-    t3r_target opaque = view;
-    t3r_rgba_of_view(&view, rgba[0], sizeof rgba[0]);
-    assert_memory_equal(rgba, with, sizeof with);
-    opaque.alpha_q15 = NULL;
-    t3r_rgba_of_view(&opaque, rgba[0], sizeof rgba[0]);
-    assert_int_equal(rgba[0][3], 255);
-}

@@ -17,7 +17,7 @@ import proof
 MOST_SOURCES = 30 # in a folder
 
 # Rooms of the runtime from the foundation up: each may include those before it.
-ROOMS = ("include", "core", "kernels", "state", "depth", "image", "pointmap", "stereo", "wavelet", "superclusters", "budget",
+ROOMS = ("include", "core", "pixels", "kernels", "state", "depth", "image", "pointmap", "stereo", "wavelet", "superclusters", "budget",
          "raster", "head", "refine", "stage_hash", "stages", "pipeline", "loss", "stream", "layout", "api", "errors")
 MAY = {"runtime/" + room: {"runtime/" + below for below in ROOMS[:at]} for at, room in enumerate(ROOMS)}
 RUNTIME = set(MAY)

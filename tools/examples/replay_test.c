@@ -43,6 +43,7 @@ static t3r_status build(t3r_runtime *rt, t3r_camera camera)
     camera.width = camera.height = SIDE;
     camera.fx_q16 = camera.fy_q16 = SIDE << 16;
     camera.cx_q16 = camera.cy_q16 = (SIDE - 1) << 15;
+    camera.distortion = T3R_DISTORTION_NONE;
     t3r_scene scene;
     t3r_status status = t3r_reconstruct(rt, NULL, &scene);
     status = status == T3R_OK ? t3r_render(rt, &camera, &picture) : status;

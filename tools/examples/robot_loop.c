@@ -64,6 +64,7 @@ static void look_ahead(t3r_runtime *rt, const t3r_camera *here, uint32_t index)
     eye.width = eye.height = SIDE;
     eye.fx_q16 = eye.fy_q16 = (int32_t)(INT64_C(56756) * SIDE);
     eye.cx_q16 = eye.cy_q16 = (SIDE - 1) << 15;
+    eye.distortion = T3R_DISTORTION_NONE;
     t3r_scene scene;
     if (!fine(t3r_reconstruct(rt, NULL, &scene), index) || !fine(t3r_render(rt, &eye, &ahead), index)) {
         return;

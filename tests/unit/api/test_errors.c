@@ -7,7 +7,7 @@
 #include "state/state.h"
 #include "trim3r_heads.h"
 
-enum { SIDE = 32, PIXELS = SIDE * SIDE, BUDGET = 60, MOST_ROWS = 160, CUT = 10 };
+enum { SIDE = 32, PIXELS = SIDE * SIDE, BUDGET = 60, MOST_ROWS = 180, CUT = 10 };
 
 static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[1 << 20], before[sizeof arena];
 static size_t arena_bytes;
@@ -515,7 +515,28 @@ TEST(targets)
                target.depth_q20 = (uint32_t *)(void *)((uint8_t *)picture_depth + 2));
     BAD_TARGET("an alpha picture that is not aligned", T3R_ERR_ARGUMENT,
                target.alpha_q15 = (uint16_t *)(void *)((uint8_t *)picture_alpha + 1));
+    BAD_TARGET("a view through a lens that distorts", T3R_ERR_CAMERA, camera.distortion = T3R_DISTORTION_FISHEYE);
     BAD_TARGET("a view from far away", T3R_ERR_CAMERA, camera.position_q32[0] = INT64_C(1) << 50);
+}
+
+TEST(rows_of_pixels)
+{
+    good_arguments();
+    REFUSED("a packing that is not there", T3R_ERR_ARGUMENT, t3r_unpack_row, T3R_PACKING_COUNT, depth, SIDE, rgb);
+    REFUSED("no row to unpack", T3R_ERR_ARGUMENT, t3r_unpack_row, T3R_PACKED_RGB565, NULL, SIDE, rgb);
+    REFUSED("a row of no pixels", T3R_ERR_ARGUMENT, t3r_pack_row, T3R_PACKED_RGB565, picture, NULL, 0, depth);
+    REFUSED("a Bayer order that is not there", T3R_ERR_ARGUMENT, t3r_demosaic_row, T3R_BAYER_COUNT, 0, depth, depth,
+            depth, SIDE, rgb);
+    REFUSED("no row above the first", T3R_ERR_ARGUMENT, t3r_demosaic_row, T3R_BAYER_RGGB, 0, NULL, depth, depth, SIDE,
+            rgb);
+    REFUSED("no place for the colours", T3R_ERR_ARGUMENT, t3r_demosaic_row, T3R_BAYER_RGGB, 0, depth, depth, depth, SIDE,
+            NULL);
+    REFUSED("a Bayer pattern of one column", T3R_ERR_ARGUMENT, t3r_demosaic_row, T3R_BAYER_RGGB, 0, depth, depth, depth,
+            1, rgb);
+    REFUSED("no view over a background", T3R_ERR_ARGUMENT, t3r_composite_row, NULL, picture_alpha, SIDE, rgb);
+    REFUSED("a view over a background without its alpha", T3R_ERR_ARGUMENT, t3r_composite_row, picture, NULL, SIDE,
+            rgb);
+    REFUSED("no background", T3R_ERR_ARGUMENT, t3r_composite_row, picture, picture_alpha, SIDE, NULL);
 }
 
 /* An error that no check explains, a status that the call did not return, and no error. */

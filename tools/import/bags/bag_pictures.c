@@ -123,28 +123,43 @@ static int decode(void *user, t3r_text format, const uint8_t *bytes, size_t coun
 
 /* ---- encodings that are no pixel formats ---- */
 
-/* Fills in each colour of a pixel with the mean of the samples of that colour in the 3x3 pixels around it. `pattern`
- * has the colours of the first two rows: "rggb". */
-static void demosaic(const t3r_ros_image *image, const char *pattern, uint8_t *out)
+#define HALF_OPAQUE 128
+
+/* Returns the Bayer order of an encoding's last four letters: "rggb". */
+static t3r_bayer bayer_of(const char *letters)
 {
-    for (uint32_t y = 0; y < image->height; y++) {
-        for (uint32_t x = 0; x < image->width; x++, out += 3) {
-            uint32_t sums[3] = {0, 0, 0}, counts[3] = {0, 0, 0};
-            for (uint32_t v = y == 0 ? 0 : y - 1; v <= y + 1 && v < image->height; v++) {
-                for (uint32_t u = x == 0 ? 0 : x - 1; u <= x + 1 && u < image->width; u++) {
-                    const char colour = pattern[(v & 1) * 2 + (u & 1)];
-                    const int c = colour == 'r' ? 0 : colour == 'g' ? 1 : 2;
-                    sums[c] += image->data[(size_t)v * image->step + u];
-                    counts[c]++;
-                }
-            }
-            const int own = pattern[(y & 1) * 2 + (x & 1)] == 'r' ? 0 : pattern[(y & 1) * 2 + (x & 1)] == 'g' ? 1 : 2;
-            for (int c = 0; c < 3; c++) {
-                out[c] = (uint8_t)((sums[c] + counts[c] / 2) / counts[c]);
-            }
-            out[own] = image->data[(size_t)y * image->step + x];
+    static const char names[T3R_BAYER_COUNT][5] = {
+        [T3R_BAYER_RGGB] = "rggb", [T3R_BAYER_GRBG] = "grbg", [T3R_BAYER_GBRG] = "gbrg", [T3R_BAYER_BGGR] = "bggr"};
+    t3r_bayer order = T3R_BAYER_COUNT - 1;
+    while (order > 0 && memcmp(letters, names[order], 4) != 0) {
+        order--;
+    }
+    return order;
+}
+
+static void demosaic(const t3r_ros_image *image, t3r_bayer order, uint8_t *out)
+{
+    for (uint32_t y = 0; y < image->height; y++, out += (size_t)image->width * 3) {
+        const uint8_t *row = image->data + (size_t)y * image->step;
+        const uint8_t *above = y == 0 ? row + image->step : row - image->step;
+        const uint8_t *below = y + 1 == image->height ? row - image->step : row + image->step;
+        (void)t3r_demosaic_row(order, y, above, row, below, image->width, out);
+    }
+}
+
+/* Unpacks four channels, and marks pixels of alpha 128 and more in `opaque`. Returns whether there are any. */
+static bool unpack(const t3r_ros_image *image, t3r_packing packing, uint8_t *out, uint8_t *opaque)
+{
+    bool any = false;
+    for (uint32_t y = 0; y < image->height; y++, out += (size_t)image->width * 3) {
+        const uint8_t *row = image->data + (size_t)y * image->step;
+        (void)t3r_unpack_row(packing, row, image->width, out);
+        for (uint32_t x = 0; x < image->width; x++) {
+            *opaque = row[4 * (size_t)x + 3] >= HALF_OPAQUE;
+            any = any || *opaque++ != 0;
         }
     }
+    return any;
 }
 
 /* Checks the sides of a raw image, and that its data hold `rows` rows of that many bytes a pixel. Returns NULL, or what
@@ -201,10 +216,9 @@ static int convert(void *user, const t3r_ros_image *image, t3r_decoded_image *ou
         return t3r_reason(error, error_bytes, "out of memory");
     }
     if (bayer) {
-        demosaic(image, image->encoding.chars + strlen("bayer_"), p->samples);
-    } else if (!t3r_rgb_of_rgba(image->data, image->step, image->width, image->height,
-                                !t3r_text_is(image->encoding, "rgba8"), p->samples, (size_t)image->width * 3,
-                                p->valid)) {
+        demosaic(image, bayer_of(image->encoding.chars + strlen("bayer_")), p->samples);
+    } else if (!unpack(image, t3r_text_is(image->encoding, "rgba8") ? T3R_PACKED_RGBA : T3R_PACKED_BGRA, p->samples,
+                       p->valid)) {
         free(p->valid); /* drivers leave the fourth channel at 0 */
         p->valid = NULL;
     }

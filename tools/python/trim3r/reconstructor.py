@@ -260,8 +260,8 @@ class Reconstructor:
         Parameters
         ----------
         camera : Camera
-            For the pixel grid of the picture: resized() makes one of a camera for another size. Its lens is ignored:
-            pictures are a pinhole's.
+            For the pixel grid of the picture: resized() makes one of a camera for another size. One with a distortion
+            is refused: dataclasses.replace(camera, distortion="none") is the pinhole of the same view.
         size : pair of int, optional
             Width and height in pixels, at most render_size. That of `out`, else the working size, without it.
         out : ndarray of uint8, shape (H, W, 3), optional
