@@ -63,7 +63,7 @@ tool("study/commands", "trim3r", "study/chart", "study/ablation", "study/stress"
 tool("study/train", "study/rivals")
 tool("study", "study/commands")
 tool("python", "room", "pictures", "scene", base=PLATFORM | {"quant"})
-tool("examples", base=PLATFORM | {"quant"})
+tool("examples", base=PLATFORM | {"quant", "platform/baremetal"})
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
 OPENS = re.compile(r"\bt3r_(init|attach)\([^)]") # a call, not its name in a comment

@@ -46,14 +46,19 @@ _Noreturn void reset(void)
     semihost_exit(main());
 }
 
+/* Handlers that a firmware may define. */
+void NMI_Handler(void) __attribute__((weak, alias("fault")));
+void SysTick_Handler(void) __attribute__((weak, alias("fault")));
+
 typedef void vector(void);
 __attribute__((section(".vectors"), used)) static vector *const vectors[16] = {
     (vector *)(uintptr_t)stack_top_at,
     reset,
-    fault, /* NMI */
+    NMI_Handler,
     fault, /* hard fault */
     fault, /* memory management */
     fault, /* bus */
     fault, /* usage */
     fault, /* secure */
+    [15] = SysTick_Handler,
 };
