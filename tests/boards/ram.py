@@ -19,6 +19,7 @@ from reference import host, recording
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 PAGE = (ROOT / "docs" / "study" / "boards.md").read_text()
+RAM_PAGE = (ROOT / "docs" / "ram.md").read_text()
 BOARD, SIZE, RAM = "mps2-an385", "128K", 128 << 10
 STRETCH_MOST = 20_000_000
 
@@ -50,4 +51,10 @@ dealt = sum(settings[f"{part}_bytes"] for part in ("strip", "target")) + int(sai
 check(int(said["memory_bytes"]) <= dealt + 3 * 64, f"of a frame no more than a strip is in memory: {said}")
 _, longest = cortex_m.count(BOARD, elf, words(path, options), options)
 check(longest <= STRETCH_MOST, f"a watchdog is fed every {STRETCH_MOST:,} instructions: {longest:,}")
+
+counts = re.search(rf"^\| {SIZE} \|.* \| ([\d,]+) / ([\d,]+) \| [\d.]+ \|", RAM_PAGE, re.M)
+check(counts is not None, "docs/ram.md shows the instructions on both boards")
+for board, figure in zip(("mps2-an500", "mps3-an547"), (float(text.replace(",", "")) for text in counts.groups())):
+    stages, _ = cortex_m.count(board, cortex_m.firmware_of(board, options), [*words(path, options), "plain=0"], options)
+    near(sum(stages.values()) / 1e6, figure, 0.02 * figure, f"{board}: instructions as on the page")
 done()

@@ -92,7 +92,6 @@ static t3r_runtime *open(void)
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, BUDGET);
     config.head = T3R_HEAD_LEARNED;
     config.refine = 2;
-    config.fit_passes = 0;
     t3r_status status = t3r_init(&rt, arena, sizeof arena, &config);
     if (status != T3R_OK) {
         stop("t3r_init", t3r_init_error(status, &rt, arena, sizeof arena, &config, text, sizeof text));
