@@ -748,9 +748,9 @@ t3r_status t3r_develop(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera
 /* ---- pixels of devices -------------------------------------------------------------------------------------------
  *
  * These calls convert rows of pixels in the caller's memory: a camera's to R G B, before t3r_add_view() or
- * t3r_add_rows(), and R G B to a display's, after t3r_render(). They need no runtime. Input and output must not overlap.
- * Each rounding is to nearest (SPEC, "Pixels of devices"). A firmware that does not call them links none of them.
- * T3R_ERR_ARGUMENT: NULL, a row that is too short, or a value without a name; nothing is written. */
+ * t3r_add_rows(), and R G B to a display's, after t3r_render(). They need no runtime. Input and output must not
+ * overlap. Each rounding is to nearest (SPEC, "Pixels of devices"). A firmware that does not call them links none of
+ * them. T3R_ERR_ARGUMENT: NULL, a row that is too short, or a value without a name; nothing is written. */
 
 /* The layout of a pixel in bytes. */
 typedef uint32_t t3r_packing;

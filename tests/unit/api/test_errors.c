@@ -529,8 +529,8 @@ TEST(rows_of_pixels)
             depth, SIDE, rgb);
     REFUSED("no row above the first", T3R_ERR_ARGUMENT, t3r_demosaic_row, T3R_BAYER_RGGB, 0, NULL, depth, depth, SIDE,
             rgb);
-    REFUSED("no place for the colours", T3R_ERR_ARGUMENT, t3r_demosaic_row, T3R_BAYER_RGGB, 0, depth, depth, depth, SIDE,
-            NULL);
+    REFUSED("no place for the colours", T3R_ERR_ARGUMENT, t3r_demosaic_row, T3R_BAYER_RGGB, 0, depth, depth, depth,
+            SIDE, NULL);
     REFUSED("a Bayer pattern of one column", T3R_ERR_ARGUMENT, t3r_demosaic_row, T3R_BAYER_RGGB, 0, depth, depth, depth,
             1, rgb);
     REFUSED("no view over a background", T3R_ERR_ARGUMENT, t3r_composite_row, NULL, picture_alpha, SIDE, rgb);
