@@ -51,6 +51,7 @@ int t3r_capture_next(t3r_capture *capture, t3r_capture_frame *frame);
 int t3r_capture_reopen(t3r_capture *capture);
 /* Returns the error and its place, or "". Lives as long as the source. */
 const char *t3r_capture_error(const t3r_capture *capture);
+/* Closes the source. NULL is allowed. */
 void t3r_capture_close(t3r_capture *capture);
 
 /* ---- properties of a source ---- */
