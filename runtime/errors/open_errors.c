@@ -4,13 +4,17 @@
 #include "api/open_checks.h"
 #include "sentence.h"
 
+/* Shows a feature of this library, as "stereo=0". */
+#define FEATURE_TEXT_(FEATURE, name) " " #name "=" T3R_TEXT_(T3R_FEATURE_##FEATURE)
+
 /* Writes the sentence of a program that was compiled otherwise than the library. */
 static t3r_status mismatched(t3r_fault *fault)
 {
     t3r_note(fault,
              "the program was compiled with another trim3r.h than this library's (" T3R_VERSION
-             "), or with other features: its T3R_FEATURES_BUILT is not #, or its compiler lays structs out otherwise",
-             T3R_FEATURES_BUILT, 0, 0, 0);
+             "), with other T3R_FEATURE_... than its" T3R_FEATURE_ROWS(
+                 FEATURE_TEXT_) ", or by a compiler that lays structs out otherwise",
+             0, 0, 0, 0);
     return T3R_ERR_INTERFACE;
 }
 
