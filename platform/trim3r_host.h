@@ -120,6 +120,19 @@ typedef struct t3r_scene_file {
     t3r_scene_remarks remarks;
 } t3r_scene_file;
 
+/* A scene in floats: the caller's arrays, without gaps. */
+typedef struct t3r_scene_floats {
+    uint32_t count;    /* Gaussians, 1..T3R_MAX_GAUSSIANS */
+    uint32_t degree;   /* of the harmonics, 0..3 */
+    bool mip;          /* as in t3r_scene_file */
+    double *positions; /* count x 3: the means in world units */
+    double *scales;    /* count x 3: the standard deviations along the Gaussian's axes in world units, 0 or more */
+    double *rotations; /* count x 4: quaternions w x y z of any length, from the Gaussian's axes to the world */
+    double *colours;   /* count x 3: red, green, blue of degree 0; a screen shows 0..1 */
+    double *opacities; /* count: at the means, 0..1 */
+    float *harmonics;  /* count x ((degree + 1)^2 - 1) x 3: the coefficients above degree 0; NULL: degree 0 */
+} t3r_scene_floats;
+
 /* Flags of the functions below; 0 or a sum. */
 enum {
     T3R_SCENE_LOCAL = 1,       /* writes relative to the frame's origin: metres from the first context camera, say */
@@ -133,7 +146,8 @@ enum {
     X(t3r_recorded_camera)                                                                                             \
     X(t3r_crop)                                                                                                        \
     X(t3r_scene_remarks)                                                                                               \
-    X(t3r_scene_file)
+    X(t3r_scene_file)                                                                                                  \
+    X(t3r_scene_floats)
 #define T3R_HOST_FIELDS_(X)                                                                                            \
     X(t3r_recorded_camera, width)                                                                                      \
     X(t3r_recorded_camera, height)                                                                                     \
@@ -160,7 +174,16 @@ enum {
     X(t3r_scene_file, harmonics_q12)                                                                                   \
     X(t3r_scene_file, mip)                                                                                             \
     X(t3r_scene_file, up)                                                                                              \
-    X(t3r_scene_file, remarks)
+    X(t3r_scene_file, remarks)                                                                                         \
+    X(t3r_scene_floats, count)                                                                                         \
+    X(t3r_scene_floats, degree)                                                                                        \
+    X(t3r_scene_floats, mip)                                                                                           \
+    X(t3r_scene_floats, positions)                                                                                     \
+    X(t3r_scene_floats, scales)                                                                                        \
+    X(t3r_scene_floats, rotations)                                                                                     \
+    X(t3r_scene_floats, colours)                                                                                       \
+    X(t3r_scene_floats, opacities)                                                                                     \
+    X(t3r_scene_floats, harmonics)
 static inline t3r_program t3r_host_program(void)
 {
     uint64_t digest = t3r_header_interface();
@@ -168,6 +191,8 @@ static inline t3r_program t3r_host_program(void)
     T3R_HOST_FIELDS_(T3R_DIGEST_FIELD_)
     return t3r_program_of(digest);
 }
+/* Returns the same for the library: a language that does not compile this header passes it to the calls with _as. */
+t3r_program t3r_host_interface(void);
 
 /* ---- a runtime on this host --------------------------------------------------------------------------------- */
 
@@ -258,6 +283,33 @@ static inline t3r_status t3r_scene_write(const char *path, const t3r_scene *scen
                                          size_t error_bytes)
 {
     return t3r_scene_write_as(t3r_host_program(), path, scene, flags, error, error_bytes);
+}
+
+/* Does the same for a scene outside the arena, with its harmonics as far as the format has them. */
+t3r_status t3r_scene_file_write_as(t3r_program program, const char *path, const t3r_scene_file *scene, int flags,
+                                   char *error, size_t error_bytes);
+static inline t3r_status t3r_scene_file_write(const char *path, const t3r_scene_file *scene, int flags, char *error,
+                                              size_t error_bytes)
+{
+    return t3r_scene_file_write_as(t3r_host_program(), path, scene, flags, error, error_bytes);
+}
+
+/* Makes a scene of floats. Its frame has the origin in the middle of the Gaussians. After T3R_OK t3r_scene_free() is
+ * due, and out->remarks has the changes. T3R_ERR_ARGUMENT: a number is not finite or out of its range; error[] says
+ * which, as "scales[7][2] is -4.2, ...". */
+t3r_status t3r_scene_of_floats_as(t3r_program program, const t3r_scene_floats *floats, t3r_scene_file *out, char *error,
+                                  size_t error_bytes);
+static inline t3r_status t3r_scene_of_floats(const t3r_scene_floats *floats, t3r_scene_file *out, char *error,
+                                             size_t error_bytes)
+{
+    return t3r_scene_of_floats_as(t3r_host_program(), floats, out, error, error_bytes);
+}
+/* Fills the caller's arrays with a scene of the same count; out->degree may be below the scene's. Rotations have unit
+ * length. T3R_ERR_ARGUMENT: another count, or a higher degree. */
+t3r_status t3r_floats_of_scene_as(t3r_program program, const t3r_scene_file *scene, t3r_scene_floats *out);
+static inline t3r_status t3r_floats_of_scene(const t3r_scene_file *scene, t3r_scene_floats *out)
+{
+    return t3r_floats_of_scene_as(t3r_host_program(), scene, out);
 }
 
 /* Replaces the scene in the arena by one of a file, as a picture of width x height by `eye` sees it: colours of

@@ -68,6 +68,11 @@ static t3r_status start(t3r_host *host, const t3r_config *config, char *error, s
     return status;
 }
 
+t3r_program t3r_host_interface(void)
+{
+    return t3r_host_program();
+}
+
 t3r_status t3r_host_open_as(t3r_program program, t3r_host **host, const t3r_config *config, uint32_t threads,
                             char *error, size_t error_bytes)
 {

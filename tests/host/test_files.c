@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Scenes and files of the host library, and pixels of four channels. */
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -100,6 +101,127 @@ TEST_WITH(a_scene_of_a_file_is_loaded_and_drawn, scratch_setup, scratch_teardown
     assert_int_equal(t3r_scene_load(t3r_host_runtime(host), &file, NULL, 0, 0), T3R_ERR_FULL);
     t3r_host_close(host);
     t3r_scene_free(&file);
+}
+
+enum { DEGREE = 2, REST = 8 };
+
+/* Arrays of a scene, and floats that point to them. */
+typedef struct scene_arrays {
+    double positions[GAUSSIANS][3], scales[GAUSSIANS][3], rotations[GAUSSIANS][4], colours[GAUSSIANS][3];
+    double opacities[GAUSSIANS];
+    float harmonics[GAUSSIANS][REST][3];
+} scene_arrays;
+
+static t3r_scene_floats floats_of(scene_arrays *arrays)
+{
+    return (t3r_scene_floats){.count = GAUSSIANS,
+                              .degree = DEGREE,
+                              .positions = arrays->positions[0],
+                              .scales = arrays->scales[0],
+                              .rotations = arrays->rotations[0],
+                              .colours = arrays->colours[0],
+                              .opacities = arrays->opacities,
+                              .harmonics = arrays->harmonics[0][0]};
+}
+
+/* Fills arrays with Gaussians along a line. */
+static scene_arrays arrays_of_line(void)
+{
+    scene_arrays arrays = {.positions = {{0}}};
+    for (int i = 0; i < GAUSSIANS; i++) {
+        const double scales[] = {0.1, 0.05, 0.025};
+        for (int axis = 0; axis < 3; axis++) {
+            arrays.positions[i][axis] = i * (axis + 1) - 2;
+            arrays.scales[i][axis] = scales[axis];
+            arrays.colours[i][axis] = 0.2 * i;
+        }
+        arrays.rotations[i][3] = i + 1; /* half a turn about z, of any length */
+        arrays.opacities[i] = 0.15 * (i + 1);
+        for (int j = 0; j < 3 * REST; j++) {
+            arrays.harmonics[i][j / 3][j % 3] = (float)(j - i) / 64;
+        }
+    }
+    return arrays;
+}
+
+static void assert_near(double value, double wanted, double step)
+{
+    assert_true(value >= wanted - step && value <= wanted + step);
+}
+
+TEST_WITH(a_scene_of_floats_is_written_and_comes_back, scratch_setup, scratch_teardown)
+{
+    const char *path = scratch_path(*state, "floats.glb");
+    scene_arrays given = arrays_of_line(), back = {.positions = {{0}}};
+    const t3r_scene_floats floats = floats_of(&given);
+    t3r_scene_floats found = floats_of(&back);
+    t3r_scene_file made, read;
+    char error[256] = "?";
+    assert_int_equal(t3r_scene_of_floats(&floats, &made, error, sizeof error), T3R_OK);
+    assert_string_equal(error, "");
+    assert_int_equal(t3r_scene_file_write(path, &made, 0, error, sizeof error), T3R_OK);
+    assert_int_equal(t3r_scene_read(path, 0, &read, error, sizeof error), T3R_OK);
+    assert_int_equal(t3r_floats_of_scene(&read, &found), T3R_OK);
+    for (int i = 0; i < GAUSSIANS; i++) {
+        for (int axis = 0; axis < 3; axis++) {
+            assert_near(back.positions[i][axis], given.positions[i][axis], 1e-4);
+            assert_near(back.colours[i][axis], given.colours[i][axis], 1e-3);
+        }
+        const double *s = back.scales[i]; /* in any order of the axes */
+        assert_near(s[0] + s[1] + s[2], 0.175, 1e-4);
+        assert_near(s[0] * s[1] * s[2], 0.000125, 1e-6);
+        assert_near(back.opacities[i], given.opacities[i], 1e-3);
+        for (int j = 0; j < 3 * REST; j++) {
+            assert_near(back.harmonics[i][j / 3][j % 3], given.harmonics[i][j / 3][j % 3], 1e-3);
+        }
+    }
+    found.degree = 3;
+    assert_int_equal(t3r_floats_of_scene(&read, &found), T3R_ERR_ARGUMENT);
+    found.degree = 0;
+    found.harmonics = NULL;
+    assert_int_equal(t3r_floats_of_scene(&read, &found), T3R_OK);
+    found.count--;
+    assert_int_equal(t3r_floats_of_scene(&read, &found), T3R_ERR_ARGUMENT);
+    t3r_scene_free(&made);
+    t3r_scene_free(&read);
+}
+
+TEST(a_float_that_is_wrong_is_named)
+{
+    scene_arrays given = arrays_of_line();
+    t3r_scene_floats floats = floats_of(&given);
+    t3r_scene_file made;
+    char error[256];
+    const struct {
+        double *place, value;
+        const char *text;
+    } rows[] = {
+        {&given.positions[3][1], NAN, "positions[3][1] is nan, not a finite number"},
+        {&given.scales[4][2], -3, "scales[4][2] is -3, not a standard deviation"},
+        {&given.colours[1][0], 255, "colours[1][0] is 255, not about 0 to 1"},
+        {&given.opacities[2], 7, "opacities[2] is 7, not 0 to 1: of logits"},
+        {&given.rotations[0][3], 0, "rotations[0] is a quaternion without length"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const double before = *rows[i].place;
+        *rows[i].place = rows[i].value;
+        assert_int_equal(t3r_scene_of_floats(&floats, &made, error, sizeof error), T3R_ERR_ARGUMENT);
+        assert_non_null(strstr(error, rows[i].text));
+        assert_null(made.gaussians);
+        *rows[i].place = before;
+    }
+    given.harmonics[4][7][1] = INFINITY;
+    assert_int_equal(t3r_scene_of_floats(&floats, &made, error, sizeof error), T3R_ERR_ARGUMENT);
+    assert_string_equal(error, "harmonics[4][7][1] is inf, not a finite number");
+    floats.harmonics = NULL;
+    assert_int_equal(t3r_scene_of_floats(&floats, &made, error, sizeof error), T3R_ERR_ARGUMENT);
+    assert_string_equal(error, "harmonics are missing for degree 2");
+    floats.degree = 4;
+    assert_int_equal(t3r_scene_of_floats(&floats, &made, error, sizeof error), T3R_ERR_ARGUMENT);
+    assert_string_equal(error, "the degree of the harmonics is 0..3, not 4");
+    floats.count = 0;
+    assert_int_equal(t3r_scene_of_floats(&floats, &made, error, sizeof error), T3R_ERR_ARGUMENT);
+    assert_non_null(strstr(error, "0 Gaussians: a scene has 1.."));
 }
 
 TEST_WITH(a_file_that_fails_says_why_and_leaves_the_old_one, scratch_setup, scratch_teardown)

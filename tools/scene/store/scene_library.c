@@ -78,8 +78,8 @@ void t3r_scene_free(t3r_scene_file *scene)
     scene_file_free(scene);
 }
 
-t3r_status t3r_scene_write_as(t3r_program program, const char *path, const t3r_scene *scene, int flags, char *error,
-                              size_t error_bytes)
+t3r_status t3r_scene_file_write_as(t3r_program program, const char *path, const t3r_scene_file *scene, int flags,
+                                   char *error, size_t error_bytes)
 {
     remarks all = {.length = 0};
     const scene_caller caller = {.remark = add_remark, .user = &all, .begin = begin_whole};
@@ -90,8 +90,7 @@ t3r_status t3r_scene_write_as(t3r_program program, const char *path, const t3r_s
     if (!enter(&locale, error, error_bytes)) {
         return T3R_HOST_ERR_SYSTEM;
     }
-    const scene_file made = scene_store_scene(scene);
-    const int written = scene_store_write(path, &made, flags & (T3R_SCENE_LOCAL | T3R_SCENE_COMMENTS), NULL, &caller,
+    const int written = scene_store_write(path, scene, flags & (T3R_SCENE_LOCAL | T3R_SCENE_COMMENTS), NULL, &caller,
                                           error, error_bytes);
     leave(&locale);
     if (written != 0) {
@@ -99,6 +98,16 @@ t3r_status t3r_scene_write_as(t3r_program program, const char *path, const t3r_s
     }
     t3r_reason(error, error_bytes, "%s", all.text);
     return T3R_OK;
+}
+
+t3r_status t3r_scene_write_as(t3r_program program, const char *path, const t3r_scene *scene, int flags, char *error,
+                              size_t error_bytes)
+{
+    if (!t3r_program_fits(program, t3r_host_program(), error, error_bytes)) {
+        return T3R_ERR_INTERFACE;
+    }
+    const scene_file made = scene_store_scene(scene);
+    return t3r_scene_file_write_as(program, path, &made, flags, error, error_bytes);
 }
 
 t3r_status t3r_scene_load_as(t3r_program program, t3r_runtime *runtime, const t3r_scene_file *scene,
