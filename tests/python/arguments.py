@@ -22,6 +22,10 @@ def made_with(**options):
     return trim3r.Reconstructor(**{"width": SIDE, "height": SIDE, "head": "tiny", **options})
 
 
+def stream_with(**options):
+    return trim3r.Stream(**{"width": SIDE, "height": SIDE, "gaussians": 100, "head": "tiny", **options})
+
+
 def room(**options):
     return trim3r.room(**{"frames": 1, "width": SIDE, "height": SIDE, **options})
 
@@ -37,7 +41,7 @@ def calibrated(**options):
     return trim3r.Camera.calibrated(**{"fx": 60, "fy": 60, "cx": 32, "cy": 32, "pose": np.eye(4), **options})
 
 
-def rows(made):
+def rows(made, stream):
     """Returns the integers: (where the argument stands, its name in messages, least, most, a call with a value)."""
     def add_rows(name):
         return lambda value: small(1).add_rows(FRAMES[0], **{"row": 0, "height": SIDE, name: value})
@@ -50,16 +54,23 @@ def rows(made):
     yield from ((("Reconstructor", name), name, *bounds, lambda value, name=name: made_with(**{name: value}))
                 for name, bounds in (("width", (8, 4096)), ("height", (8, 4096)), ("views", (0, 16)),
                                      ("gaussians", (1, 1 << 24)), ("workers", (1, 16)), ("arena_bytes", (0, None))))
-    yield from ((("Reconstructor", "render_size"), name, 1, 4096, lambda value, at=at: made_with(render_size=at(value)))
+    yield from ((("Stream", name), name, *bounds, lambda value, name=name: stream_with(**{name: value}))
+                for name, bounds in (("width", (8, 4096)), ("height", (8, 4096)), ("views", (1, 16)),
+                                     ("gaussians", (1, 1 << 24)), ("workers", (1, 16)), ("arena_bytes", (0, None))))
+    yield from (((owner, "render_size"), name, 1, 4096, lambda value, call=call, at=at: call(render_size=at(value)))
+                for owner, call in (("Reconstructor", made_with), ("Stream", stream_with))
                 for name, at in (("render_width", lambda v: (v, SIDE)), ("render_height", lambda v: (SIDE, v))))
     yield from ((("Reconstructor.add_rows", name), name, least, 4096, add_rows(name))
                 for name, least in (("row", 0), ("height", 2), ("depth_row", 0), ("depth_height", 2)))
     for call in (made.build, made.rebuild):
         yield (f"Reconstructor.{call.__name__}", "gaussians"), "gaussians", 1, 2 * SIDE * SIDE, call
-    for call in (made.render, made.picture):
-        yield from (((f"Reconstructor.{call.__name__}", "size"), name, 1, SIDE,
+    for call in (made.render, made.picture, stream.render, stream.picture):
+        yield from (((f"{type(call.__self__).__name__}.{call.__name__}", "size"), name, 1, SIDE,
                      lambda value, call=call, at=at: call(dataclasses.replace(CAMERA, size=None), at(value)))
                     for name, at in (("width", lambda v: (v, SIDE)), ("height", lambda v: (SIDE, v))))
+    yield from ((("Stream.overlap", "size"), name, 1, 4096, lambda value, at=at:
+                 stream.overlap(dataclasses.replace(CAMERA, size=None), at(value)))
+                for name, at in (("width", lambda v: (v, SIDE)), ("height", lambda v: (SIDE, v))))
     yield from ((("evaluate", "size"), name, 8, 4096, lambda value, at=at:
                  trim3r.evaluate(FRAMES[::2], FRAMES[1], [10], size=at(value)))
                 for name, at in (("width", lambda v: (v, SIDE)), ("height", lambda v: (SIDE, v))))
@@ -81,9 +92,9 @@ def rows(made):
         gaussians, (0, 0, value), 0)
 
 
-def check_integers(made):
+def check_integers(made, stream):
     found = set()
-    for place, name, least, most, call in rows(made):
+    for place, name, least, most, call in rows(made, stream):
         found.add(place)
         for value in (True, np.True_, 1.0, np.float64(2), 1j):
             with refused(TypeError, name.split("[")[0], "an integer"):
@@ -153,8 +164,8 @@ def check_reals(made):
 
 
 # Classes and calls that the library fills, and parameters whose types hold numbers of arrays and of mappings.
-HANDED_OUT = {"Row", "Triplet", "Picture", "Scene.in_frame", "Camera.native", "Camera.from_native", "Frame.native_strip"}
-OTHER = {"pose", "progress", "settings"}
+HANDED_OUT = {"Row", "Report", "Triplet", "Picture", "Scene.in_frame", "Camera.native", "Camera.from_native", "Frame.native_strip"}
+OTHER = {"pose", "progress", "settings", *trim3r.Arrays._fields}
 
 
 def numbers():
@@ -163,9 +174,9 @@ def numbers():
         thing = getattr(trim3r, name)
         if not inspect.isclass(thing) and not inspect.isfunction(thing):
             continue
-        members = vars(thing) if inspect.isclass(thing) else {}
-        calls = [(name, thing), *((f"{name}.{m}", getattr(thing, m)) for m, f in members.items()
-                                  if not m.startswith("_") and (inspect.isfunction(f) or isinstance(f, classmethod)))]
+        members = inspect.getmembers(thing, inspect.isroutine) if inspect.isclass(thing) else []
+        calls = [(name, thing), *((f"{name}.{m}", call) for m, call in members
+                                  if not m.startswith("_") and (inspect.isfunction(call) or inspect.ismethod(call)))]
         for called, call in calls:
             yield from ((called, parameter.name) for parameter in inspect.signature(call).parameters.values()
                         if re.search(r"\b(int|float)\b", str(parameter.annotation))
@@ -173,9 +184,10 @@ def numbers():
 
 
 def main():
-    with with_views() as made:
+    with with_views() as made, stream_with() as stream:
         made.build(100)
-        found = check_integers(made) | check_reals(made)
+        stream.keyframe(FRAMES[0])
+        found = check_integers(made, stream) | check_reals(made)
     check_settings()
     public = set(numbers())
     check(len(public) > 30 and public == found, f"not tried, or not public: {sorted(public ^ found)}")

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """files.py LIBRARY: a path that cannot be used raises what open() raises, and a scene that could not be read again is
 refused before there is a file."""
+import errno
 import pathlib
 import tempfile
+import warnings
 
 from common import check, np, refused, small, trim3r, with_views
 from trim3r.scene import GAUSSIAN
@@ -48,8 +50,16 @@ def check_paths(folder, scene):
     with refused(FileNotFoundError, "nowhere"):
         scene.save(folder / "nowhere" / "at" / "all.ply")
     for name in ("scene.obj", "scene", "scene.ply.gz"):
-        with refused(trim3r.InputError, "scene files end in .ply"):
+        with refused(trim3r.InputError, name, "scenes are written as .ply"):
             scene.save(folder / name)
+    (folder / "full.spz").symlink_to("/dev/full")
+    for path, code in ((folder / "full.spz", errno.ENOSPC), (folder / "nowhere" / "at.glb", errno.ENOENT),
+                       (folder / f"{'a' * 300}.ply", errno.ENAMETOOLONG)):
+        try:
+            scene.save(path)
+            check(False, f"{path} is written")
+        except OSError as error:
+            check((error.errno, error.filename) == (code, str(path)), f"{error!r}")
     check(not (folder / "a").exists(), "the name is not cut at the zero byte")
 
 
@@ -105,6 +115,7 @@ def check_scenes(folder):
 
 
 def main():
+    warnings.simplefilter("ignore") # of formats that cut widths off
     with tempfile.TemporaryDirectory(prefix="trim3r-python-") as folder, with_views() as made:
         check_paths(pathlib.Path(folder), made.build(50))
         check_scenes(pathlib.Path(folder))

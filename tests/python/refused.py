@@ -40,6 +40,8 @@ def check_frames():
                 (changed(depth=depth[..., None]), "shape"), (changed(depth=depth.astype(object)), "object"),
                 (changed(depth_unit=0), "depth_unit"), (changed(depth_unit=-1), "depth_unit"),
                 (changed(depth_unit=NAN), "finite"), (changed(depth_unit=1e9), "range"),
+                (changed(depth=depth.astype(np.float32)), "world units", "half of it is", "65.535", "Millimetres?", "1000"),
+                (changed(depth=np.where(depth > np.median(depth), depth / 20, np.nan)), "Millimetres?"),
                 (changed(camera=None), "no camera")):
             with refused(ValueError, *words):
                 made.add_view(frame)
@@ -183,7 +185,7 @@ def check_builds():
                 made.render(view, **options)
         with refused(ValueError, "read-only"):
             made.render(view, out=FRAMES_READ_ONLY)
-        with refused(trim3r.InputError, "scene files end in .ply"):
+        with refused(trim3r.InputError, "scenes are written as .ply"):
             scene.save("scene.obj")
         with small(0, gaussians=10) as little, refused(ValueError, "room"):
             little.load(scene)

@@ -7,7 +7,6 @@
 #include "pictures/metrics.h"
 #include "recording/recording.h"
 #include "room/room.h"
-#include "scene/scene_file.h"
 #include "trim3r.h"
 #include "trim3r_heads.h"
 #include "trim3r_host.h"

@@ -29,11 +29,13 @@ from .picture import Picture
 from .reconstructor import Reconstructor
 from .recording import Recording, Triplet
 from .scene import Scene
+from .scene_arrays import Arrays
 from .stages import STAGES, run_hash
+from .stream import Report, Stream
 from .version import BITS_EPOCH, __version__
 
 __all__ = [
-    "BITS_EPOCH", "STAGES", "Camera", "Cancelled", "DepthError", "Frame", "InputError", "Picture", "Reconstructor",
-    "Recording", "Row", "Scene", "Settings", "StateError", "Trim3rError", "Triplet", "UnsupportedError", "__version__",
-    "develop", "evaluate", "flip", "preset", "psnr", "room", "run_hash", "sharp", "ssim",
+    "BITS_EPOCH", "STAGES", "Arrays", "Camera", "Cancelled", "DepthError", "Frame", "InputError", "Picture", "Reconstructor",
+    "Recording", "Report", "Row", "Scene", "Settings", "StateError", "Stream", "Trim3rError", "Triplet", "UnsupportedError",
+    "__version__", "develop", "evaluate", "flip", "preset", "psnr", "room", "run_hash", "sharp", "ssim",
 ]

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The package's shared library, and what calls of it have in common."""
+import errno
+import os
 import pathlib
 import re
 from typing import Any, Callable, Sequence
@@ -13,8 +15,10 @@ ffi: Any = _ffi
 lib: Any = ffi.dlopen(str(pathlib.Path(__file__).with_name("libtrim3r_python.so")))
 ERROR_BYTES = 512
 INTERFACE: int = lib.t3r_interface() # the declarations are of the headers that the library was compiled with
+HOST: Any = lib.t3r_host_interface() # the same of the host library
 _CALLS = {"reconstruct": "build", "scene_begin": "load", "scene_append": "load"} # the package's names; others are the same
-_STATUS_NAMES = {getattr(lib, name): name for name in dir(lib) if name.startswith("T3R_ERR_")}
+_STATUS_NAMES = {getattr(lib, name): name for name in dir(lib) if name.startswith(("T3R_ERR_", "T3R_HOST_ERR_"))}
+_SYSTEM = {os.strerror(code): code for code in errno.errorcode}
 
 
 def text_of(pointer: Any) -> str:
@@ -48,6 +52,22 @@ def check(status: int, call: str, *arguments: Any, what: str = "") -> None:
 def called(call: str, *arguments: Any, what: str = "") -> None:
     """Calls a function of the library by its name, and raises its error."""
     check(getattr(lib, call)(*arguments), call, *arguments, what=what)
+
+
+def host_called(call: str, *arguments: Any, path: str = "") -> str:
+    """Calls a function of the host library by its name, and returns its remarks.
+
+    Raises its error: OSError where the system refuses a file, which `path` names.
+    """
+    error = ffi.new("char[]", ERROR_BYTES)
+    status = getattr(lib, call + "_as")(HOST, *arguments, error, ERROR_BYTES)
+    text = text_of(error)
+    if status == lib.T3R_OK:
+        return text
+    reason = text.rpartition(": ")[2]
+    if status == lib.T3R_HOST_ERR_FILE and reason in _SYSTEM:
+        raise OSError(_SYSTEM[reason], reason, path)
+    raise error_of(_STATUS_NAMES[status], text)
 
 
 def value_named(kind: str, name_of: Callable[[int], Any], count: int, name: str) -> int:

@@ -8,10 +8,12 @@ from typing import Any, Tuple, Union
 
 import numpy as np
 
+from ._native import lib
 from ._settings import SETTINGS
 from .errors import InputError
 
 _TRUTH = (bool, np.bool_)
+_SIDE_MOST: int = lib.T3R_MAX_SIDE
 Path = Union[str, "os.PathLike[str]"]
 
 
@@ -40,6 +42,13 @@ def pair(name: str, value: Any) -> Tuple[Any, Any]:
     except (TypeError, ValueError):
         raise TypeError(f"{name} is a width and a height, not {value!r}") from None
     return width, height
+
+
+def grid(name: str, value: Any) -> Tuple[int, int]:
+    """Width and height of a picture in pixels, 1..4096. Raises as pair() and whole()."""
+    width, height = pair(name, value)
+    return (whole("width", width, 1, _SIDE_MOST, "T3R_ERR_CAMERA"),
+            whole("height", height, 1, _SIDE_MOST, "T3R_ERR_CAMERA"))
 
 
 def setting(name: str, value: Any) -> int:
@@ -90,11 +99,4 @@ def readable(path: Path) -> bytes:
     if os.path.isdir(encoded):
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), os.fsdecode(encoded))
     os.close(os.open(os.fsdecode(encoded), os.O_RDONLY | os.O_NONBLOCK))
-    return encoded
-
-
-def writable(path: Path) -> bytes:
-    """The path of a file whose folder is there. Raises OSError where it is not."""
-    encoded = path_bytes(path)
-    os.stat(os.fsdecode(os.path.dirname(encoded)) or os.curdir)
     return encoded

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._native import ffi, lib
-from .arguments import fixed, pair, whole
+from .arguments import fixed, grid, whole
 from .errors import InputError
 
 _LENSES = {"none": lib.T3R_DISTORTION_NONE, "radtan": lib.T3R_DISTORTION_RADTAN,
@@ -99,7 +99,7 @@ class Camera:
         out of range."""
         if self.size is None:
             raise InputError("the camera's size is not known", "T3R_ERR_CAMERA")
-        old, new = _grid(self.size), _grid((width, height))
+        old, new = grid("size", self.size), grid("size", (width, height))
         (fx, cx), (fy, cy) = (_resized(*axis) for axis in zip((self.fx_q16, self.fy_q16), (self.cx_q16, self.cy_q16), old, new))
         return dataclasses.replace(self, fx_q16=fx, fy_q16=fy, cx_q16=cx, cy_q16=cy, size=new)
 
@@ -139,7 +139,7 @@ class Camera:
 
         Raises InputError where it is for another size, or a number does not fit its field.
         """
-        if self.size is not None and _grid(self.size) != size:
+        if self.size is not None and grid("size", self.size) != size:
             raise InputError(f"the camera is for {self.size[0]}x{self.size[1]} pixels, not for {size[0]}x{size[1]}: "
                              "resized() makes one for another size", "T3R_ERR_CAMERA")
         if self.distortion not in _LENSES:
@@ -157,13 +157,6 @@ class Camera:
         a, b, c, d, e = camera.distortion_q24
         return cls(camera.fx_q16, camera.fy_q16, camera.cx_q16, camera.cy_q16, (x, y, z), (w, i, j, k), lens,
                    (a, b, c, d, e), (camera.width, camera.height) if camera.width else None)
-
-
-def _grid(size: Any) -> Tuple[int, int]:
-    """A width and a height in pixels, checked."""
-    width, height = pair("size", size)
-    return (whole("width", width, 1, lib.T3R_MAX_SIDE, "T3R_ERR_CAMERA"),
-            whole("height", height, 1, lib.T3R_MAX_SIDE, "T3R_ERR_CAMERA"))
 
 
 def _integers(name: str, value: Any, count: int, bits: int) -> Any:

@@ -10,6 +10,7 @@ from ._native import address, ffi, lib, value_named
 from .arguments import real
 from .camera import Camera
 from .errors import InputError
+from .png import png_of
 
 _CHANNELS = {"rgb24": 3, "bgr24": 3, "grey": 1, "yuyv": 2, "uyvy": 2, "nv12": 1}
 _STEPS_MOST = 65535
@@ -18,12 +19,12 @@ _STRIDE_LIMIT = 1 << 19  # bytes; the limit of the distance of rows
 Colour = Union["NDArray[np.uint8]", Tuple["NDArray[np.uint8]", "NDArray[np.uint8]"]]
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Frame:
     """One captured instant. Its arrays are the caller's: they are borrowed, never copied or changed.
 
     Rows may lie apart (a crop of a larger picture, every second row), but the pixels of a row must follow one another.
-    Pixels are read during the call that takes the frame, and not before or after it.
+    Pixels are read during the call that takes the frame, and not before or after it. A notebook shows the colours.
 
     Attributes
     ----------
@@ -34,16 +35,17 @@ class Frame:
         For the pixel grid of `colour`. None: not known.
     depth : ndarray of uint16, float32 or float64, shape (h, w), optional
         Depth along z, registered to the colour; its size may differ. uint16: steps of `depth_unit`, 0 = not measured.
-        Floats are world units; they become steps in a copy, and what is not a positive number in range is not measured.
+        Floats are world units; they become steps in a copy, and what is not a positive number is not measured, nor is
+        what is beyond 65535 steps. If half of them are, the frame is refused: they may be millimetres.
     depth_unit : float
         The length of a step of depth in world units; 0.001 is a millimetre.
     format : str
         "rgb24", "bgr24", "grey", "yuyv", "uyvy" or "nv12".
     """
 
-    colour: Colour = dataclasses.field(repr=False)
+    colour: Colour
     camera: Optional[Camera] = None
-    depth: Optional["NDArray[Any]"] = dataclasses.field(default=None, repr=False)
+    depth: Optional["NDArray[Any]"] = None
     depth_unit: float = 0.001
     format: str = "rgb24"
 
@@ -52,6 +54,19 @@ class Frame:
         """Width and height of the colour picture in pixels."""
         plane = self.colour[0] if isinstance(self.colour, tuple) else self.colour
         return plane.shape[1], plane.shape[0]
+
+    def __repr__(self) -> str:
+        depth = self.depth
+        measured = "" if depth is None else f", depth {depth.shape[1]}x{depth.shape[0]} of {depth.dtype}"
+        return (f"<Frame: {self.size[0]}x{self.size[1]} {self.format}{measured}, "
+                f"{'no' if self.camera is None else 'a'} camera>")
+
+    def _repr_png_(self) -> bytes:
+        if isinstance(self.colour, tuple): # nv12: its luma
+            return png_of(self.colour[0])
+        if self.format in ("yuyv", "uyvy"):
+            return png_of(self.colour[..., 0 if self.format == "yuyv" else 1])
+        return png_of(self.colour[..., ::-1] if self.format == "bgr24" else self.colour)
 
     def native(self) -> Tuple[Any, Any]:
         """A t3r_frame and what must outlive its use.
@@ -115,7 +130,14 @@ def _steps(depth: "NDArray[Any]", unit: float) -> "NDArray[np.uint16]":
     _unit_q40(unit)
     with np.errstate(all="ignore"):
         steps = np.rint(depth.astype(np.float64) / unit)
-        return np.where((steps >= 1) & (steps <= _STEPS_MOST), steps, 0).astype("<u2")
+        measured = np.isfinite(steps) & (steps >= 1)
+        far = measured & (steps > _STEPS_MOST)
+    if 2 * np.count_nonzero(far) > np.count_nonzero(measured):
+        raise InputError(
+            f"depth in floats is in world units, and half of it is {np.median(depth[measured]):g} or more, beyond the "
+            f"{_STEPS_MOST * unit:g} that 16 bits hold with depth_unit={unit:g}. Millimetres? Divide by 1000 for metres, "
+            "or pass uint16. Or take a larger depth_unit", "T3R_ERR_FRAME")
+    return np.where(measured & ~far, steps, 0).astype("<u2")
 
 
 def check_plane(what: str, array: Any, dtype: "np.dtype[Any]", channels: int, least_rows: int = 1) -> None:

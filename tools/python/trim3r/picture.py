@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures: a scene as a camera sees it."""
 import dataclasses
-from typing import Any
+from typing import Any, Dict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._native import address, ffi
+from .png import png_of
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Picture:
-    """A view of a scene, drawn.
+    """A view of a scene, drawn. numpy.asarray(picture) is `colour`, without a copy, and a notebook shows it.
 
     Attributes
     ----------
@@ -39,6 +40,17 @@ class Picture:
     def alpha(self) -> "NDArray[np.float32]":
         """1 - transmittance, 0 up to, but not including, 1, (H, W)."""
         return self.alpha_q15.astype(np.float32) / np.float32(1 << 15)
+
+    @property
+    def __array_interface__(self) -> Dict[str, Any]:
+        return self.colour.__array_interface__
+
+    def __repr__(self) -> str:
+        height, width = self.colour.shape[:2]
+        return f"<Picture: {width}x{height}, {100 * float(np.mean(self.alpha)):.1f} % covered>"
+
+    def _repr_png_(self) -> bytes:
+        return png_of(self.colour)
 
 
 def target_of(colour: "NDArray[np.uint8]") -> Any:

@@ -3,30 +3,24 @@
 import collections
 import contextlib
 import os
-import sys
-import threading
-from typing import Any, Deque, Dict, Iterator, Optional, Tuple
+from typing import Any, Deque, Iterator, Optional, Tuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ._native import INTERFACE, address, called, check, ffi, lib, text_of
+from ._native import HOST, address, called, check, ffi, lib
 from .arguments import pair, real, whole
-from .camera import Camera
 from .configuration import Settings, configuration
-from .errors import InputError, StateError
-from .frame import Frame, check_plane
+from .errors import InputError
+from .frame import Frame
 from .heads import HeadName, head_of
-from .hooks import Hooks, Progress
-from .image_stage import arena_of, camera_of, develop
-from .picture import Picture, put_planes, target_of
+from .hooks import Progress
+from .image_stage import camera_of, develop
 from .request import Importance, request_of
-from .scene import GAUSSIAN, Scene
+from .runtime import Runtime
+from .scene import Scene
 
-CPU_BYTES = 128
 
-
-class Reconstructor:
+class Reconstructor(Runtime):
     """A runtime and its arena, which is all the memory that it uses.
 
     The order of calls is that of trim3r.h: views are added, then a scene is built, rebuilt at other budgets and drawn;
@@ -70,31 +64,19 @@ class Reconstructor:
     `max_loss` needs `keep_analysis` and `refine` above 0, as is the default.
     """
 
+    _KIND = "reconstructor"
+
     def __init__(self, width: int, height: int, *, views: int = 2, gaussians: Optional[int] = None,
                  head: HeadName = "small", render_size: Optional[Tuple[int, int]] = None,
                  depth: str = "sensor", workers: int = 1, arena_bytes: Optional[int] = None,
                  progress: Optional[Progress] = None, settings: Settings = {}) -> None:
-        self._lock = threading.Lock()
-        self._runtime: Any = None
-        self._head = head_of(head)
+        weights = head_of(head)
         render_width, render_height = pair("render_size", render_size or (width, height))
-        self._config = configuration(width, height, views, gaussians, self._head, {
+        config = configuration(width, height, views, gaussians, weights, {
             "depth": depth, "workers": workers, "render_width": render_width, "render_height": render_height,
             "keep_analysis": 1, **settings})
-        plan = ffi.new("t3r_plan_info *")
-        called("t3r_plan_as", INTERFACE, self._config, plan)
-        if arena_bytes is not None and whole("arena_bytes", arena_bytes, 0, sys.maxsize) < plan.min_bytes:
-            raise InputError(f"an arena of {arena_bytes} bytes is too small: it takes {plan.min_bytes}", "T3R_ERR_ARENA")
-        self._arena = arena_of(plan.bytes if arena_bytes is None else arena_bytes)
-        runtime = ffi.new("t3r_runtime **")
-        called("t3r_init_as", INTERFACE, runtime, address(self._arena, "void *"), self._arena.nbytes, self._config)
-        lib.t3r_set_cpu(runtime[0], lib.t3r_cpu_features())
-        if self._head.nbytes and views > 0:
-            called("t3r_bind_head", runtime[0], self._head.weights, self._head.nbytes, what="head")
-        self._hooks = Hooks(progress, workers)
-        self._hooks.bind(runtime[0])
-        self._runtime = runtime[0]
-        self._generation = 0
+        super().__init__(config, weights, arena_bytes, progress)
+        self._loaded: Any = None # the scene in the arena if its colours depend on the camera
         self._points: Deque[Optional[int]] = collections.deque(maxlen=views) # of each view; None: not known
 
     # ---- views ----
@@ -234,76 +216,22 @@ class Reconstructor:
         return self._make("t3r_rebuild", gaussians, keep, max_loss, allocate, head, importance)
 
     def load(self, scene: Scene) -> None:
-        """Takes a scene from elsewhere to be drawn, in the place of views and scene.
+        """Takes a scene from elsewhere to be drawn, in the place of views and scene. One with harmonics has in each
+        picture the colours that its camera sees.
 
         Raises ValueError where it has more Gaussians than there is room for, or one is out of range.
         """
-        gaussians = np.ascontiguousarray(scene.gaussians)
+        gaussians = scene.gaussians
         if len(gaussians) > self._config.max_gaussians:
             raise InputError(f"{len(gaussians)} Gaussians are more than there is room for: {self._config.max_gaussians}")
         if np.may_share_memory(gaussians, self._arena):
-            gaussians = gaussians.copy()
+            scene = scene.copy()
+        file, kept = scene.native()
         with self._at_work() as runtime:
             self._go_on()
             self._points.clear()
-            self._check("t3r_scene_begin", runtime, scene.native_frame())
-            first = address(gaussians, "const t3r_gaussian *")
-            for index in range(len(gaussians)):
-                called("t3r_scene_append", runtime, first + index, what=f"Gaussian {index}")
-
-    # ---- pictures ----
-
-    def render(self, camera: Camera, size: Optional[Tuple[int, int]] = None,
-               out: Optional["NDArray[np.uint8]"] = None) -> "NDArray[np.uint8]":
-        """Draws the scene.
-
-        Parameters
-        ----------
-        camera : Camera
-            For the pixel grid of the picture: resized() makes one of a camera for another size. One with a distortion
-            is refused: dataclasses.replace(camera, distortion="none") is the pinhole of the same view.
-        size : pair of int, optional
-            Width and height in pixels, at most render_size. That of `out`, else the working size, without it.
-        out : ndarray of uint8, shape (H, W, 3), optional
-            Where to draw. Its rows may lie apart.
-
-        Returns
-        -------
-        ndarray of uint8, shape (H, W, 3)
-            `out`, or a new array.
-
-        Raises
-        ------
-        ValueError
-            The camera, the size or the array cannot be used.
-        StateError
-            There is no scene.
-        """
-        if out is None:
-            width, height = self._size(size)
-            out = np.empty((height, width, 3), dtype=np.uint8)
-        check_plane("out", out, np.dtype(np.uint8), 3)
-        height, width = out.shape[:2]
-        if size is not None and self._size(size) != (width, height):
-            raise ValueError(f"out has the shape {out.shape}, not that of {size[0]}x{size[1]} pixels")
-        if not out.flags.writeable:
-            raise ValueError("out is read-only")
-        with self._at_work() as runtime:
-            self._check("t3r_render", runtime, camera.native((width, height)), target_of(out))
-        return out
-
-    def picture(self, camera: Camera, size: Optional[Tuple[int, int]] = None) -> Picture:
-        """Draws the scene with its depth and alpha. Parameters and errors are those of render()."""
-        width, height = self._size(size)
-        colour = np.empty((height, width, 3), dtype=np.uint8)
-        depth, alpha = np.empty((height, width), dtype=np.uint32), np.empty((height, width), dtype=np.uint16)
-        target = target_of(colour)
-        put_planes(target, depth, alpha)
-        with self._at_work() as runtime:
-            self._check("t3r_render", runtime, camera.native((width, height)), target)
-            scene = ffi.new("t3r_scene *")
-            self._check("t3r_get_scene", runtime, scene)
-        return Picture(colour, depth, alpha, scene.frame.exponent)
+            self._load(runtime, file, ffi.NULL, (0, 0))
+            self._loaded = (file, kept) if scene.depends_on_camera else None
 
     # ---- properties ----
 
@@ -314,71 +242,30 @@ class Reconstructor:
         known = [points for points in self._points if points is not None]
         return sum(known) if len(known) == len(self._points) else None
 
-    @property
-    def arena_bytes(self) -> int:
-        """The size of the arena in bytes."""
-        return int(self._arena.nbytes)
-
-    @property
-    def stage_hashes(self) -> Dict[str, str]:
-        """16 hexadecimal digits for each stage that ran since the last build(), by its name; of one that ran several
-        times, the last."""
-        return dict(self._hooks.hashes)
-
-    @property
-    def cpu(self) -> str:
-        """Names of the processor's features that the inner loops use, such as "sse4.1 avx2"; "none" for plain C."""
-        text = ffi.new("char[]", CPU_BYTES)
-        with self._at_work() as runtime:
-            lib.t3r_cpu_describe(lib.t3r_get_cpu(runtime), text, CPU_BYTES)
-        return text_of(text)
-
-    @property
-    def closed(self) -> bool:
-        """Whether close() was called."""
-        return self._runtime is None
-
-    def close(self) -> None:
-        """Ends its threads and lets its memory go, once no scene of it is used."""
-        if self._runtime is not None:
-            with self._at_work():
-                self._go_on()
-                self._runtime = None
-                self._hooks.stop()
-                self._arena = np.empty(0, dtype=np.uint8)
-
-    def __enter__(self) -> "Reconstructor":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
+    def __repr__(self) -> str:
+        size = f"{self._config.width}x{self._config.height}"
+        return (f"<Reconstructor: {size}, {len(self._points)} of {self._config.views} views, at most "
+                f"{self._config.max_gaussians} Gaussians{', closed' if self.closed else ''}>")
 
     # ---- internal ----
 
-    @contextlib.contextmanager
-    def _at_work(self) -> Iterator[Any]:
-        """The runtime, for one call at a time."""
-        if not self._lock.acquire(blocking=False):
-            raise StateError("the reconstructor is at work: in another thread, or in this one, which its progress calls")
-        try:
-            if self._runtime is None:
-                raise StateError("the reconstructor is closed")
-            yield self._runtime
-        finally:
-            self._lock.release()
-
-    def _size(self, size: Optional[Tuple[int, int]]) -> Tuple[int, int]:
-        """Returns the width and height of a picture. None: the working size."""
-        width, height = pair("size", size or (self._config.width, self._config.height))
-        return (whole("width", width, 1, self._config.render_width, "T3R_ERR_ARGUMENT"),
-                whole("height", height, 1, self._config.render_height, "T3R_ERR_ARGUMENT"))
-
-    def _check(self, call: str, *arguments: Any) -> None:
-        check(self._hooks.run(getattr(lib, call), *arguments), call, *arguments)
-
     def _go_on(self) -> None:
-        """Scenes that were made so far hold no longer."""
-        self._generation += 1
+        super()._go_on()
+        self._loaded = None
+
+    def _draw(self, runtime: Any, camera: Any, target: Any) -> None:
+        if self._loaded is not None:
+            self._load(runtime, self._loaded[0], camera, (target.width, target.height))
+        super()._draw(runtime, camera, target)
+
+    def _load(self, runtime: Any, file: Any, eye: Any, size: Tuple[int, int]) -> None:
+        """Appends the Gaussians of a file, as the eye sees them."""
+        status = lib.t3r_scene_load_as(HOST, runtime, file, eye, *size)
+        if status == lib.T3R_ERR_ARGUMENT: # a Gaussian: that after those which are there
+            scene = ffi.new("t3r_scene *")
+            check(lib.t3r_get_scene(runtime, scene), "t3r_scene_begin", runtime, ffi.addressof(file, "frame"))
+            check(status, "t3r_scene_append", runtime, file.gaussians + scene.count, what=f"Gaussian {scene.count}")
+        check(status, "t3r_scene_load")
 
     def _make(self, call: str, gaussians: Optional[int], keep: Optional[float], max_loss: float,
               allocate: Optional[str], head: Optional[HeadName], importance: Optional[Importance]) -> Scene:
@@ -430,13 +317,6 @@ class Reconstructor:
             request = ffi.new("t3r_request *", {"gaussians": 1, "head": lib.T3R_HEAD_ANALYTIC})
             self._check("t3r_reconstruct", runtime, request, scene)
         return int(scene.valid_points)
-
-    def _scene(self, scene: Any) -> Scene:
-        start = int(ffi.cast("uintptr_t", scene.gaussians)) - self._arena.__array_interface__["data"][0]
-        gaussians = self._arena[start:start + scene.count * GAUSSIAN.itemsize].view(GAUSSIAN)
-        gaussians.setflags(write=False)
-        made = self._generation
-        return Scene.in_frame(gaussians, scene.frame, scene.valid_points, lambda: self._generation == made)
 
 
 def _measured(frame: Frame, config: Any) -> Optional[int]:

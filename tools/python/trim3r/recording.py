@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings: MCAP files of ROS 2 messages."""
+import os
 from typing import Any, Iterator, List, NamedTuple, Tuple
 
 import numpy as np
@@ -25,7 +26,7 @@ class Recording:
 
     `len()` is their number, and `recording[i]` is a frame: its arrays lie in the recording's memory, read-only. They
     stay valid as long as any of them is there, also after the recording itself is gone. From several threads at the
-    same time use a recording each.
+    same time use a recording each. A pickled one is the path: it is opened again.
 
     Parameters
     ----------
@@ -46,6 +47,13 @@ class Recording:
         if opened == ffi.NULL:
             raise InputError(text_of(error))
         self._recording = ffi.gc(opened, lib.t3r_recording_close)
+        self._path = os.path.abspath(os.fsdecode(path))
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        return Recording, (self._path,)
+
+    def __repr__(self) -> str:
+        return f"<Recording: {self._path}, {len(self)} frames>"
 
     def __len__(self) -> int:
         return int(lib.t3r_recording_frame_count(self._recording))

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: Gaussians in the library's integers, and what they mean in world units."""
 import os
-from typing import Any, Callable, Tuple
+import warnings
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from ._native import ERROR_BYTES, address, borrowed, dtype_of, ffi, lib, text_of
-from .arguments import Path, path_bytes, readable, whole, writable
+from ._native import address, borrowed, dtype_of, ffi, host_called, lib
+from .arguments import Path, path_bytes, readable, whole
 from .errors import InputError, StateError
+from .scene_arrays import IDENTITY, Arrays, arrays_of, checked, scene_of
 
 GAUSSIAN = dtype_of("t3r_gaussian")
 _ORIGIN_MOST = (1 << 62) - 1
@@ -20,9 +22,9 @@ _COLOUR_ONE = 32640  # a level of 255, in 1/128
 class Scene:
     """A set of Gaussians.
 
-    One that a Reconstructor made lies in its arena: it is read without a copy, and only until the reconstructor makes
-    another or is reset. After that, StateError is raised; copy() before it keeps the scene. Arrays of positions and the
-    like are always new.
+    One that a Reconstructor or a Stream made lies in its arena: it is read without a copy, and only until the next scene
+    is made or a reset. After that, StateError is raised; copy() before it keeps the scene. Pickling copies, too.
+    numpy.asarray(scene) is `gaussians`, without a copy. Arrays of positions and the like are always new.
 
     Attributes
     ----------
@@ -31,47 +33,98 @@ class Scene:
     exponent : int
         A scene unit is 2**exponent world units, -24..24.
     valid_points : int
-        Pixels of the context views with a measured or matched depth; 0 = the scene came from a file.
+        Pixels of the context views with a measured or matched depth; 0 = the scene came from elsewhere.
+    harmonics_q12 : ndarray of int16, shape (N, (degree + 1)**2, 3), or None
+        The coefficients of colours that depend on the direction, from degree 0 on, in 1/2**12; None: they do not.
+    antialiased : bool
+        Opacities are those of mip-splatting.
     """
 
     def __init__(self, gaussians: "NDArray[Any]", origin_q32: Tuple[int, int, int], exponent: int,
-                 valid_points: int = 0, fresh: Callable[[], bool] = lambda: True) -> None:
+                 valid_points: int = 0, harmonics_q12: "Optional[NDArray[np.int16]]" = None, antialiased: bool = False,
+                 fresh: Callable[[], bool] = lambda: True) -> None:
         if gaussians.dtype != GAUSSIAN or gaussians.ndim != 1:
             raise ValueError("Gaussians are a one-dimensional array of trim3r.scene.GAUSSIAN")
         self._gaussians, self._fresh = gaussians, fresh
         self.origin_q32, self.exponent = origin_q32, exponent
         self.valid_points = whole("valid_points", valid_points, 0, _POINTS_MOST)
+        self.harmonics_q12, self.antialiased = harmonics_q12, antialiased
+        self._degree() # which checks them
         self.native_frame() # which checks it
 
     @classmethod
     def read(cls, path: Path) -> "Scene":
-        """A scene from a file: .ply, .splat, .spz, .glb and all that `trim3r convert` reads. Colours are those of
-        harmonics of degree 0.
+        """A scene from a file: .ply, .splat, .spz, .glb and all that `trim3r convert` reads. Warns of what reading
+        changed.
 
         Raises
         ------
         OSError
-            The file cannot be opened.
+            The file cannot be opened or read.
         InputError
             It is no scene; the text says what is wrong, and where.
         """
-        error = ffi.new("char[]", ERROR_BYTES)
-        file = ffi.new("scene_file *")
-        if lib.scene_file_read(readable(path), 0, file, error, ERROR_BYTES) != 0:
-            raise InputError(text_of(error))
-        owner = ffi.gc(file, lib.scene_file_free)
-        gaussians = borrowed(file.gaussians, file.count, owner, GAUSSIAN)
-        return cls.in_frame(gaussians, file.frame)
+        file = ffi.new("t3r_scene_file *")
+        _warn(host_called("t3r_scene_read", readable(path), 0, file, path=os.fsdecode(path)))
+        return cls._of_file(file)
+
+    @classmethod
+    def from_arrays(cls, positions: ArrayLike, scales: ArrayLike, rotations: ArrayLike = IDENTITY,
+                    colours: ArrayLike = 0.5, opacities: ArrayLike = 1.0, harmonics: Optional[ArrayLike] = None,
+                    antialiased: bool = False) -> "Scene":
+        """A scene of N Gaussians in floats, to be saved or drawn.
+
+        The scene's frame is chosen as for a file: its origin is in the middle of the Gaussians.
+
+        Parameters
+        ----------
+        positions : array_like, shape (N, 3)
+            The means in world units.
+        scales : array_like, shape (N, 3), or float
+            The standard deviations along the Gaussian's own axes in world units, 0 or more; one number for all. A .ply
+            has their logarithms.
+        rotations : array_like, shape (N, 4)
+            Quaternions w x y z of any length, from those axes to the world. Without them the axes are the world's.
+        colours : array_like, shape (N, 3), or float
+            Red, green and blue, 0..1. A .ply has coefficients f: 0.5 + 0.28209479 * f.
+        opacities : array_like, shape (N,), or float
+            The opacities at the means, 0..1. A .ply has logits x: 1 / (1 + exp(-x)).
+        harmonics : array_like, shape (N, 3, 3), (N, 8, 3) or (N, 15, 3), optional
+            Spherical harmonics of degree 1, 2 or 3 for red, green and blue, without degree 0.
+        antialiased : bool
+            Opacities are those of mip-splatting.
+
+        Raises
+        ------
+        InputError
+            An array has another shape, or a number is not finite or out of range: its place and value are named.
+        TypeError
+            An array holds no real numbers.
+        """
+        return cls._of_file(scene_of(checked(positions, scales, rotations, colours, opacities, harmonics), antialiased))
 
     @classmethod
     def in_frame(cls, gaussians: "NDArray[Any]", frame: Any, valid_points: int = 0,
                  fresh: Callable[[], bool] = lambda: True) -> "Scene":
         """In a t3r_scene_frame."""
         x, y, z = frame.origin_q32
-        return cls(gaussians, (x, y, z), frame.exponent, valid_points, fresh)
+        return cls(gaussians, (x, y, z), frame.exponent, valid_points, fresh=fresh)
+
+    @classmethod
+    def _of_file(cls, file: Any) -> "Scene":
+        """Takes over a t3r_scene_file."""
+        owner = ffi.gc(file, lib.t3r_scene_free)
+        scene = cls.in_frame(borrowed(file.gaussians, file.count, owner, GAUSSIAN), file.frame)
+        if file.degree > 0:
+            coefficients = (file.degree + 1)**2
+            flat = borrowed(file.harmonics_q12, file.count * coefficients * 3, owner, np.dtype(np.int16))
+            scene.harmonics_q12 = flat.reshape(file.count, coefficients, 3)
+        scene.antialiased = bool(file.mip)
+        return scene
 
     def save(self, path: Path, local: bool = False, comments: bool = False) -> None:
-        """Writes a file in the format of its suffix: .ply, .splat, .spz, .glb and all that `trim3r build` writes.
+        """Writes a file in the format of its suffix: .ply, .splat, .spz, .glb and all that `trim3r build` writes. Warns
+        of what the format cannot hold.
 
         Parameters
         ----------
@@ -86,32 +139,45 @@ class Scene:
         Raises
         ------
         OSError
-            The folder of the file is not there.
+            The system refuses to write it: no such folder, no permission, a full disk. An existing file stays.
         InputError
-            The suffix is that of no scene file, the scene is empty or a number of it out of range, or the file cannot be
-            written. An existing file stays.
+            The suffix is that of no scene file, the scene is empty or a number of it is out of range. An existing file
+            stays.
         """
-        if not lib.scene_file_is_written(path_bytes(path)):
-            names = ffi.new("char[]", lib.SCENE_FILE_SUFFIXES_BYTES)
-            raise InputError(f"{os.fspath(path)}: scene files end in {text_of(lib.scene_file_suffixes(names))}")
-        gaussians = np.ascontiguousarray(self.gaussians)
-        scene = ffi.new("t3r_scene *", {"gaussians": address(gaussians, "t3r_gaussian *"), "count": len(gaussians),
-                                        "frame": self.native_frame()[0]})
         flags = (lib.T3R_SCENE_LOCAL if local else 0) | (lib.T3R_SCENE_COMMENTS if comments else 0)
-        error = ffi.new("char[]", ERROR_BYTES)
-        if lib.scene_file_write(writable(path), scene, flags, ffi.NULL, error, ERROR_BYTES) != 0:
-            raise InputError(text_of(error))
+        file, kept = self.native()
+        _warn(host_called("t3r_scene_file_write", path_bytes(path), file, flags, path=os.fsdecode(path)))
+        del kept
 
     def copy(self) -> "Scene":
         """The same scene in memory of its own."""
-        return Scene(self.gaussians.copy(), self.origin_q32, self.exponent, self.valid_points)
+        return self._with(self.gaussians.copy(), None if self.harmonics_q12 is None else self.harmonics_q12.copy())
 
     def select(self, which: "NDArray[Any]") -> "Scene":
         """The scene of the Gaussians that an index array or a mask of (N,) chooses, in memory of its own."""
-        return Scene(self.gaussians[which].copy(), self.origin_q32, self.exponent, self.valid_points)
+        return self._with(self.gaussians[which].copy(), None if self.harmonics_q12 is None else self.harmonics_q12[which])
+
+    def _with(self, gaussians: "NDArray[Any]", harmonics_q12: "Optional[NDArray[np.int16]]") -> "Scene":
+        return Scene(gaussians, self.origin_q32, self.exponent, self.valid_points, harmonics_q12, self.antialiased)
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        return Scene, (self.gaussians.copy(), self.origin_q32, self.exponent, self.valid_points, self.harmonics_q12,
+                       self.antialiased)
 
     def __len__(self) -> int:
         return len(self._gaussians)
+
+    def __repr__(self) -> str:
+        if not self._fresh():
+            return "<Scene: gone, as its reconstructor or stream has gone on>"
+        points = f" of {self.valid_points} points" if self.valid_points else ""
+        degree = f", harmonics of degree {self._degree()}" if self._degree() else ""
+        x, y, z = self.origin
+        return f"<Scene: {len(self)} Gaussians{points}{degree}, origin ({x:.6g}, {y:.6g}, {z:.6g})>"
+
+    @property
+    def __array_interface__(self) -> Dict[str, Any]:
+        return self.gaussians.__array_interface__
 
     @property
     def gaussians(self) -> "NDArray[Any]":
@@ -121,8 +187,16 @@ class Scene:
         other Gaussians, or none that mean anything.
         """
         if not self._fresh():
-            raise StateError("the reconstructor has gone on, and this scene with it: copy() keeps a scene")
+            raise StateError("the reconstructor or stream has gone on, and this scene with it: copy() keeps a scene")
         return self._gaussians
+
+    def arrays(self) -> Arrays:
+        """The scene in new arrays of floats: Scene.from_arrays(*scene.arrays()) is the same scene within the steps of
+        the fixed point, in a frame of its own."""
+        file, kept = self.native()
+        arrays = arrays_of(file)
+        del kept
+        return arrays
 
     @property
     def origin(self) -> "NDArray[np.float64]":
@@ -134,6 +208,27 @@ class Scene:
         """The means in world units, (N, 3)."""
         scaled: "NDArray[np.float64]" = np.ldexp(self.gaussians["position_q20"].astype(np.float64), self.exponent - 20)
         return self.origin + scaled
+
+    @property
+    def scales(self) -> "NDArray[np.float64]":
+        """The standard deviations along the Gaussians' own axes in world units, (N, 3)."""
+        return self.arrays().scales
+
+    @property
+    def rotations(self) -> "NDArray[np.float64]":
+        """Unit quaternions w x y z from those axes to the world, (N, 4)."""
+        return self.arrays().rotations
+
+    @property
+    def harmonics(self) -> "Optional[NDArray[np.float32]]":
+        """The coefficients above degree 0 for red, green and blue, (N, 3, 3), (N, 8, 3) or (N, 15, 3); None: there are
+        none."""
+        return None if self.harmonics_q12 is None else np.ldexp(self.harmonics_q12[:, 1:].astype(np.float32), -12)
+
+    @property
+    def depends_on_camera(self) -> bool:
+        """Whether the Gaussians look different from each viewpoint."""
+        return self.harmonics_q12 is not None or self.antialiased
 
     @property
     def covariances(self) -> "NDArray[np.float64]":
@@ -166,3 +261,31 @@ class Scene:
         origin = [whole(f"origin_q32[{i}]", each, -_ORIGIN_MOST, _ORIGIN_MOST) for i, each in enumerate(self.origin_q32)]
         exponent = whole("exponent", self.exponent, -_EXPONENT_MOST, _EXPONENT_MOST)
         return ffi.new("t3r_scene_frame *", {"origin_q32": origin, "exponent": exponent})
+
+    def native(self) -> Tuple[Any, Any]:
+        """A pointer to a t3r_scene_file and what must outlive its use. Raises as native_frame()."""
+        gaussians = np.ascontiguousarray(self.gaussians)
+        degree = self._degree()
+        harmonics = None if degree == 0 else np.ascontiguousarray(self.harmonics_q12)
+        file = ffi.new("t3r_scene_file *", {
+            "gaussians": address(gaussians, "t3r_gaussian *"), "count": len(gaussians), "frame": self.native_frame()[0],
+            "degree": degree, "mip": bool(self.antialiased),
+            "harmonics_q12": ffi.NULL if harmonics is None else address(harmonics, "int16_t *")})
+        return file, (gaussians, harmonics)
+
+    def _degree(self) -> int:
+        """Returns the degree of the harmonics. Raises ValueError where they are no array of a scene of so many
+        Gaussians."""
+        harmonics = self.harmonics_q12
+        if harmonics is None:
+            return 0
+        shapes: List[Tuple[int, ...]] = [(len(self._gaussians), (degree + 1)**2, 3) for degree in (1, 2, 3)]
+        if not isinstance(harmonics, np.ndarray) or harmonics.dtype != np.int16 or harmonics.shape not in shapes:
+            raise ValueError(f"harmonics_q12 is an array of int16 of one of the shapes {shapes}")
+        return shapes.index(harmonics.shape) + 1
+
+
+def _warn(remarks: str) -> None:
+    """Passes remarks on a file to the caller of the caller."""
+    if remarks:
+        warnings.warn(remarks, stacklevel=3)
