@@ -101,6 +101,20 @@ def check_files(folder):
     check(caught[0].filename == __file__, "the warning names the caller's line")
 
 
+def check_dropped(folder):
+    """A file with numbers that are not finite is refused with a remedy in Python's words."""
+    trim3r.Scene.from_arrays(**arrays()).save(folder / "bad.ply")
+    content = (folder / "bad.ply").read_bytes()
+    start = content.index(b"end_header\n") + len(b"end_header\n")
+    (folder / "bad.ply").write_bytes(content[:start] + np.float32("nan").tobytes() + content[start + 4:])
+    with refused(trim3r.InputError, "bad.ply: vertex 0: x is not a finite number", "drop_invalid=True"):
+        trim3r.Scene.read(folder / "bad.ply")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        check(len(trim3r.Scene.read(folder / "bad.ply", drop_invalid=True)) == COUNT - 1, "without the one")
+    check(len(caught) == 1 and "1 invalid" in str(caught[0].message), f"{caught}")
+
+
 def check_drawn():
     """A scene with harmonics is drawn in the colours that each camera sees: those of the formula."""
     camera = trim3r.Camera.calibrated(SIDE, SIDE, (SIDE - 1) / 2, (SIDE - 1) / 2, np.eye(4), size=(SIDE, SIDE))
@@ -240,6 +254,7 @@ def main():
         folder = pathlib.Path(folder)
         check_there_and_back()
         check_files(folder)
+        check_dropped(folder)
         check_drawn()
         check_refused()
         check_views()

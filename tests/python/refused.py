@@ -22,7 +22,8 @@ def check_frames():
         for frame, *words in (
                 (changed(colour=colour[..., :2]), "(64, 64, 2)", "(H, W, 3)"),
                 (changed(colour=colour[0]), "shape"),
-                (changed(colour=colour.astype(np.float32)), "float32", "uint8"),
+                (changed(colour=colour.astype(np.float32)), "float32", "uint8", "255 * x"),
+                (changed(colour=np.zeros((SIDE, SIDE, 4), np.uint8)), "(64, 64, 4)", "drops alpha"),
                 (changed(colour=colour.astype(np.int8)), "int8"),
                 (changed(colour=colour.tolist()), "a list"),
                 (changed(colour=colour[:, ::-1]), "row"), (changed(colour=colour[::-1]), "upwards"),

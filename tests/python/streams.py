@@ -68,7 +68,7 @@ def check_between():
             scene.positions.sum()
         check(kept.gaussians.tobytes() == plain.scene.gaussians.tobytes(), "a snapshot stays")
         made.reset()
-        check(made.keyframes == 0 and made.keyframe(FRAMES[0]) == reports[0], "begun anew")
+        check(made.keyframes == 0 and made.report is None and made.keyframe(FRAMES[0]) == reports[0], "begun anew")
         with small(0, gaussians=MOST) as drawn:
             drawn.load(kept)
             check(np.array_equal(drawn.render(FRAMES[3].camera), plain.render(FRAMES[3].camera)), "a snapshot drawn elsewhere")
@@ -84,7 +84,7 @@ def check_refusals():
     wanted = made.snapshot().gaussians.tobytes()
     for frame, reason in ((dark, "dark"), (blind, "no depth")):
         report = made.keyframe(frame)
-        check((report.refusal, report.taken, report.added) == (reason, False, 0), f"{report}")
+        check((report.refusal, report.taken, report.added) == (reason, False, 0) and made.report == report, f"{report}")
         check(report.keyframes == made.keyframes == 2 and report.gaussians == before.gaussians, f"{report}")
     check(made.snapshot().gaussians.tobytes() == wanted, "the map is unchanged")
     open_made, _ = followed(FRAMES[:2], settings={"gate": 0})
@@ -118,6 +118,7 @@ def check_stopping():
             with refused(trim3r.Cancelled, f"enough of {stage}"):
                 made.keyframe(FRAMES[2])
             check(made.keyframes == before + (stage == "refine"), f"stopped in {stage}: {made.keyframes} keyframes")
+            check(made.report.keyframes == made.keyframes and made.report.taken, f"stopped in {stage}: {made.report}")
             stop.clear()
             check(0 < len(made.scene) <= MOST and made.render(FRAMES[1].camera).any(), f"drawn after a stop in {stage}")
         check(made.keyframe(FRAMES[3]).taken, "goes on")

@@ -29,7 +29,7 @@ def text_of(pointer: Any) -> str:
 def _in_python(text: str) -> str:
     """A sentence of the library with the names that the package has for things."""
     text = re.sub(r"\bt3r_(\w+)\(\)", lambda match: _CALLS.get(match[1], match[1]) + "()", text)
-    return re.sub(r"\bconfig\.", "", text).replace("NULL", "None")
+    return re.sub(r"\bconfig\.", "", text).replace("NULL", "None").replace("--drop-invalid", "drop_invalid=True")
 
 
 def _reason(status: int, call: str, arguments: Sequence[Any]) -> str:
@@ -67,7 +67,7 @@ def host_called(call: str, *arguments: Any, path: str = "") -> str:
     reason = text.rpartition(": ")[2]
     if status == lib.T3R_HOST_ERR_FILE and reason in _SYSTEM:
         raise OSError(_SYSTEM[reason], reason, path)
-    raise error_of(_STATUS_NAMES[status], text)
+    raise error_of(_STATUS_NAMES[status], _in_python(text))
 
 
 def value_named(kind: str, name_of: Callable[[int], Any], count: int, name: str) -> int:

@@ -145,10 +145,12 @@ def check_plane(what: str, array: Any, dtype: "np.dtype[Any]", channels: int, le
     if not isinstance(array, np.ndarray):
         raise ValueError(f"{what} is a {type(array).__name__}, not an array")
     if array.dtype != dtype:
-        raise ValueError(f"{what} has elements of {array.dtype}, not {dtype.name}")
+        remedy = ": of floats 0..1 take (255 * x).round().astype('uint8')" if array.dtype.kind == "f" else ""
+        raise ValueError(f"{what} has elements of {array.dtype}, not {dtype.name}{remedy}")
     wanted = "(H, W)" if channels == 1 else f"(H, W, {channels})"
     if array.ndim != (2 if channels == 1 else 3) or (channels > 1 and array.shape[2] != channels):
-        raise ValueError(f"{what} has the shape {array.shape}, not {wanted}")
+        remedy = ": numpy.ascontiguousarray(x[..., :3]) drops alpha" if channels == 3 and array.shape[2:] == (4,) else ""
+        raise ValueError(f"{what} has the shape {array.shape}, not {wanted}{remedy}")
     sides = array.shape[:2]
     if not all(least <= side <= lib.T3R_MAX_SIDE for least, side in zip((least_rows, 1), sides)):
         raise ValueError(f"{what} has the shape {array.shape}: its sides are not 1..{lib.T3R_MAX_SIDE}")

@@ -53,9 +53,16 @@ class Scene:
         self.native_frame() # which checks it
 
     @classmethod
-    def read(cls, path: Path) -> "Scene":
+    def read(cls, path: Path, drop_invalid: bool = False) -> "Scene":
         """A scene from a file: .ply, .splat, .spz, .glb and all that `trim3r convert` reads. Warns of what reading
         changed.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file.
+        drop_invalid : bool
+            Gaussians with a number that is not finite are left out, instead of refusing the file.
 
         Raises
         ------
@@ -65,7 +72,8 @@ class Scene:
             It is no scene; the text says what is wrong, and where.
         """
         file = ffi.new("t3r_scene_file *")
-        _warn(host_called("t3r_scene_read", readable(path), 0, file, path=os.fsdecode(path)))
+        flags = lib.T3R_SCENE_DROP_INVALID if drop_invalid else 0
+        _warn(host_called("t3r_scene_read", readable(path), flags, file, path=os.fsdecode(path)))
         return cls._of_file(file)
 
     @classmethod

@@ -128,13 +128,13 @@ class Stream(Runtime):
         config = configuration(width, height, views, gaussians, weights, {
             "workers": workers, "render_width": render_width, "render_height": render_height, **settings, "stream": 1})
         super().__init__(config, weights, arena_bytes, progress)
-        self._keyframes = 0
+        self._report: Optional[Report] = None
 
     def keyframe(self, frame: Frame) -> Report:
         """Takes a frame into the map, unless the gate refuses it: Report.refusal has the reason.
 
         An exception in `progress` stops the call, which raises it again. The map stays valid and within its size: the
-        keyframe adds nothing, or, during refinement, is taken with fewer passes.
+        frame adds nothing, or, during refinement, is a keyframe with fewer passes, and `report` is about it.
 
         Raises
         ------
@@ -152,7 +152,8 @@ class Stream(Runtime):
             try:
                 self._check("t3r_stream_keyframe", runtime, native, camera, report)
             finally: # stopped in refinement, the frame is a keyframe
-                self._keyframes = max(self._keyframes, int(report.keyframes))
+                if report.keyframes > 0 or report.refusal != lib.T3R_REFUSAL_NONE:
+                    self._report = _report_of(report)
             del kept
         return _report_of(report)
 
@@ -192,18 +193,24 @@ class Stream(Runtime):
         return self.scene.copy()
 
     @property
+    def report(self) -> Optional[Report]:
+        """The report on the last frame that was taken or refused; None before one."""
+        return self._report
+
+    @property
     def keyframes(self) -> int:
         """Keyframes so far."""
-        return self._keyframes
+        return 0 if self._report is None else self._report.keyframes
 
     def reset(self) -> None:
         """Empties the map; the settings stay."""
         with self._at_work() as runtime:
             self._go_on()
             self._check("t3r_reset", runtime)
-            self._keyframes = 0
+            self._report = None
 
     def __repr__(self) -> str:
         size = f"{self._config.width}x{self._config.height}"
-        return (f"<Stream: {size}, {self._keyframes} keyframes, at most {self._config.max_gaussians} Gaussians"
+        return (f"<Stream: {size}, {self.keyframes} keyframes, "
+                f"at most {self._config.max_gaussians} Gaussians"
                 f"{', closed' if self.closed else ''}>")
