@@ -78,8 +78,18 @@ def check_cameras():
             make(*what)
     far = np.eye(4)
     far[0, 3] = 1e10
-    with refused(ValueError, "range"):
+    with refused(ValueError, "pose", "position"):
         make(60, 60, 32, 32, far)
+    for axes in ("opencv", "opengl"): # a camera a metre to the left that looks along the world's z
+        flip = np.diag([1.0, 1, 1, 1] if axes == "opencv" else [1.0, -1, -1, 1])
+        there = np.eye(4)
+        there[:3, 3] = -1, 0, 0.5
+        check(np.allclose(make(60, 60, 32, 32, there @ flip, axes=axes).pose, there, atol=1e-8), axes)
+        back = np.linalg.inv(there @ flip)
+        check(np.allclose(make(60, 60, 32, 32, back, axes=axes, world_to_camera=True).pose, there, atol=1e-8), f"{axes}, inverse")
+        check(np.allclose(FRAMES[0].camera.at(back[:3], axes=axes, world_to_camera=True).pose, there, atol=1e-8), "at()")
+    with refused(ValueError, "opencv, opengl", "'blender'"):
+        make(60, 60, 32, 32, pose, axes="blender")
     with refused(ValueError):
         trim3r.Camera(1 << 40, 60, 32, 32).native((SIDE, SIDE))
     with refused(ValueError):

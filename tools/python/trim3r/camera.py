@@ -6,7 +6,7 @@ from typing import Any, Optional, Sequence, Tuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._native import ffi, lib
+from ._native import address, ffi, host_called, lib
 from .arguments import fixed, grid, whole
 from .errors import InputError
 
@@ -16,7 +16,7 @@ _COEFFICIENTS = {"none": 0, "radtan": 5, "fisheye": 4}
 # Each field of integers: the count (0: one, alone), and the bits of each.
 _FIELDS = {"fx_q16": (0, 32), "fy_q16": (0, 32), "cx_q16": (0, 32), "cy_q16": (0, 32), "distortion_q24": (5, 32),
            "position_q32": (3, 64), "rotation_q30": (4, 32)}
-_NEAR_ENOUGH = 1e-3  # of an entry of R R^T to the identity: poses of 32-bit floats pass, scaled or sheared ones do not
+_AXES = {"opencv": lib.T3R_AXES_OPENCV, "opengl": lib.T3R_AXES_OPENGL}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -56,7 +56,8 @@ class Camera:
 
     @classmethod
     def calibrated(cls, fx: float, fy: float, cx: float, cy: float, pose: ArrayLike, distortion: str = "none",
-                   coefficients: Sequence[float] = (), size: Optional[Tuple[int, int]] = None) -> "Camera":
+                   coefficients: Sequence[float] = (), size: Optional[Tuple[int, int]] = None, *, axes: str = "opencv",
+                   world_to_camera: bool = False) -> "Camera":
         """A camera of floats.
 
         Parameters
@@ -71,6 +72,11 @@ class Camera:
             Those of the lens in its order, at most as many as it has.
         size : pair of int, optional
             Width and height of the pixel grid that fx, fy, cx and cy are for.
+        axes : str
+            Of the camera: "opencv", x right, y down, z forward; or "opengl", x right, y up, z backward, as of Blender
+            and nerfstudio.
+        world_to_camera : bool
+            The pose is the inverse one, as of OpenCV's solvePnP() and of COLMAP.
 
         Raises
         ------
@@ -82,16 +88,16 @@ class Camera:
         if len(coefficients) > _COEFFICIENTS[distortion]:
             raise ValueError(f"distortion {distortion!r} has {_COEFFICIENTS[distortion]} coefficients, "
                              f"not {len(coefficients)}")
-        matrix = _rigid(pose)
+        position, rotation = _posed(pose, axes, world_to_camera)
         k = [fixed(c, 24, f"coefficient {i}") for i, c in enumerate(coefficients)] + [0] * (5 - len(coefficients))
-        x, y, z = (fixed(c, 32, "the pose's position", 64) for c in matrix[:3, 3])
-        w, i, j, l = (fixed(c, 30, "the pose's rotation") for c in _quaternion(matrix[:3, :3]))
+        x, y, z = (fixed(c, 32, "the pose's position", 64) for c in position)
+        w, i, j, l = (fixed(c, 30, "the pose's rotation") for c in rotation)
         return cls(fixed(fx, 16, "fx"), fixed(fy, 16, "fy"), fixed(cx, 16, "cx"), fixed(cy, 16, "cy"), (x, y, z),
                    (w, i, j, l), distortion, (k[0], k[1], k[2], k[3], k[4]), size)
 
-    def at(self, pose: ArrayLike) -> "Camera":
-        """The same camera at another pose, (4, 4) or (3, 4), camera to world. Raises ValueError as calibrated()."""
-        posed = Camera.calibrated(self.fx, self.fy, self.cx, self.cy, pose)
+    def at(self, pose: ArrayLike, *, axes: str = "opencv", world_to_camera: bool = False) -> "Camera":
+        """The same camera at another pose. Its parameters and errors are those of calibrated()."""
+        posed = Camera.calibrated(self.fx, self.fy, self.cx, self.cy, pose, axes=axes, world_to_camera=world_to_camera)
         return dataclasses.replace(self, position_q32=posed.position_q32, rotation_q30=posed.rotation_q30)
 
     def resized(self, width: int, height: int) -> "Camera":
@@ -174,36 +180,18 @@ def _resized(focal_q16: int, centre_q16: int, old: int, new: int) -> Tuple[int, 
     return (2 * focal_q16 * new + old) // (2 * old), (2 * (centre_q16 + 0x8000) * new + old) // (2 * old) - 0x8000
 
 
-def _rigid(pose: ArrayLike) -> "NDArray[np.float64]":
-    """The pose as a matrix of 3 x 4, checked."""
+def _posed(pose: ArrayLike, axes: str, world_to_camera: bool) -> Tuple[Any, Any]:
+    """Position in world units and unit quaternion w x y z, camera to world, of a matrix in a convention."""
+    if axes not in _AXES:
+        raise ValueError(f"axes are one of {', '.join(_AXES)}, not {axes!r}")
     given = np.asarray(pose)
     if given.dtype.kind not in "iufO":
         raise TypeError(f"a pose holds numbers, not {given.dtype}")
-    matrix = given.astype(np.float64)
-    if matrix.shape not in ((4, 4), (3, 4)):
-        raise ValueError(f"a pose has the shape (4, 4) or (3, 4), not {matrix.shape}")
-    if not np.isfinite(matrix).all():
-        raise ValueError("the pose holds what is not a finite number")
-    if matrix.shape == (4, 4) and not np.array_equal(matrix[3], [0, 0, 0, 1]):
-        raise ValueError("the last row of a pose is 0 0 0 1")
-    rotation = matrix[:3, :3]
-    with np.errstate(over="ignore"):
-        far = np.abs(rotation @ rotation.T - np.eye(3)).max()
-    if not far <= _NEAR_ENOUGH or np.linalg.det(rotation) < 0:
-        raise ValueError("the pose's first three columns are no rotation")
-    return matrix[:3]
-
-
-def _quaternion(rotation: "NDArray[np.float64]") -> "NDArray[np.float64]":
-    """Returns the unit quaternion w x y z, w >= 0. The largest of the four is computed first, because the others are
-    divided by it."""
-    m = rotation
-    trace = m[0, 0] + m[1, 1] + m[2, 2]
-    squares = np.array([1 + trace, *(1 + 2 * m[i, i] - trace for i in range(3))])
-    w = (m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1])
-    xy, xz, yz = m[0, 1] + m[1, 0], m[0, 2] + m[2, 0], m[1, 2] + m[2, 1]
-    rows = np.array([[squares[0], *w], [w[0], squares[1], xy, xz],
-                     [w[1], xy, squares[2], yz], [w[2], xz, yz, squares[3]]])
-    row = rows[int(np.argmax(squares))]
-    unit: "NDArray[np.float64]" = row / np.linalg.norm(row) * (-1 if row[0] < 0 else 1)
-    return unit
+    if given.shape not in ((4, 4), (3, 4)):
+        raise ValueError(f"a pose has the shape (4, 4) or (3, 4), not {given.shape}")
+    matrix = np.eye(4)
+    matrix[:len(given)] = given
+    camera = ffi.new("t3r_recorded_camera *")
+    host_called("t3r_camera_pose_matrix", camera, address(matrix, "double *"),
+                _AXES[axes] | (lib.T3R_WORLD_TO_CAMERA if world_to_camera else 0))
+    return camera.position, camera.rotation
