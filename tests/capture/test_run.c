@@ -396,7 +396,7 @@ TEST_WITH(a_replay_has_no_latency, scratch_setup, scratch_teardown)
     capture_account live, replayed;
     assert_int_equal(capture_run(camera, &plan, &live), CLI_OK);
     t3r_capture_close(camera);
-    assert_int_equal(live.latency.count, 20);
+    assert_int_equal(live.late.count, 20);
     t3r_capture *replay = t3r_replay_open(recording, error, sizeof error);
     assert_non_null(replay);
     assert_string_equal(t3r_capture_clock(replay), "monotonic");
@@ -404,7 +404,7 @@ TEST_WITH(a_replay_has_no_latency, scratch_setup, scratch_teardown)
     assert_int_equal(capture_run(replay, &plan, &replayed), CLI_OK);
     t3r_capture_close(replay);
     assert_int_equal(replayed.frames, 20);
-    assert_int_equal(replayed.latency.count, 0);
+    assert_int_equal(replayed.late.count, 0);
 }
 
 /* A recording repeated until its clock is full ends with a reason; no stamp goes back. */
