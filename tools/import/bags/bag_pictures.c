@@ -155,8 +155,9 @@ static bool unpack(const t3r_ros_image *image, t3r_packing packing, uint8_t *out
         const uint8_t *row = image->data + (size_t)y * image->step;
         (void)t3r_unpack_row(packing, row, image->width, out);
         for (uint32_t x = 0; x < image->width; x++) {
-            *opaque = row[4 * (size_t)x + 3] >= HALF_OPAQUE;
-            any = any || *opaque++ != 0;
+            const bool is_opaque = row[4 * (size_t)x + 3] >= HALF_OPAQUE;
+            *opaque++ = is_opaque;
+            any = any || is_opaque;
         }
     }
     return any;
