@@ -34,6 +34,9 @@ def replay():
     for content in ("{", "[]", '{"hash": 5}', '{"hash": "xyz"}', json.dumps(dict(found, stages={"image": 1})),
                     json.dumps(dict(found, tiles=["x"]))):
         expect(1, *base, "--expect", write("malformed.json", content), err="malformed.json")
+    for more in ([], ["--slide"], ["--stream", "--every", 1]):
+        shown = expect(0, "replay", recording, "--working", "64x64", *more)
+        check(max(map(len, shown.splitlines())) <= 80, f"replay {more}: lines of over 80 columns: {shown}")
     expect(2, "replay", err="REC.mcap")
     expect(2, "replay", recording, recording, err="too many")
 

@@ -2,8 +2,11 @@
 #include "bench/bench_kernels.h"
 
 #include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "cli/text/wrapped.h"
 #include "host/cpu.h"
 #include "kernels/variants.h"
 
@@ -42,7 +45,7 @@ uint32_t bench_kernels_of(const t3r_kernels *kernels, bench_kernel list[BENCH_KE
     return count;
 }
 
-void bench_kernels_print(const t3r_kernels *kernels, FILE *out)
+static void describe(const t3r_kernels *kernels, FILE *out)
 {
     bench_kernel list[BENCH_KERNELS_MOST];
     const uint32_t count = bench_kernels_of(kernels, list);
@@ -51,7 +54,7 @@ void bench_kernels_print(const t3r_kernels *kernels, FILE *out)
         if (listed[i]) {
             continue;
         }
-        fprintf(out, "%s %s:", i == 0 ? "" : ";", list[i].set);
+        fprintf(out, "%s%s:", i == 0 ? "" : "; ", list[i].set);
         for (uint32_t k = i; k < count; k++) {
             if (strcmp(list[k].set, list[i].set) == 0) {
                 fprintf(out, " %s", list[k].entry);
@@ -59,7 +62,19 @@ void bench_kernels_print(const t3r_kernels *kernels, FILE *out)
             }
         }
     }
-    fputc('\n', out);
+}
+
+void bench_kernels_print(const t3r_kernels *kernels, uint32_t indent)
+{
+    char *text = NULL;
+    size_t bytes;
+    FILE *out = open_memstream(&text, &bytes);
+    if (out != NULL) {
+        describe(kernels, out);
+        fclose(out);
+    }
+    wrapped_print(stdout, indent, "kernels", text != NULL ? text : "out of memory");
+    free(text);
 }
 
 void bench_kernels_add_json(cJSON *root, const t3r_kernels *kernels)

@@ -63,7 +63,7 @@ static int by_size(const void *a, const void *b)
 static void print_text(const slide_run *s, double mean, double median, uint64_t hash)
 {
     const reconstruction *r = &s->r;
-    printf("%s: %" PRIu32 " scenes of two frames each, %" PRIu32 " Gaussians, head %s, warm %s, arena %zu bytes\n",
+    printf("%s: %" PRIu32 " scenes of two frames each\n%" PRIu32 " Gaussians, head %s, warm %s, arena %zu bytes\n",
            s->path, s->scenes, r->scene.count, r->head.name, r->config.warm ? "on" : "off", r->arena_bytes);
     if (s->scenes > 1) {
         printf("after the first: %.1f ms each (median %.1f), %.1f frames a second\n", mean, median, 1000 / mean);

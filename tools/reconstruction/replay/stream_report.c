@@ -193,9 +193,9 @@ void stream_print_json(const stream_run *s, uint64_t hash, const expectation *e,
 void stream_print_begin(const stream_run *s)
 {
     const reconstruction *r = &s->map.r;
-    printf("%s: a keyframe in %" PRIu32 " frames at least, %" PRIu32 " live, at most %" PRIu32
-           " Gaussians, head %s, arena %zu bytes\n",
-           s->path, s->map.options.every, r->config.views, r->config.gaussians, r->head.name, r->arena_bytes);
+    printf("%s: at most %" PRIu32 " Gaussians, head %s, arena %zu bytes\n", s->path, r->config.gaussians, r->head.name,
+           r->arena_bytes);
+    printf("a keyframe in %" PRIu32 " frames at least, %" PRIu32 " live\n", s->map.options.every, r->config.views);
 }
 
 static void print_skipped(const stream_run *s)
@@ -217,11 +217,11 @@ static void print_means(const stream_run *s)
     if (m.final_count == 0) {
         return;
     }
-    printf("held-back frames, mean PSNR where they have a depth | everywhere:");
+    printf("held-back frames, mean PSNR where they have a depth | everywhere:\n");
     if (m.live_count > 0) {
-        printf(" after the next keyframe %.2f | %.2f dB (%" PRIu32 "),", m.live, m.live_all, m.live_count);
+        printf("after the next keyframe %.2f | %.2f dB (%" PRIu32 "), ", m.live, m.live_all, m.live_count);
     }
-    printf(" in the end %.2f | %.2f dB (%" PRIu32 ")\n", m.final, m.final_all, m.final_count);
+    printf("in the end %.2f | %.2f dB (%" PRIu32 ")\n", m.final, m.final_all, m.final_count);
 }
 
 void stream_print(const stream_run *s, uint64_t hash)

@@ -20,6 +20,7 @@
 #include "cli/options/processor_options.h"
 #include "cli/tables/json_output.h"
 #include "cli/text/word_list.h"
+#include "cli/text/wrapped.h"
 #include "host/cpu.h"
 #include "planning/calibrate.h"
 #include "planning/machine.h"
@@ -28,6 +29,7 @@
 
 #define MAX_RUNS BENCH_TURNS_MOST
 #define PATH_BYTES 4200
+#define INDENT 23u /* of figures, after the names of stages */
 
 typedef struct bench_options {
     bench_settings settings;
@@ -302,9 +304,8 @@ static void print_text(const bench_work *w, const row rows[BENCH_STAGES_MOST])
                w->points.count);
     }
     cpu_flags(flags);
-    printf("%-22s %s\n", "cpu_flags", flags);
-    printf("%-22s", "kernels");
-    bench_kernels_print(&w->kernels, stdout);
+    wrapped_print(stdout, INDENT, "cpu_flags", flags);
+    bench_kernels_print(&w->kernels, INDENT);
     print_profiles(rows);
 }
 

@@ -15,9 +15,11 @@
 #include "cli/cli.h"
 #include "cli/files/part_files.h"
 #include "cli/options/file_options.h"
+#include "cli/text/wrapped.h"
 #include "trim3r_capture.h"
 
 #define ERROR_BYTES 512
+#define LIST_INDENT 15u              /* of what an adapter reads, after its name and whether it is there */
 #define MOST_MOTIONS 3000u           /* frames for estimating an offset */
 #define RANGE_NS INT64_C(1000000000) /* search range about the expected offset */
 
@@ -49,9 +51,11 @@ static void say_device(void *user, const char *line)
 
 static int list(void)
 {
+    char label[64];
     for (uint32_t i = 0; i < t3r_capture_adapter_count(); i++) {
         t3r_capture_adapter adapter = t3r_capture_adapter_of(i);
-        printf("%-10s %s %s\n", adapter.name, adapter.available ? "yes " : "no  ", adapter.says);
+        snprintf(label, sizeof label, "%-10s %-4s", adapter.name, adapter.available ? "yes" : "no");
+        wrapped_print(stdout, LIST_INDENT, label, adapter.says);
         uint32_t devices = 0;
         if (adapter.available) {
             t3r_capture_devices(adapter.name, say_device, &devices);

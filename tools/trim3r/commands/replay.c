@@ -296,7 +296,7 @@ static void print_text(const replay_options *o, const reconstruction *r, const r
     for (uint32_t v = 0; v < r->context_count; v++) {
         printf("%s%" PRIu32, v == 0 ? " " : ",", r->context[v]);
     }
-    printf(", view %" PRIu32 ", %" PRIu32 " Gaussians, head %s, arena %zu bytes; %s\n", view->frame, r->scene.count,
+    printf(", view %" PRIu32 ", %" PRIu32 " Gaussians, head %s, arena %zu bytes\n%s\n", view->frame, r->scene.count,
            r->head.name, r->arena_bytes, work_times_text(&view->times, text_of_times));
     hash_report_print(r, view->hash);
 }
