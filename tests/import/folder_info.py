@@ -73,12 +73,12 @@ def same_refusal():
     """What import refuses, info refuses for the same reason."""
     cases = {"rgbd_freiburg3": tum("rgbd_freiburg3"), "size": transforms("size", change=lambda c: c.update(w=WIDTH + 2))}
     os.makedirs("empty")
-    os.makedirs("heic")
-    write("heic/a.heic", b"x")
+    os.makedirs("webp")
+    write("webp/a.webp", b"x")
     os.makedirs("crashed")
     Bag().write("crashed/part_0.mcap")
-    cases.update(empty="empty", heic="heic", crashed="crashed")
-    words = {"rgbd_freiburg3": "lies outside the picture", "size": "w: 66", "empty": "no pictures", "heic": "heif-convert", "crashed": "ros2 bag reindex"}
+    cases.update(empty="empty", webp="webp", crashed="crashed")
+    words = {"rgbd_freiburg3": "lies outside the picture", "size": "w: 66", "empty": "no pictures", "webp": "dwebp", "crashed": "ros2 bag reindex"}
     for name, path in cases.items():
         code, out, error = run("info", path)
         check(code == 1 and out == "" and words[name] in error, f"info {name}: {code}, {error}")

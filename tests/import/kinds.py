@@ -49,7 +49,7 @@ KINDS = {
     "pointmaps": (["points.npz"], ["--pointmaps NAME.npz"]),
     "an unpacked scene": (["meta.json", "means_l.webp"], ["an unpacked .sog"]),
     "a video": (["film.mp4"], ["ffmpeg -i IN"]),
-    "HEIC": (["1.heic", "2.heic"], ["heif-convert"]),
+    "WebP": (["1.webp", "2.webp"], ["dwebp"]),
     "pictures in images": (["images/0.png"], ["trim3r import {0}/images", ESTIMATE]),
     "pictures in rgb": (["rgb/0.jpeg"], ["trim3r import {0}/rgb", ESTIMATE]),
     "nothing": ([], ["transforms.json", "rgb.txt"]),

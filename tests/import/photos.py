@@ -31,15 +31,31 @@ WIDTH, HEIGHT, PHOTOS = 192, 144, 4
 FOCAL_35MM = 30 # mm, nearest to the room's lens
 
 
-def with_exif(data, orientation=1, focal=0):
-    """Returns a PNG with EXIF: the orientation in its first directory, the focal length in its second."""
-    first = struct.pack(">H HHIHH HHII I", 2, 0x112, 3, 1, orientation, 0, 0x8769, 4, 1, 38, 0)
-    second = struct.pack(">H HHIHH I", 1, 0xA405, 3, 1, focal, 0, 0)
-    tiff = b"MM\0*" + struct.pack(">I", 8) + first + second
-    check(len(b"MM\0*") + 4 + len(first) == 38, "the second directory is elsewhere")
+def directory(entries, at):
+    """Returns a directory of TIFF that begins at that byte, with ratios (type 5) after it."""
+    after, body = at + 2 + 12 * len(entries) + 4, struct.pack(">H", len(entries))
+    for i, (tag, kind, value) in enumerate(entries):
+        body += struct.pack(">HHIHH" if kind == 3 else ">HHII", tag, kind, 1, *((value, 0) if kind == 3 else
+                            (value if kind == 4 else after + 8 * i,)))
+    return body + bytes(4) + b"".join(struct.pack(">II", *value) if kind == 5 else bytes(8) for _, kind, value in entries)
+
+
+def with_exif(data, orientation=1, focal=0, sensor=()):
+    """Returns a PNG with EXIF: the orientation in its first directory; in its second the focal length in terms of 35 mm
+    film, or entries for focal length and sensor."""
+    second = sensor or ((0xA405, 3, focal),)
+    first = directory(((0x112, 3, orientation), (0x8769, 4, 54)), 8)
+    tiff = b"MM\0*" + struct.pack(">I", 8) + first + directory(second, 54)
+    check(8 + len(first) == 54, "the second directory is elsewhere")
     chunk = b"eXIf" + tiff
     head = 8 + 25  # the signature and IHDR
     return data[:head] + struct.pack(">I", len(tiff)) + chunk + struct.pack(">I", zlib.crc32(chunk)) + data[head:]
+
+
+def by_sensor(unit_mm, *unit, width=(0xA002, 4, WIDTH)):
+    """Returns entries that state the same focal length by a lens of 4.5 mm and the pixels in a unit of the sensor."""
+    per_unit = round(1000 * FOCAL_35MM / 4.5 * np.hypot(WIDTH, HEIGHT) / np.hypot(36, 24) * unit_mm)
+    return ((0x920A, 5, (45, 10)), width, (0xA003, 3, HEIGHT), (0xA20E, 5, (per_unit, 1000)), *unit)
 
 
 def photos(name, change=lambda i, rgb: rgb, **exif):
@@ -49,6 +65,14 @@ def photos(name, change=lambda i, rgb: rgb, **exif):
         with open(f"{name}/photo {i}.png", "wb") as file:
             file.write(with_exif(picture(np.ascontiguousarray(change(i, rgb))), **exif))
     return name
+
+
+def sensors(name, *entries):
+    """Writes a folder of photos, each with its own entries in EXIF."""
+    os.makedirs(name)
+    for i, (rgb, stated) in enumerate(zip(ROOM["image"], entries, strict=True)):
+        with open(f"{name}/photo {i}.png", "wb") as file:
+            file.write(with_exif(picture(rgb), sensor=stated))
 
 
 def blurred(rgb):
@@ -76,11 +100,48 @@ def focal_lengths():
     fx = FOCAL_35MM * np.hypot(WIDTH, HEIGHT) / np.hypot(36, 24)
     check(np.abs(np.stack(got["camera_info"])[:, 0, 0] - fx).max() < 1e-3, f"fx is {got['camera_info'][0][0, 0]}, not {fx}")
     check(np.array_equal(got["image"][2], ROOM["image"][2]), "a picture is not turned upright")
+    # by the sensor, in inches, which is the usual unit, or in others
+    centimetres = (0xA210, 3, 3)
+    sensors("sensors", by_sensor(25.4), by_sensor(10, centimetres), by_sensor(1, (0xA210, 3, 4)),
+            by_sensor(10, centimetres, width=(0xA002, 3, WIDTH)))
+    report = expect_json("import", "sensors", "--poses", "estimate", "-o", "sensors.mcap")
+    check(f"by EXIF of {PHOTOS} of {PHOTOS} pictures, the first {FOCAL_35MM} mm" in report["focal_length"], f"sensors: {report}")
+    found = np.stack(read("sensors.mcap")["camera_info"])[:, 0, 0]
+    check(np.abs(found / fx - 1).max() < 1e-3, f"fx is {found}, not {fx}")
+    # an unknown unit, an implausible length, no width and no length of the lens state nothing
+    sensors("unstated", by_sensor(10, (0xA210, 3, 9)), by_sensor(0.01), by_sensor(25.4, width=(0xA002, 3, 0)), by_sensor(25.4)[1:])
     # estimated
-    report = expect_json("import", "plain", "--poses", "estimate", "-o", "plain.mcap")
+    report = expect_json("import", "unstated", "--poses", "estimate", "-o", "plain.mcap")
     check("estimated from the pictures" in report["focal_length"], f"an estimate: {report}")
     fx, known = read("plain.mcap")["camera_info"][0][0, 0], ROOM["camera_info"][0][0, 0]
     check(abs(fx / known - 1) < 0.12, f"the estimated focal length is {fx}, not {known}")
+
+
+def heic():
+    """HEIC and AVIF are pictures like others, upright, with the focal length of their EXIF; or they are named."""
+    os.makedirs("heic")
+    if expect_json("doctor")["heif"] is None:
+        for ending in ("heic", "avif"):
+            with open(f"heic/a.{ending}", "wb") as file:
+                file.write(b"\0\0\0\x18ftypheic")
+        expect(1, "scene", "heic", "-o", "no.ply", err="heif-convert")
+        return
+    if shutil.which("heif-enc") is None:
+        print("left out: HEIC, as heif-enc is not there")
+        return
+    for i, rgb in enumerate(ROOM["image"]):
+        with open("one.png", "wb") as file:
+            file.write(with_exif(picture(rgb), 1, FOCAL_35MM))
+        name = f"heic/photo {i}." + ("avif" if i == 0 else "HEIC")
+        subprocess.run(["heif-enc", "-L", "-p", "chroma=444", "--matrix_coefficients=0", "one.png", "-o", name], check=True, capture_output=True)
+    report = expect_json("import", "heic", "--poses", "estimate", "-o", "heic.mcap")
+    check(f"of {PHOTOS} pictures, the first {FOCAL_35MM} mm" in report["focal_length"], f"HEIC: {report}")
+    for i, rgb in enumerate(read("heic.mcap")["image"]):
+        check(np.abs(rgb.astype(int) - ROOM["image"][i]).max() <= 2, f"HEIC: picture {i} differs")
+    with open("heic/photo 1.HEIC", "r+b") as file:
+        file.truncate(os.path.getsize("heic/photo 1.HEIC") // 2)
+    report = expect_json("import", "heic", "--poses", "estimate", "-o", "cut.mcap")
+    check(report["frames"] == PHOTOS - 1 and "photo 1.HEIC: HEIF: " in report["left_out"][0], f"a cut HEIC: {report}")
 
 
 def pasted(*arguments):
@@ -167,6 +228,7 @@ with tempfile.TemporaryDirectory(prefix="trim3r-photos-") as folder:
     expect(0, "room", "--frames", PHOTOS, "--size", f"{WIDTH}x{HEIGHT}", "-o", "room.mcap")
     ROOM = read("room.mcap")
     focal_lengths()
+    heic()
     scene_of_photos()
     scene_of_others()
     os.chdir("/")

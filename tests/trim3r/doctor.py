@@ -20,14 +20,16 @@ def lists():
     check({"replay", "v4l2", "libcamera", "opencv"} == set(found["sources"]) and found["sources"]["replay"] is True,
           f"sources: {found['sources']}")
     check(found["formats"].split()[0] == "YUYV" and isinstance(found["cameras"], list), "formats and cameras")
+    check(found["heif"] is None or found["heif"].startswith("libheif "), f"HEIC: {found['heif']}")
     check(found["poses"] is None or found["poses"].startswith("OpenCV "), f"poses: {found['poses']}")
     listed = expect(0, "capture", "--list")
     check(found["formats"] in listed, f"formats: {found['formats']} and {listed}")
     shown = expect(0, "doctor")
     for word in ("trim3r ", "processor", "features", "kernels", "threads", "memory", "sources", "formats", "cameras",
-                 "poses"):
+                 "pictures", "poses"):
         check(any(line.startswith(word) for line in shown.splitlines()), f"no {word} in {shown}")
     check(f"{found['hash']}, as on every machine" in shown, shown)
+    check(max(map(len, (shown + listed).splitlines())) <= 80, f"lines of over 80 columns: {shown}{listed}")
 
 
 def away_from_its_modules():

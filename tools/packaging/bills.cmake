@@ -8,7 +8,7 @@ endif()
 
 # FILE|NAME|VERSION of each library that may be loaded
 set(known "libtrim3r|trim3r|${PROJECT_VERSION}")
-foreach(found CJSON JPEG LZ4 OPENEXR PNG T3R_LIBCAMERA_LIB WEBP ZIP ZLIB ZSTD)
+foreach(found CJSON HEIF JPEG LZ4 OPENEXR PNG T3R_LIBCAMERA_LIB WEBP ZIP ZLIB ZSTD)
   foreach(library ${${found}_LIBRARIES})
     list(APPEND known "lib${library}|${${found}_MODULE_NAME}|${${found}_VERSION}")
   endforeach()

@@ -11,14 +11,14 @@
 
 typedef struct exif_facts {
     uint32_t orientation; /* 1 to 8; EXIF_UPRIGHT where none is stated */
-    uint32_t focal_35mm;  /* focal length in mm that gives a film of 36 x 24 mm the same diagonal field of view; 0 where
-                             none is stated */
+    double focal_35mm; /* focal length in mm that gives a film of 36 x 24 mm the same diagonal field of view, as it is
+                          stated or by the sensor's size; 0 where neither is stated */
 } exif_facts;
 
 /* Reads a block of EXIF: a TIFF header and its directories. */
 exif_facts exif_read(const uint8_t *tiff, size_t count);
 
 /* Returns the focal length in pixels of a picture of that size; focal_35mm as above. */
-double exif_focal_pixels(uint32_t focal_35mm, uint32_t width, uint32_t height);
+double exif_focal_pixels(double focal_35mm, uint32_t width, uint32_t height);
 
 #endif

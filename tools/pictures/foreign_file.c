@@ -5,7 +5,10 @@
 #include <string.h>
 #include <strings.h>
 
-#define HEIF "HEIC is not read; heif-convert IN.heic OUT.jpg makes JPEG of it"
+#include "pictures/heif.h"
+
+#define HEIF                                                                                                           \
+    "HEIC is not read: this build has no libheif (Debian: libheif-dev); heif-convert IN.heic OUT.jpg makes JPEG of it"
 #define WEBP "WebP is not read; dwebp IN.webp -o OUT.png makes PNG of it"
 #define TIFF "TIFF is not read; convert IN.tif OUT.png makes PNG of it"
 #define OTHER "BMP and GIF are not read; convert IN OUT.png makes PNG of them"
@@ -41,7 +44,7 @@ static bool begins(const uint8_t *bytes, size_t count, const struct kind *kind)
 
 const char *foreign_file_of_bytes(const uint8_t *bytes, size_t count)
 {
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds && !heif_is(bytes, count); i++) {
         if (begins(bytes, count, &kinds[i])) {
             return kinds[i].advice;
         }
@@ -52,7 +55,7 @@ const char *foreign_file_of_bytes(const uint8_t *bytes, size_t count)
 const char *foreign_file_of_name(const char *name)
 {
     const char *dot = strrchr(name, '.');
-    for (size_t i = 0; i < sizeof endings / sizeof *endings && dot != NULL; i++) {
+    for (size_t i = 0; i < sizeof endings / sizeof *endings && dot != NULL && !heif_is_named(name); i++) {
         if (strcasecmp(dot, endings[i].name) == 0) {
             return endings[i].advice;
         }

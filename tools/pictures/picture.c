@@ -19,6 +19,7 @@
 #include "host/reason.h"
 #include "pictures/exif.h"
 #include "pictures/foreign_file.h"
+#include "pictures/heif.h"
 #include "trim3r.h"
 
 /* Both libraries report errors by longjmp. Everything that must survive a jump, or be freed after one, is in a struct
@@ -355,7 +356,21 @@ static int read_jpeg(FILE *file, const char *path, extent want, picture *out, ch
     return 0;
 }
 
-/* ---- both ------------------------------------------------------------------------------------------------------ */
+/* ---- HEIC, AVIF ------------------------------------------------------------------------------------------------ */
+
+static int read_heif(FILE *file, const char *path, extent want, picture *out, char *error, size_t error_bytes)
+{
+    char reason[REASON_BYTES] = "out of memory";
+    int status = heif_read(file, want.most_side, want.header_only, out, reason, sizeof reason);
+    status = status == 0 && !want.header_only && out->channels == 4 ? split_alpha(out) : status;
+    if (status != 0) {
+        picture_free(out);
+        return fail(error, error_bytes, path, reason);
+    }
+    return 0;
+}
+
+/* ---- any kind -------------------------------------------------------------------------------------------------- */
 
 static int read_stream(FILE *file, const char *path, extent want, picture *out, char *error, size_t error_bytes)
 {
@@ -378,11 +393,14 @@ static int read_stream(FILE *file, const char *path, extent want, picture *out, 
     if (memcmp(magic, jpeg_magic, sizeof jpeg_magic) == 0) {
         return read_jpeg(file, path, want, out, error, error_bytes);
     }
+    if (heif_is(magic, got)) {
+        return read_heif(file, path, want, out, error, error_bytes);
+    }
     const char *foreign = foreign_file_of_bytes(magic, got);
     return fail(error, error_bytes, path, foreign != NULL ? foreign : "neither PNG nor JPEG");
 }
 
-static int read_either(const char *path, extent want, picture *out, char *error, size_t error_bytes)
+static int read_any(const char *path, extent want, picture *out, char *error, size_t error_bytes)
 {
     memset(out, 0, sizeof *out);
     FILE *file = t3r_file_open(path, error, error_bytes);
@@ -394,7 +412,7 @@ static int read_either(const char *path, extent want, picture *out, char *error,
     return status;
 }
 
-static int parse_either(const uint8_t *bytes, size_t count, extent want, picture *out, char *error, size_t error_bytes)
+static int parse_any(const uint8_t *bytes, size_t count, extent want, picture *out, char *error, size_t error_bytes)
 {
     memset(out, 0, sizeof *out);
     FILE *file = count > 0 ? fmemopen((void *)(uintptr_t)bytes, count, "rb") : NULL; /* only read */
@@ -408,27 +426,27 @@ static int parse_either(const uint8_t *bytes, size_t count, extent want, picture
 
 int picture_parse(const uint8_t *bytes, size_t count, picture *out, char *error, size_t error_bytes)
 {
-    return parse_either(bytes, count, (extent){.most_side = T3R_MAX_SIDE}, out, error, error_bytes);
+    return parse_any(bytes, count, (extent){.most_side = T3R_MAX_SIDE}, out, error, error_bytes);
 }
 
 int picture_parse_large(const uint8_t *bytes, size_t count, picture *out, char *error, size_t error_bytes)
 {
-    return parse_either(bytes, count, (extent){.most_side = PICTURE_LARGEST_SIDE}, out, error, error_bytes);
+    return parse_any(bytes, count, (extent){.most_side = PICTURE_LARGEST_SIDE}, out, error, error_bytes);
 }
 
 int picture_read(const char *path, picture *out, char *error, size_t error_bytes)
 {
-    return read_either(path, (extent){.most_side = T3R_MAX_SIDE}, out, error, error_bytes);
+    return read_any(path, (extent){.most_side = T3R_MAX_SIDE}, out, error, error_bytes);
 }
 
 int picture_read_large(const char *path, picture *out, char *error, size_t error_bytes)
 {
-    return read_either(path, (extent){.most_side = PICTURE_LARGEST_SIDE}, out, error, error_bytes);
+    return read_any(path, (extent){.most_side = PICTURE_LARGEST_SIDE}, out, error, error_bytes);
 }
 
 int picture_header(const char *path, picture *out, char *error, size_t error_bytes)
 {
-    return read_either(path, (extent){PICTURE_LARGEST_SIDE, true}, out, error, error_bytes);
+    return read_any(path, (extent){PICTURE_LARGEST_SIDE, true}, out, error, error_bytes);
 }
 
 int picture_size(const char *path, uint32_t *width, uint32_t *height, char *error, size_t error_bytes)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures on disk: PNG (8-bit RGB or grey, 16-bit grey) through libpng, JPEG through libjpeg-turbo. */
+/* Pictures on disk: PNG (8-bit RGB or grey, 16-bit grey) through libpng, JPEG through libjpeg-turbo, HEIC and AVIF
+ * through libheif. */
 #ifndef TRIM3R_TOOLS_PICTURE_H
 #define TRIM3R_TOOLS_PICTURE_H
 
@@ -17,7 +18,7 @@ typedef struct picture {
     void *samples;     /* uint8_t or uint16_t (host order), rows without gaps; picture_free() */
     uint8_t *valid;    /* 8 bits: 0 for each pixel that alpha makes transparent by half or more; NULL: there is none */
     uint32_t orientation; /* 1 to 8 as EXIF defines it: how the stored pixels are to be turned; 1: not */
-    uint32_t focal_35mm;  /* focal length in mm in terms of a 36 x 24 mm film, as EXIF states it; 0: unknown */
+    double focal_35mm;    /* focal length in mm in terms of a 36 x 24 mm film, by EXIF; 0: unknown */
 } picture;
 
 /* Reads a picture. Returns 0, or -1 with "what, where" in error[]. Sizes over T3R_MAX_SIDE are refused. PNG palettes

@@ -72,7 +72,7 @@ static int find_turn(const posed_frame *frame, const picture *p, bool *turn, cha
 }
 
 int import_picture_facts(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height,
-                         uint32_t *focal_35mm, char *error, size_t error_bytes)
+                         double *focal_35mm, char *error, size_t error_bytes)
 {
     picture header = {0};
     bool turn = false;
@@ -92,7 +92,7 @@ int import_picture_facts(const char *directory, const posed_frame *frame, uint32
 int import_picture_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
                         size_t error_bytes)
 {
-    uint32_t focal_35mm;
+    double focal_35mm;
     return import_picture_facts(directory, frame, width, height, &focal_35mm, error, error_bytes);
 }
 

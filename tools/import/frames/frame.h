@@ -17,7 +17,7 @@ int import_picture_size(const char *directory, const posed_frame *frame, uint32_
 
 /* Reads the same, and the focal length that EXIF states in terms of 35 mm film; 0: none. */
 int import_picture_facts(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height,
-                         uint32_t *focal_35mm, char *error, size_t error_bytes);
+                         double *focal_35mm, char *error, size_t error_bytes);
 
 /* Reads the sides of its depth; the frame must have depth. */
 int import_depth_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,

@@ -15,12 +15,14 @@
 #include "host/reason.h"
 #include "mcap/reader_limits.h"
 #include "pictures/foreign_file.h"
+#include "pictures/heif.h"
 
 static int is_picture(const struct dirent *entry)
 {
     const char *dot = strrchr(entry->d_name, '.');
     return entry->d_name[0] != '.' && dot != NULL &&
-           (strcasecmp(dot, ".png") == 0 || strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0);
+           (strcasecmp(dot, ".png") == 0 || strcasecmp(dot, ".jpg") == 0 || strcasecmp(dot, ".jpeg") == 0 ||
+            heif_is_named(dot));
 }
 
 static int is_foreign(const struct dirent *entry)

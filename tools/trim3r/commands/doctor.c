@@ -18,15 +18,18 @@
 #include "cli/options/option_values.h"
 #include "cli/options/processor_options.h"
 #include "cli/tables/json_output.h"
+#include "cli/text/wrapped.h"
 #include "host/cpu.h"
 #include "host/text.h"
 #include "kernels/kernels.h"
+#include "pictures/heif.h"
 #include "posing/opencv_module.h"
 #include "trim3r_capture.h"
 
 #define CAMERAS_FOLDER "/sys/class/video4linux"
 #define CAMERAS_MOST 64
 #define CAMERA_BYTES 128
+#define INDENT 13u /* of what is found, after the names */
 
 typedef struct options {
     uint64_t expected;
@@ -181,6 +184,8 @@ static void print_json(const machine *m, const options *o)
     for (uint32_t i = 0; i < m->cameras.count; i++) {
         cJSON_AddItemToArray(cameras, cJSON_CreateString(m->cameras.name[i]));
     }
+    cJSON_AddItemToObject(root, "heif",
+                          heif_library() != NULL ? cJSON_CreateString(heif_library()) : cJSON_CreateNull());
     cJSON_AddItemToObject(root, "poses", m->poses != NULL ? cJSON_CreateString(m->poses->version) : cJSON_CreateNull());
     json_add_hash(root, "hash", m->hash);
     json_add_hash(root, "expected", o->expected);
@@ -190,16 +195,17 @@ static void print_json(const machine *m, const options *o)
 
 static void print_text(const machine *m, const options *o)
 {
+    char line[512];
     printf("%-12s %s, bits epoch %d\n", "trim3r", T3R_VERSION, T3R_BITS_EPOCH);
     printf("%-12s %s\n", "processor", m->cpu[0] != '\0' ? m->cpu : "unnamed");
     printf("%-12s %s; used: %s\n", "features", m->features, m->used);
-    printf("%-12s", "kernels");
-    bench_kernels_print(&m->kernels, stdout);
+    bench_kernels_print(&m->kernels, INDENT);
     printf("%-12s %ld processors; used: %" PRIu32 "\n", "threads", m->processors, o->processor.threads);
     printf("%-12s %" PRId64 " MiB, %" PRId64 " MiB free\n", "memory", m->memory >> 20, m->available >> 20);
     for (uint32_t i = 0; i < t3r_capture_adapter_count(); i++) {
         const t3r_capture_adapter adapter = t3r_capture_adapter_of(i);
-        printf("%-12s %s: %s\n", i == 0 ? "sources" : "", adapter.name, adapter.says);
+        snprintf(line, sizeof line, "%s: %s", adapter.name, adapter.says);
+        wrapped_print(stdout, INDENT, i == 0 ? "sources" : "", line);
     }
     printf("%-12s %s\n", "formats", t3r_capture_formats());
     for (uint32_t i = 0; i < m->cameras.count; i++) {
@@ -208,7 +214,10 @@ static void print_text(const machine *m, const options *o)
     if (m->cameras.count == 0) {
         printf("%-12s none\n", "cameras");
     }
-    printf("%-12s %s\n", "poses", m->poses != NULL ? m->poses->version : m->no_poses);
+    snprintf(line, sizeof line, "PNG, JPEG; HEIC and AVIF: %s",
+             heif_library() != NULL ? heif_library() : "not in this build");
+    wrapped_print(stdout, INDENT, "pictures", line);
+    wrapped_print(stdout, INDENT, "poses", m->poses != NULL ? m->poses->version : m->no_poses);
     char text[HASH_TEXT_BYTES];
     hash_text(m->hash, text);
     printf("%-12s %s, %s\n", "self-check", text, m->hash == o->expected ? "as on every machine" : "wrong");
