@@ -13,6 +13,7 @@ scripts = os.path.join(tools, "study", "scripts")
 PAGES = ("results", "paper", "stability", "colours", "stream", "cost", "speed", "formats")
 WRONG = {  # beside an unknown option
     **{name: [["nothing"]] for name in PAGES},
+    "gallery": [["room.mcap"], ["-o", "folder"], ["room.mcap", "-o", "folder", "--check"]],
     "live": [["--runs", "few"]],
     "pages": [["nothing"], ["results", "--all"], ["--minutes", "few"]],
     "paper": [["nothing"], ["--write", "--quick"], ["transfer", "--write"], ["--head-of", "x"]],
@@ -25,7 +26,7 @@ for folder, _, names in os.walk(tools):
             check(file.read(2) != b"#!" or os.access(path, os.X_OK), f"{path} is a script that does not start")
 
 need_opencv()
-for name in (*PAGES, "live", "pages"):
+for name in (*PAGES, "gallery", "live", "pages"):
     script = os.path.join(scripts, name)
     text = run(script, "--help").stdout
     check(text.startswith("usage: " + name) and f"tools/study/scripts/{name}" in text, f"{name} --help has a usage and examples")
