@@ -19,8 +19,8 @@ typedef struct bench_kernel {
 /* Lists the entries that have variants in this build, in the table's order; returns their number. */
 uint32_t bench_kernels_of(const t3r_kernels *kernels, bench_kernel list[BENCH_KERNELS_MOST]);
 
-/* Prints the entries by instruction set, in lines as of wrapped_print(). Entries that are not listed exist only in plain
- * C. */
+/* Prints the entries by instruction set, in lines as of wrapped_print(). Entries that are not listed exist only in
+ * plain C. */
 void bench_kernels_print(const t3r_kernels *kernels, uint32_t indent);
 /* Adds an object "kernels" with the set of each entry. */
 void bench_kernels_add_json(cJSON *root, const t3r_kernels *kernels);
