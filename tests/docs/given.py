@@ -6,13 +6,18 @@ import re
 import shutil
 import struct
 import subprocess
+import sys
 import zipfile
 
+import mcap_read
 import pages
 from png import png
 
+sys.path.append(str(pages.ROOT / "tests" / "import"))  # ros_bag, which needs numpy
+
 SIDE = 40, 30  # size of synthetic pictures
 ROOM = 64  # side of the room.mcap with which most pages begin
+WALK = 96  # of the frames in the bag
 
 
 class Given:
@@ -108,6 +113,28 @@ def trajectory(given, path):
     path.write_text("".join(f"{i / 30:.6f} {i / 50} 0 0 0 0 0 1\n" for i in range(9)))
 
 
+def bag(given, path):
+    """Makes a robot's bag: a folder of rosbag2 with a RealSense's topics, and poses of the robot's body on /tf."""
+    import ros_bag as ros
+
+    given.run("room", "--size", f"{WALK}x{WALK}", "--frames", 12, "-o", "walk.mcap")
+    names = {"/camera/image": ("/camera/color/image_raw", ros.IMAGE), "/camera/camera_info": ("/camera/color/camera_info", ros.INFO),
+             "/camera/depth": ("/camera/aligned_depth_to_color/image_raw", ros.IMAGE)}
+    recorded, ahead = ros.Bag(), (0, 0, 0.1)  # of the camera, seen from the body
+    recorded.put("/tf_static", ros.TF, 0, ros.transforms((0, "base_link", "camera", ahead, ros.UPRIGHT)))
+    for topic, ns, message in mcap_read.messages((given.folder / "walk.mcap").read_bytes()):
+        if topic in names:
+            recorded.put(*names[topic], ns, message)
+        elif topic == "/camera/pose":
+            _, (*place, x, y, z, w) = mcap_read.pose(message)
+            forward = 2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)
+            body = [p - ahead[2] * f for p, f in zip(place, forward)]
+            recorded.put("/tf", ros.TF, ns, ros.transforms((ns, "map", "base_link", body, (x, y, z, w))))
+    path.mkdir()
+    recorded.write(path / "robot_0.mcap")
+    (path / "metadata.yaml").write_text("rosbag2_bagfile_information:\n  relative_file_paths:\n    - robot_0.mcap\n")
+
+
 def importance(given, path):
     path.mkdir()
     for frame in range(2):
@@ -163,4 +190,4 @@ def write_json(path, value):
 
 MAKERS = {"room.mcap": recording, "photos/": photos, "photo.png": photo, "posed/": posed, "tum/": tum, "colmap/": colmap,
           "scannet/": scannet, "record3d/": record3d, "tracker.txt": trajectory, "importance/": importance,
-          "small.safetensors": head, "theirs.ply": scene, "dust3r.npz": pointmaps, "example.c": example}
+          "small.safetensors": head, "theirs.ply": scene, "dust3r.npz": pointmaps, "example.c": example, "robot/": bag}
