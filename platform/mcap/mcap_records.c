@@ -117,6 +117,10 @@ bool t3r_mcap_pair_of(t3r_mcap_fields *pairs, t3r_text *key, t3r_text *value)
     return !pairs->failed;
 }
 
+#define T3R_MCAP_SCENE "a scene, not a recording: trim3r view, render and convert read it"
+#define T3R_MCAP_VIDEO "a video: ffmpeg -i FILE FOLDER/%05d.png makes a folder of pictures"
+#define T3R_MCAP_PICTURE "a picture: name the folder of pictures that it is in"
+
 const char *t3r_mcap_other_file(const uint8_t *bytes, size_t count)
 {
     static const struct {
@@ -129,8 +133,16 @@ const char *t3r_mcap_other_file(const uint8_t *bytes, size_t count)
         {0, 4, "\x28\xb5\x2f\xfd", "packed with zstd: zstd -d unpacks it"},
         {0, 2, "\x1f\x8b", "packed with gzip: gzip -d unpacks it"},
         {0, 4, "PK\3\4", "a ZIP archive: unzip it, and import the folder"},
-        {4, 4, "ftyp", "a video or HEIC picture: ffmpeg -i FILE FOLDER/%05d.png makes a folder of pictures"},
-        {0, 4, "\x1a\x45\xdf\xa3", "a video: ffmpeg -i FILE FOLDER/%05d.png makes a folder of pictures"},
+        {4, 7, "ftyphei", T3R_MCAP_PICTURE},
+        {4, 8, "ftypmif1", T3R_MCAP_PICTURE},
+        {4, 8, "ftypavif", T3R_MCAP_PICTURE},
+        {4, 4, "ftyp", T3R_MCAP_VIDEO},
+        {0, 4, "\x1a\x45\xdf\xa3", T3R_MCAP_VIDEO},
+        {0, 3, "ply", T3R_MCAP_SCENE},
+        {0, 4, "glTF", T3R_MCAP_SCENE},
+        {0, 4, "NGSP", T3R_MCAP_SCENE},
+        {0, 4, "\x89PNG", T3R_MCAP_PICTURE},
+        {0, 3, "\xff\xd8\xff", T3R_MCAP_PICTURE},
     };
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         if (count >= files[i].at + files[i].bytes && memcmp(bytes + files[i].at, files[i].start, files[i].bytes) == 0) {

@@ -174,9 +174,28 @@ def scene_of_photos():
         check(file.read() == scene, "the pasted commands make another scene")
     code, _, message = run("scene", "room.mcap", "-o", "page.html")
     check((code == 0 and os.path.getsize("page.html") > 100000) or "without the page" in message, f"a page: {code} {message}")
+    if code == 0:
+        expect(0, "scene", "my photos", "-o", "page.html")
+        with open("page.html", encoding="utf-8") as file:
+            page = file.read()
+        check('"my photos"' in page and "trim3r-scene-" not in page, "the page is not named after the photos")
     text = expect(0, "scene", "my photos", "--recording", "kept.mcap", "--size", "96x72", "--keep", "5%", "-o", "small.spz")
     check(len(text.splitlines()) == 5 and "photo 3.png" in text, f"not five lines: {text}")
     check(read("kept.mcap")["image"][0].shape == (72, 96, 3), "--size")
+
+
+def bag_of_the_room(path, k, kind):
+    bag = ros.Bag()
+    bag.put("/tf_static", ros.TF, 0, ros.transforms((0, "base", "cam", (0, 0, 0), ros.UPRIGHT)))
+    for i, rgb in enumerate(ROOM["image"]):
+        ns, place, (w, x, y, z) = (i + 1) * ros.SECOND, ROOM["pose"][i][:3, 3], quaternion(ROOM["pose"][i])
+        bag.put("/cam/camera_info", ros.INFO, ns, ros.info(ns, "cam", (k[0, 0], k[1, 1], k[0, 2], k[1, 2]), (WIDTH, HEIGHT)))
+        if kind == ros.POSE:
+            bag.put("/pose", ros.POSE, ns, ros.pose(ns, "map", place, (x, y, z, w)))
+        if kind == ros.TF:
+            bag.put("/tf", ros.TF, ns, ros.transforms((ns, "map", "base", place, (x, y, z, w))))
+        bag.put("/cam/image_raw", ros.IMAGE, ns, ros.image(ns, "cam", "rgb8", rgb))
+    bag.write(path)
 
 
 def scene_of_others():
@@ -199,15 +218,12 @@ def scene_of_others():
     report = expect_json("scene", "posed", "-o", "posed.ply")
     check(report["kind"] == "transforms.json" and report["depth"] == "stereo" and not report["estimated"], f"a folder: {report}")
     check("--poses" not in expect(0, "scene", "posed", "--dry-run", "-o", "posed.ply"), "given poses are estimated")
-    # a bag
-    bag = ros.Bag()
-    for i, rgb in enumerate(ROOM["image"]):
-        ns, place, (w, x, y, z) = (i + 1) * ros.SECOND, ROOM["pose"][i][:3, 3], quaternion(ROOM["pose"][i])
-        bag.put("/cam/camera_info", ros.INFO, ns, ros.info(ns, "cam", (k[0, 0], k[1, 1], k[0, 2], k[1, 2]), (WIDTH, HEIGHT)))
-        bag.put("/pose", ros.POSE, ns, ros.pose(ns, "map", place, (x, y, z, w)))
-        bag.put("/cam/image_raw", ros.IMAGE, ns, ros.image(ns, "cam", "rgb8", rgb))
-    bag.write("bag.mcap")
-    report = expect_json("scene", "bag.mcap", "-o", "bag.ply")
+    # bags: poses of the camera, or of a body by transforms, and transforms that say nothing of where the camera is
+    for name, kind in (("posed bag", ros.POSE), ("robot", ros.TF), ("still", None)):
+        bag_of_the_room(f"{name}.mcap", k, kind)
+        lines = expect(0, "scene", f"{name}.mcap", "--dry-run", "-o", "bag.ply")
+        check(("--poses estimate" in lines) == (kind is None), f"{name}: {lines}")
+    report = expect_json("scene", "robot.mcap", "-o", "bag.ply")
     check(report["posed_frames"] == PHOTOS and not report["estimated"] and report["depth"] == "stereo" and
           all(p["psnr"] > 22 for p in report["pictures"] if p["chosen"]), f"a bag: {report}")
     # what cannot become a scene
@@ -216,6 +232,8 @@ def scene_of_others():
     expect(1, "scene", "one", "-o", "no.ply", err="two or more are needed")
     os.makedirs("none")
     expect(1, "scene", "none", "-o", "no.ply", err="no pictures")
+    expect(1, "scene", "bag.ply", "-o", "no.ply", err="a scene, not a recording")
+    expect(1, "scene", "one/a.png", "-o", "no.ply", err="name the folder")
     expect(1, "scene", "absent", "-o", "no.ply", err="No such file")
     expect(2, "scene", "plain", "-o", "no.txt", err="no.txt")
     expect(2, "scene", "plain", "--keep", 5, "--gaussians", 5, "-o", "no.ply", err="exclude each other")

@@ -303,7 +303,12 @@ TEST(foreign_and_empty_files_are_refused)
     } files[] = {
         {"", 0, "the file is empty"},
         {"\x89MCA", 4, "cut off inside the magic"},
-        {"\x89PNG\r\n\x1a\n rest", 13, "not an MCAP file"},
+        {"\x89PNG\r\n\x1a\n rest", 13, "a picture: name the folder"},
+        {"\xff\xd8\xff\xe0 rest", 9, "a picture: name the folder"},
+        {"ply\nformat ascii", 16, "a scene, not a recording"},
+        {"glTF\2\0\0\0", 8, "a scene, not a recording"},
+        {"NGSP\4\0\0\0", 8, "a scene, not a recording"},
+        {"plain text", 10, "not an MCAP file"},
         {"#ROSBAG V2.0\n", 13, "a bag of ROS 1"},
         {"SQLite format 3", 16, "mcap convert"},
         {"\x89MCAP1\r\n\x01", 9, "an MCAP version other than 0"},

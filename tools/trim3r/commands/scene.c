@@ -226,6 +226,7 @@ static int run_build(plan *p, scene_run *run)
         view_options options;
         view_defaults(&options);
         line_parse(&p->build, &view_argp, &options);
+        options.title = run->report.input; /* the recording may be temporary */
         options.after = after_build;
         options.user = run;
         return view_run(&options);

@@ -279,6 +279,16 @@ static const char *last_part(const char *path)
     return slash != NULL ? slash + 1 : path;
 }
 
+static void name_page(const view_options *o, char *title, size_t bytes)
+{
+    if (o->title != NULL) {
+        snprintf(title, bytes, "%s", o->title);
+    } else {
+        snprintf(title, bytes, "%s%s%s", last_part(o->inputs[0]), o->inputs[1] != NULL ? " and " : "",
+                 o->inputs[1] != NULL ? last_part(o->inputs[1]) : "");
+    }
+}
+
 static int show(const view_options *o, const scene_file *scene, reconstruction *r)
 {
     char title[256];
@@ -291,8 +301,7 @@ static int show(const view_options *o, const scene_file *scene, reconstruction *
                         .is_served = o->output == NULL,
                         .follows = o->follow != NULL,
                         .is_file = o->scene != NULL};
-    snprintf(title, sizeof title, "%s%s%s", last_part(o->inputs[0]), o->inputs[1] != NULL ? " and " : "",
-             o->inputs[1] != NULL ? last_part(o->inputs[1]) : "");
+    name_page(o, title, sizeof title);
     int code = CLI_OK;
     if (o->recording != NULL) {
         code = prepare_recording(o, r, &v, &path, &page);

@@ -3,6 +3,7 @@
 
 #include "cli/cli.h"
 #include "host/reason.h"
+#include "import/bags/bag_frames.h"
 #include "import/bags/bag_pictures.h"
 #include "import/folders/posed_folder.h"
 #include "import/frames/frame.h"
@@ -10,6 +11,7 @@
 #include "recording/recording.h"
 
 #define ERROR_BYTES 1024
+#define SAMPLED_MOST 8u /* frames of a bag whose poses are composed before it is imported */
 
 static int look_at_folder(scene_source *source, const char *path)
 {
@@ -35,6 +37,25 @@ static int look_at_folder(scene_source *source, const char *path)
     return status == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
+/* Returns to how many frames import gives a pose, by transforms or from another frame; found by a sample of them. */
+static uint32_t composed_poses(const t3r_recording *recording)
+{
+    char error[ERROR_BYTES];
+    bag_frames frames;
+    const uint32_t count = t3r_recording_frame_count(recording), sampled = count < SAMPLED_MOST ? count : SAMPLED_MOST;
+    uint32_t made = 0;
+    const int status = bag_frames_open(&frames, recording, &(bag_frames_options){0}, error, sizeof error);
+    for (uint32_t i = 0; i < sampled && status == 0; i++) {
+        const uint32_t index = (uint32_t)((uint64_t)i * count / sampled);
+        t3r_capture_frame frame;
+        made += t3r_recording_frame(recording, index, &frame, error, sizeof error) == T3R_CAPTURE_FRAME &&
+                bag_frames_make(&frames, index, &frame, error, sizeof error) == 0;
+    }
+    const uint32_t posed = made > frames.unposed ? made - frames.unposed : 0;
+    bag_frames_close(&frames);
+    return sampled > 0 ? (uint32_t)((uint64_t)posed * count / sampled) : 0;
+}
+
 static int look_at_recording(scene_source *source, const char *path)
 {
     char error[ERROR_BYTES] = "";
@@ -48,7 +69,7 @@ static int look_at_recording(scene_source *source, const char *path)
     source->is_recording = t3r_recording_import_reason(recording)[0] == '\0';
     source->kind = source->is_recording ? "a recording" : "a bag";
     source->frames = t3r_recording_frame_count(recording);
-    source->posed = pairing.with_pose;
+    source->posed = pairing.with_pose > 0 || source->is_recording ? pairing.with_pose : composed_poses(recording);
     source->with_depth = pairing.with_depth;
     for (uint32_t i = 0; i < source->frames && source->width == 0; i++) {
         t3r_capture_frame frame;
