@@ -229,9 +229,9 @@ void stream_print(const stream_run *s, uint64_t hash)
     const live_options *o = &s->map.options;
     const work w = work_of(s);
     char spread[LATENCY_TEXT_BYTES];
-    printf("%s: %" PRIu64 " keyframes of %" PRIu32 " frames\n", s->path, w.times.count, s->is.next);
-    printf("a keyframe%s: %s; %.1f a second\n", s->options->no_hash ? " without hashes" : "",
-           latency_text(&w.times, spread), latency_rate(&w.times));
+    printf("%s: %" PRIu64 " keyframes of %" PRIu32 " frames, %.1f a second%s\n", s->path, w.times.count, s->is.next,
+           latency_rate(&w.times), s->options->no_hash ? " without hashes" : "");
+    printf("a keyframe: %s\n", latency_text(&w.times, spread));
     print_skipped(s);
     print_means(s);
     if (o->scene != NULL) {

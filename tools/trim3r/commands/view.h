@@ -12,7 +12,7 @@ typedef struct view_options {
     const char *scene, *recording; /* which of them is which; NULL = not given */
     const char *output;            /* NULL = the page is served */
     const char *follow;            /* lines of the run that makes the scene; NULL = the scene does not change */
-    const char *title; /* of the page; NULL = the names of the inputs */
+    const char *title;             /* of the page; NULL = the names of the inputs */
     uint16_t port;
     bool json;
     uint32_t compare[T3R_MAX_VIEWS], compare_count;
