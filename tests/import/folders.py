@@ -23,7 +23,7 @@ from checks import check, done  # noqa: E402
 from folder_makers import (FRAMES, HEIGHT, ROOM, UNIT, WIDTH, colmap, colmap_binary, colmap_text, imported,  # noqa: E402
                            lens_option, make_room, matrix_text, pictures, pose_files, record3d, refused, same,
                            seven_scenes, transforms, write)
-from frames import exr, picture  # noqa: E402
+from frames import exr, picture, read  # noqa: E402
 from program import run  # noqa: E402
 
 
@@ -54,6 +54,36 @@ def test_nerfstudio():
           f"two depth pictures: {report}")
     refused(transforms("bad_unit", depth_unit_scale_factor=200), "depth_unit_scale_factor: not between")
     refused(transforms("no_unit", "depth_path"), "integer_depth_scale: missing")
+
+
+def check_inner(name, report, got):
+    """Checks that it is the room inside a border of 3, 2, 4 and 1 pixels."""
+    part = np.s_[2:HEIGHT - 1, 3:WIDTH - 4]
+    check(report["border"] == [3, 2, 4, 1], f"{name}: {report['border']}")
+    for what in ("image", "depth"):
+        check(np.array_equal(got.get(what, []), [whole[part] for whole in ROOM[what]]), f"{name}: {what}")
+    moved = ROOM["camera_info"][0] - [[0, 0, 3], [0, 0, 2], [0, 0, 0]]
+    check(np.abs(got["camera_info"][0] - moved).max() < 1e-3, f"{name}: the camera is {got['camera_info'][0]}")
+
+
+def test_border():
+    """A border around all pictures is left out of folders and of recordings, with its depth; the camera follows."""
+    transforms("border")
+    for i, whole in enumerate(ROOM["image"]):
+        framed = np.full_like(whole, 250)
+        framed[2:HEIGHT - 1, 3:WIDTH - 4] = whole[2:HEIGHT - 1, 3:WIDTH - 4]
+        write(f"border/images/frame_{i:05d}.png", picture(framed))
+    check_inner("a folder with a border", *imported("border"))
+    status, out, _ = run("import", "border", "-o", "border.mcap")
+    check(status == 0 and "3, 2, 4 and 1 pixels on the left, top, right and bottom; --keep-border keeps it" in out, out)
+    report, got = imported("border", "--keep-border")
+    check(report["border"] == [0] * 4 and np.array_equal(got["depth"], ROOM["depth"]), "a border that is kept")
+    os.rename("border.mcap", "kept.mcap")
+    status, out, error = run("import", "kept.mcap", "-o", "inner.mcap", "--json")
+    check(status == 0, f"a recording with a border: {error}")
+    check_inner("a recording with a border", json.loads(out), read("inner.mcap"))
+    report, got = imported("border", "--size", "32x24")
+    check(report["border"] == [3, 2, 4, 1] and report["width"] == 32, f"a border and a size: {report}")
 
 
 def test_colmap():
@@ -403,7 +433,7 @@ def exr_of_opencv():
     same("OpenCV's OpenEXR", imported(path)[1])
 
 
-TESTS = [test_record3d, test_exr, test_pictures_without_pose, test_pose_files, test_lost_poses, test_depth_of_another_lens, test_depth_from_beside, test_seven_scenes, test_dense_depth, test_unreadable, test_pose_file_refusals, test_nerfstudio, test_colmap, test_several_models, test_stereo_of_colmap, test_colmap_refusals, test_colmap_itself]
+TESTS = [test_border, test_record3d, test_exr, test_pictures_without_pose, test_pose_files, test_lost_poses, test_depth_of_another_lens, test_depth_from_beside, test_seven_scenes, test_dense_depth, test_unreadable, test_pose_file_refusals, test_nerfstudio, test_colmap, test_several_models, test_stereo_of_colmap, test_colmap_refusals, test_colmap_itself]
 
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)

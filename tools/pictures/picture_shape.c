@@ -96,6 +96,25 @@ uint32_t picture_reduction(uint32_t width, uint32_t height)
     return (longer + T3R_MAX_SIDE - 1) / T3R_MAX_SIDE;
 }
 
+/* Moves the part of a plane of `bytes` a pixel to its start. */
+static void crop_plane(uint8_t *plane, uint32_t width, uint32_t bytes, const t3r_crop *part)
+{
+    for (uint32_t y = 0; y < part->height; y++) {
+        memmove(plane + (size_t)y * part->width * bytes, plane + ((size_t)(part->y + y) * width + part->x) * bytes,
+                (size_t)part->width * bytes);
+    }
+}
+
+void picture_crop(picture *p, const t3r_crop *part)
+{
+    crop_plane(p->samples, p->width, p->channels * p->bits / 8, part);
+    if (p->valid != NULL) {
+        crop_plane(p->valid, p->width, 1, part);
+    }
+    p->width = part->width;
+    p->height = part->height;
+}
+
 int picture_keep_bright(picture *p)
 {
     static const uint8_t black[3] = {0};

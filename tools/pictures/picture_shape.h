@@ -4,6 +4,7 @@
 #define TRIM3R_TOOLS_PICTURE_SHAPE_H
 
 #include "pictures/picture.h"
+#include "trim3r_host.h"
 
 /* Turns an 8-bit picture as its orientation demands. Returns 0, or -1 when out of memory. */
 int picture_turn(picture *p);
@@ -13,6 +14,9 @@ int picture_turn(picture *p);
 void picture_reduce(picture *p, uint32_t n);
 /* Returns the least n that makes both sides at most T3R_MAX_SIDE; 1 for pictures that are that small. */
 uint32_t picture_reduction(uint32_t width, uint32_t height);
+
+/* Keeps the part of a picture. */
+void picture_crop(picture *p, const t3r_crop *part);
 
 /* Marks the black pixels of an 8-bit picture invalid, and all others valid. Returns 0, or -1 when out of memory. */
 int picture_keep_bright(picture *p);

@@ -3,6 +3,7 @@
  * `recording_tool seeds FOLDER` (tests/recordings). */
 #include <stdlib.h>
 
+#include "import/bags/bag_border.h"
 #include "import/bags/bag_frames.h"
 #include "import/bags/bag_pictures.h"
 #include "import/bags/bag_size.h"
@@ -30,12 +31,15 @@ static void make_frames(t3r_recording *recording, bag_frames *frames, bag_pictur
 {
     char error[256];
     bag_size sized = {.width = 24, .height = 16};
+    picture_inner inner;
+    (void)bag_border_find(recording, &inner);
     for (uint32_t i = 0; i < t3r_recording_frame_count(recording) && i < MOST_FRAMES; i++) {
         t3r_capture_frame frame;
         error[0] = '\0';
         bool read = t3r_recording_frame(recording, i, &frame, error, sizeof error) == T3R_CAPTURE_FRAME &&
                     bag_frames_make(frames, i, &frame, error, sizeof error) == 0 &&
                     bag_pictures_hide(pictures, &frame.frame, frame.straightened) == 0 &&
+                    bag_border_cut(&inner, &frame, error, sizeof error) == 0 &&
                     bag_size_apply(&sized, &frame, error, sizeof error) == 0;
         if (!read && error[0] == '\0') {
             abort();

@@ -12,17 +12,32 @@
 
 #define TILE T3R_MAX_SIDE /* even, so that pixels which share a colour stay together */
 
+void bag_size_crop(const t3r_crop *part, t3r_frame *frame)
+{
+    frame->width = part->width;
+    frame->height = part->height;
+    frame->planes[0] += (size_t)part->y * frame->stride_bytes[0] + t3r_pixel_row_bytes(frame->format, part->x);
+    if (frame->format == T3R_PIXEL_NV12) {
+        frame->planes[1] += (size_t)part->y / 2 * frame->stride_bytes[1] + part->x;
+    }
+}
+
+void bag_size_crop_camera(const t3r_crop *part, t3r_camera *camera)
+{
+    camera->cx_q16 -= (int32_t)(part->x << 16);
+    camera->cy_q16 -= (int32_t)(part->y << 16);
+    camera->width = camera->width != 0 ? part->width : 0;
+    camera->height = camera->height != 0 ? part->height : 0;
+}
+
 /* Returns the part of a frame that begins at (x, y), both even, with at most TILE pixels along each side. */
 static t3r_frame tile_of(const t3r_frame *frame, uint32_t x, uint32_t y)
 {
+    const t3r_crop part = {x, y, frame->width - x < TILE ? frame->width - x : TILE,
+                           frame->height - y < TILE ? frame->height - y : TILE};
     t3r_frame tile = *frame;
     tile.depth = NULL;
-    tile.width = frame->width - x < TILE ? frame->width - x : TILE;
-    tile.height = frame->height - y < TILE ? frame->height - y : TILE;
-    tile.planes[0] += (size_t)y * frame->stride_bytes[0] + t3r_pixel_row_bytes(frame->format, x);
-    if (frame->format == T3R_PIXEL_NV12) {
-        tile.planes[1] += (size_t)y / 2 * frame->stride_bytes[1] + x;
-    }
+    bag_size_crop(&part, &tile);
     return tile;
 }
 
@@ -80,8 +95,7 @@ static int resize_depth(bag_size *size, const t3r_crop *part, t3r_frame *f)
 static bool resize_camera(const bag_size *size, const t3r_crop *crop, t3r_capture_frame *frame)
 {
     t3r_camera part = frame->camera;
-    part.cx_q16 -= (int32_t)(crop->x << 16);
-    part.cy_q16 -= (int32_t)(crop->y << 16);
+    bag_size_crop_camera(crop, &part);
     frame->camera = t3r_camera_resized(&part, crop->width, crop->height, size->width, size->height);
     t3r_camera posed = frame->camera;
     if (!frame->has_pose) {

@@ -8,11 +8,17 @@
 
 #include "pictures/picture.h"
 #include "trim3r_capture.h"
+#include "trim3r_host.h"
 
 typedef struct bag_size {
     uint32_t width, height; /* 0: as the frames are */
     picture colour, depth;  /* the last frame's */
 } bag_size;
+
+/* Keeps the part of a frame's colour; its edges are even where colours share pixels. */
+void bag_size_crop(const t3r_crop *part, t3r_frame *frame);
+/* Adapts intrinsics to the part. */
+void bag_size_crop_camera(const t3r_crop *part, t3r_camera *camera);
 
 /* Converts colour of any format, with sides up to PICTURE_LARGEST_SIDE, to RGB. Returns NULL, or what is wrong. */
 const char *bag_size_colour(const t3r_frame *frame, picture *out);

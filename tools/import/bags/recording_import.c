@@ -10,6 +10,7 @@
 #include "cli/files/whole_file.h"
 #include "cli/tables/json_output.h"
 #include "host/reason.h"
+#include "import/bags/bag_border.h"
 #include "import/bags/bag_pictures.h"
 #include "import/bags/bag_size.h"
 #include "import/estimation/poses_output.h"
@@ -30,6 +31,7 @@ typedef struct made_frames {
     bag_pictures *pictures;
     bag_frames *frames;
     const estimation *estimated;
+    picture_inner inner;
     bag_size size;
     bool given;     /* the intrinsics are those of the command line */
     uint32_t of[2]; /* width and height that they are for: those of the first frame; 0: none yet */
@@ -64,6 +66,9 @@ static int make(void *user, uint32_t index, t3r_capture_frame *frame, char *erro
     }
     if (status == 0 && bag_pictures_hide(made->pictures, &frame->frame, frame->straightened) != 0) {
         status = t3r_reason(error, error_bytes, "out of memory");
+    }
+    if (status == 0) {
+        status = bag_border_cut(&made->inner, frame, error, error_bytes);
     }
     if (status == 0) {
         status = bag_size_apply(&made->size, frame, error, error_bytes);
@@ -185,6 +190,7 @@ typedef struct report {
     const posed_recording_totals *totals;
     const posed_recording_losses *losses;
     const estimation *estimated;
+    const picture_inner *inner;
 } report;
 
 /* Lists the topics of which messages, or transforms, cannot be read. */
@@ -224,6 +230,7 @@ static void print_json(const report *r)
     cJSON_AddNumberToObject(json, "straightened", frames->straightened);
     json_add_integer(json, "depth_beyond", (int64_t)t3r_recording_depth_beyond(recording));
     cJSON_AddStringToObject(json, "remark", frames->remark);
+    picture_border_add_json(r->inner, json);
     cJSON_AddStringToObject(json, "lost", lost);
     cJSON_AddStringToObject(json, "note", t3r_recording_note(recording));
     cJSON_AddNumberToObject(json, "frames_left_out", r->losses->gone_count);
@@ -313,6 +320,7 @@ static void print_text(const char *output, const report *r)
         printf("depth: %" PRIu64 " samples beyond %g have none; --depth-unit %g doubles the range\n", beyond,
                unit * UINT16_MAX, 2 * unit);
     }
+    picture_border_print(r->inner);
     if (frames->remark[0] != '\0') {
         printf("remark: %s\n", frames->remark);
     }
@@ -360,11 +368,18 @@ static int import_opened(const recording_import_request *r, t3r_recording *recor
     if (code == CLI_OK && r->poses != POSES_GIVEN) {
         code = estimate_all(recording, r, &losses, &estimated);
     }
-    made_frames makes = {pictures, &frames, &estimated, {.width = r->width, .height = r->height}, r->intrinsics != NULL,
-                         {0}};
+    made_frames makes = {.pictures = pictures,
+                         .frames = &frames,
+                         .estimated = &estimated,
+                         .size = {.width = r->width, .height = r->height},
+                         .given = r->intrinsics != NULL};
+    const char *wrong = code == CLI_OK && !r->keeps_border ? bag_border_find(recording, &makes.inner) : NULL;
+    if (wrong != NULL) {
+        code = cli_error(CLI_BAD_INPUT, "%s: %s", r->input, wrong);
+    }
     code = code == CLI_OK ? write_new(r, recording, &makes, &losses, &totals) : code;
     bag_size_free(&makes.size);
-    const report made = {recording, &frames, &totals, &losses, &estimated};
+    const report made = {recording, &frames, &totals, &losses, &estimated, &makes.inner};
     if (code == CLI_OK && r->json) {
         print_json(&made);
     } else if (code == CLI_OK && !r->quiet) {

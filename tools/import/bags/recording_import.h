@@ -12,6 +12,7 @@ typedef struct recording_import_request {
     const char *input, *output, *source; /* source: stored in the new recording as its origin */
     uint32_t width, height;              /* 0: as the frames are */
     poses_source poses;
+    bool keeps_border;            /* the border of one colour that all images have is not left out */
     const t3r_camera *intrinsics; /* of the colour images; NULL: those of camera_info */
     uint64_t depth_unit_q40;      /* 0: 0.001 */
     const bag_options *bag;

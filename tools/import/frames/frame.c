@@ -201,6 +201,7 @@ static int check_camera(const t3r_recorded_camera *camera, const char *name, cha
 
 /* ---- colour ---------------------------------------------------------------------------------------------------- */
 
+/* Turns a frame's picture as its camera sees it. */
 static int turn_upright(const posed_frame *frame, picture *colour, char *error, size_t error_bytes)
 {
     bool turn;
@@ -237,20 +238,49 @@ static int apply_mask(const char *directory, const posed_frame *frame, picture *
     return status;
 }
 
-/* Reads the picture and makes its camera: upright, at most T3R_MAX_SIDE pixels wide and high if `large`, and without a
- * distortion that no recording holds: `bent` is then that lens. */
+int import_picture_upright(const char *directory, const posed_frame *frame, picture *out, char *error,
+                           size_t error_bytes)
+{
+    return read_named(directory, frame->image, NULL, out, error, error_bytes) == 0
+               ? turn_upright(frame, out, error, error_bytes)
+               : -1;
+}
+
+/* Drops the border of colour, and adapts its camera. */
+static void cut_colour(const posed_frame *frame, picture *colour, t3r_recorded_camera *camera)
+{
+    const t3r_crop *part = &frame->inner.part;
+    if (frame->inner.width != 0) {
+        picture_crop(colour, part);
+        t3r_crop_camera(camera, part, part->width, part->height);
+    }
+}
+
+/* Drops the border of depth of the same view. */
+static void cut_depth(const posed_frame *frame, picture *depth)
+{
+    const picture_inner *inner = &frame->inner;
+    if (inner->width != 0) {
+        const t3r_crop part =
+            import_crop_in_proportion(&inner->part, inner->width, inner->height, depth->width, depth->height);
+        picture_crop(depth, &part);
+    }
+}
+
+/* Reads the picture and makes its camera: upright, without a border, at most T3R_MAX_SIDE pixels wide and high if
+ * `large`, and without a distortion that no recording holds: `bent` is then that lens. */
 static int read_view(const char *directory, const posed_frame *frame, bool large, picture *colour,
                      t3r_recorded_camera *camera, lens *bent, char *error, size_t error_bytes)
 {
     char reason[512];
-    if (read_named(directory, frame->image, NULL, colour, error, error_bytes) != 0 ||
-        turn_upright(frame, colour, error, error_bytes) != 0 ||
+    if (import_picture_upright(directory, frame, colour, error, error_bytes) != 0 ||
         apply_mask(directory, frame, colour, error, error_bytes) != 0) {
         return -1;
     }
     if (posed_frame_camera(frame, colour->width, colour->height, camera, reason, sizeof reason) != 0) {
         return t3r_reason(error, error_bytes, "%s: %s", frame->image, reason);
     }
+    cut_colour(frame, colour, camera);
     const uint32_t n = picture_reduction(colour->width, colour->height);
     if (n > 1 && !large) {
         return t3r_reason(error, error_bytes,
@@ -323,6 +353,7 @@ static int read_aligned(const char *directory, const posed_frame *frame, const p
                    ? 0
                    : t3r_reason(error, error_bytes, "%s: its lens: %s", frame->depth, reason);
     }
+    cut_depth(frame, depth);
     if (!posed_same_aspect(depth->width, depth->height, colour->width, colour->height)) {
         return t3r_reason(error, error_bytes,
                           "%s: %ux%u pixels of depth cannot show the view of a picture of %ux%u: another aspect; crop "
@@ -393,6 +424,9 @@ static int adapt(const char *directory, const posed_frame *frame, uint32_t width
     }
     if (!made && frame->depth == NULL) {
         return 0;
+    }
+    if (made) {
+        cut_depth(frame, depth);
     }
     if (made && !posed_same_aspect(depth->width, depth->height, colour->width, colour->height)) {
         (void)t3r_reason(error, error_bytes, "%s: a pointmap of %ux%u pixels, but the picture has %ux%u", frame->image,

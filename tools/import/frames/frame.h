@@ -19,6 +19,11 @@ int import_picture_size(const char *directory, const posed_frame *frame, uint32_
 int import_picture_facts(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height,
                          double *focal_35mm, char *error, size_t error_bytes);
 
+/* Reads the whole picture, as its camera sees it. Returns 0, or -1 with "picture: what" in error[]; call picture_free()
+ * in either case. */
+int import_picture_upright(const char *directory, const posed_frame *frame, picture *out, char *error,
+                           size_t error_bytes);
+
 /* Reads the sides of its depth; the frame must have depth. */
 int import_depth_size(const char *directory, const posed_frame *frame, uint32_t *width, uint32_t *height, char *error,
                       size_t error_bytes);

@@ -12,6 +12,7 @@
 #include "import/depth/raw_depth.h"
 #include "import/frames/left_out.h"
 #include "import/poses/intrinsics.h"
+#include "pictures/picture_border.h"
 #include "recording/recording.h"
 
 /* A camera as a folder describes it; missing numbers are NAN. In pixels, with the principal point measured from the
@@ -38,6 +39,7 @@ typedef struct posed_frame {
     rigid from_depth;            /* from that camera to colour's, in depth steps; only if depth_lens has an fx */
     bool as_stored;              /* the camera sees the pixels as they are stored, whatever orientation EXIF states */
     bool upright;                /* the pose is that of the picture turned by EXIF: it was estimated from it */
+    picture_inner inner;         /* the part of the upright picture that is used; width 0: all of it */
     rigid pose;                  /* camera to world, in world units */
     bool rejected;               /* cannot be used (rejected.h) */
     char *wrong;                 /* the reason; NULL if memory was out */

@@ -17,6 +17,7 @@
 #include "import/estimation/poses.h"
 #include "import/estimation/poses_output.h"
 #include "import/folders/posed_folder.h"
+#include "import/frames/folder_border.h"
 #include "import/frames/frame.h"
 #include "import/frames/left_out.h"
 #include "import/frames/rejected.h"
@@ -31,6 +32,7 @@
 typedef struct material {
     posed_folder folder;
     pointmap_source pointmaps;
+    picture_inner inner;    /* what is used of each picture; width 0: all of it */
     pose_account *accounts; /* a frame, when poses were estimated from pictures; else NULL */
 } material;
 
@@ -121,6 +123,8 @@ static const struct argp_option argp_options[] = {
      "or of depth made from pointmaps "
      "(integer_depth_scale of the folder, else a power of two with which the median has 4096 to 8192 steps)",
      0},
+    {"keep-border", OPTION_TO(import_options, keeps_border), NULL, 0,
+     "keep a border of one colour that surrounds all pictures alike, as undistorted pictures have (it is left out)", 0},
     {"json", OPTION_TO(import_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
@@ -296,6 +300,7 @@ static void print_json(const material *m, const totals *t)
     if (folder->focal[0] != '\0') {
         cJSON_AddStringToObject(json, "focal_length", folder->focal);
     }
+    picture_border_add_json(&m->inner, json);
     left_out_add_json(&folder->left_out, json);
     text_list_add_json(&folder->remarks, json, "remarks");
     if (m->pointmaps.count > 0) {
@@ -321,6 +326,7 @@ static void print_text(const import_options *o, const material *m, const totals 
     if (folder->focal[0] != '\0') {
         printf("focal length: %s\n", folder->focal);
     }
+    picture_border_print(&m->inner);
     left_out_print(&folder->left_out);
     text_list_print(&folder->remarks, "remark");
     if (m->pointmaps.count > 0) {
@@ -467,6 +473,7 @@ static int import_recording(const import_options *o)
                                                             .bag = &o->bag,
                                                             .stored = &o->stored,
                                                             .json = o->json,
+                                                            .keeps_border = o->keeps_border,
                                                             .quiet = o->after != NULL});
     if (code == CLI_OK && o->after != NULL) {
         o->after(o->user, NULL, NULL);
@@ -484,6 +491,9 @@ static int import_folder(const import_options *o)
     totals t = {0};
     char error[ERROR_BYTES] = "";
     int status = prepare(o, &m, error);
+    if (status == 0 && !o->keeps_border) {
+        m.inner = folder_border_find(o->directory, &m.folder);
+    }
     if (status == 0) {
         status = make_of_what_can_be_used(o, &m, &t, error);
     }

@@ -21,6 +21,7 @@ typedef struct import_options {
     uint32_t intrinsics_count; /* 0 = not given */
     poses_source poses;
     pointmap_options pointmaps;
+    bool keeps_border;
     bool json;
     bag_options bag;
     recording_options stored;
