@@ -8,11 +8,12 @@ cmake_dependent_option(T3R_WITH_STREAMS "Build the runtime with maps that follow
 option(T3R_WITH_LEARNED "Build the runtime with heads that are networks" ON)
 option(T3R_WITH_REFINEMENT "Build the runtime with refinement" ON)
 option(T3R_WITH_EXTRAS "Build the runtime with bounded losses, lenses that distort, other wavelets and allocations, several workers" ON)
+option(T3R_WITH_BACKDROP "Build the runtime with a backdrop for views beyond the context" ON)
 
 set(left_out)
 file(STRINGS features.txt rows REGEX "^[a-z]")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS features.txt)
-foreach(feature comparison stereo streams learned refinement extras)
+foreach(feature comparison stereo streams learned refinement extras backdrop)
   string(TOUPPER ${feature} FEATURE)
   if(NOT T3R_WITH_${FEATURE})
     list(APPEND left_out T3R_FEATURE_${FEATURE}=0)

@@ -13,6 +13,7 @@
 #include "budget/budget.h"
 #include "budget/cluster_texture.h"
 #include "core/features.h"
+#include "head/backdrop.h"
 #include "head/head_views.h"
 #include "pointmap/align.h"
 #include "pointmap/exposure.h"
@@ -173,6 +174,9 @@ static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_
     rt->gaussians = 0;
     t3r_status status = t3r_views_to_gaussians(rt, views, settings, scene, &rt->gaussians);
     if (status == T3R_OK) {
+        if (rt->build.refine == 0) {
+            t3r_add_backdrop(rt, views);
+        }
         t3r_hash_scene(rt, T3R_STAGE_HEAD);
     }
     return status;
@@ -188,6 +192,7 @@ static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
     rt->passes = rt->config.fit_passes ? t3r_fitted_passes(rt, views, rt->build.refine) : rt->build.refine;
     t3r_status status = t3r_refine(rt, views, rt->passes);
     if (status == T3R_OK) {
+        t3r_add_backdrop(rt, views);
         t3r_hash_scene(rt, T3R_STAGE_REFINE);
     }
     return status;

@@ -5,6 +5,7 @@
 #include "core/features.h"
 #include "core/memory.h"
 #include "depth/depth.h"
+#include "head/backdrop.h"
 #include "pointmap/align.h"
 #include "pointmap/bridge.h"
 #include "pointmap/flying_pixels.h"
@@ -184,7 +185,8 @@ static bool passes_over_covered(const t3r_runtime *rt, const t3r_view *views, ui
 t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view *views)
 {
     const t3r_config *config = &rt->config;
-    const uint32_t gaussians = T3R_MIN(rt->build.gaussians, rt->valid_points); /* filled holes don't raise the budget */
+    const uint32_t before = rt->build.gaussians - t3r_backdrop_count(config, rt->build.gaussians);
+    const uint32_t gaussians = T3R_MIN(before, rt->valid_points); /* filled holes don't raise the budget */
     return (t3r_budget_settings){
         .allocate = rt->build.allocate,
         .gaussians = gaussians,

@@ -77,6 +77,7 @@ extern "C" {
 #define T3R_MIN_SIDE 8            /* smallest working width or height, in pixels */
 #define T3R_STEREO_LEAST_SIDE 32u /* smallest working width or height with depth by stereo, in pixels */
 #define T3R_MAX_VIEWS 16          /* most context views */
+#define T3R_NO_VIEW 255           /* t3r_gaussian.view of the backdrop */
 #define T3R_MAX_REMEMBERED 16     /* most keyframes that a stream remembers without planes */
 #define T3R_MAX_CLUSTERS 512      /* most SuperClusters */
 #define T3R_MAX_GAUSSIANS 16777216
@@ -299,7 +300,8 @@ typedef struct t3r_gaussian {
     int16_t factor[9];
     /* The exponent of F, -60..15. */
     int8_t factor_exponent;
-    /* The index of its context view; in a stream, its keyframe's number modulo `views`. */
+    /* The index of its context view; in a stream, its keyframe's number modulo `views`; T3R_NO_VIEW = it belongs to the
+     * backdrop, is drawn after all others and has no depth. */
     uint8_t view;
     /* The colour r g b in 8-bit levels, 0..32640, in 1/128. */
     uint16_t colour_q7[3];

@@ -40,6 +40,11 @@
 #define T3R_FEATURE_EXTRAS 1
 #endif
 
+/* Gaussians far away around a scene: t3r_config.backdrop. */
+#ifndef T3R_FEATURE_BACKDROP
+#define T3R_FEATURE_BACKDROP 1
+#endif
+
 /* Losses that refinement measures: t3r_config.fit_passes and structural, t3r_request.max_loss_q8. */
 #define T3R_FEATURE_LOSS (T3R_FEATURE_REFINEMENT && T3R_FEATURE_EXTRAS)
 
@@ -51,6 +56,7 @@
 #define T3R_HAS_LEARNED (1u << 3)
 #define T3R_HAS_REFINEMENT (1u << 4)
 #define T3R_HAS_EXTRAS (1u << 5)
+#define T3R_HAS_BACKDROP (1u << 6)
 #define T3R_HAS_LOSS (T3R_HAS_REFINEMENT | T3R_HAS_EXTRAS)
 
 /* X(FEATURE, name), a row a bit. */
@@ -60,7 +66,8 @@
     X(STREAMS, streams)                                                                                                \
     X(LEARNED, learned)                                                                                                \
     X(REFINEMENT, refinement)                                                                                          \
-    X(EXTRAS, extras)
+    X(EXTRAS, extras)                                                                                                  \
+    X(BACKDROP, backdrop)
 
 /* The features of this build. */
 #define T3R_BUILT_(FEATURE, name) | (T3R_FEATURE_##FEATURE ? T3R_HAS_##FEATURE : 0u)

@@ -78,6 +78,11 @@
      * the neighbouring surface in the picture. Needs depth by stereo and fill_radius above 0. */                      \
     X(planes, toggle, 0, 1, 0, STEREO, 1, BUILD, "planes",                                                             \
       "continue what --depth stereo does not match along the planes of what it does")                                  \
+    /* 1 = 54 of a budget of 864 and more, 24 of 384, 6 of 96 are wide Gaussians 256 scene units away, in all          \
+     * directions and in the colours of the views' borders, so that views for people are not black where no context    \
+     * view saw. Their t3r_gaussian.view is T3R_NO_VIEW, and renders have no depth there. Ignored with `stream`. */    \
+    X(backdrop, toggle, 0, 1, 0, BACKDROP, 1, BUILD, "backdrop",                                                       \
+      "surround the scene with some wide Gaussians far away, in the colours of the pictures' borders")                 \
     X(fill_radius, number, 0, 8, 4, NONE, 0, BUILD, "fill-radius",                                                     \
       "fill holes of a depth sensor that measurements bracket within N pixels; 0 fills none")                          \
     X(bridge_radius, number, 0, 255, 64, NONE, 0, BUILD, "bridge-radius",                                              \

@@ -30,6 +30,9 @@ static void project_chunk(void *context, uint32_t index, uint32_t worker)
         }
     }
     for (uint32_t i = first; i < end; i++) {
+        if (T3R_FEATURE_BACKDROP && job->gaussians[i].view == T3R_NO_VIEW && job->splats[i].z_q20 != 0) {
+            job->splats[i].z_q20 = T3R_BACKDROP_Z_Q20;
+        }
         job->depths[i] = (uint32_t)job->splats[i].z_q20;
         job->spans[i] = t3r_span_of(&job->splats[i]);
     }

@@ -141,7 +141,8 @@ void t3r_draw_list(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_s
         if (!tile->stopped) {
             kernels->blend(&tile->pixels, &placed[at]);
         }
-        if (!tile->noted && target->depth_q20 != NULL) {
+        const bool has_depth = !T3R_FEATURE_BACKDROP || splats[list[i]].z_q20 != T3R_BACKDROP_Z_Q20;
+        if (!tile->noted && target->depth_q20 != NULL && has_depth) {
             note_depth(tile, &placed[at], (uint32_t)splats[list[i]].z_q20);
         }
     }

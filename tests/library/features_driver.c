@@ -49,6 +49,9 @@ static void print_scenes(void)
     config.stream = 1;
     print_scene("streams", &config);
     config = plain_config();
+    config.backdrop = 1;
+    print_scene("backdrop", &config);
+    config = plain_config();
     config.head = T3R_HEAD_LEARNED;
     print_scene("learned", &config);
     config = plain_config();

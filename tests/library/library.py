@@ -17,7 +17,7 @@ VERSION = ".".join(re.findall(r"#define T3R_VERSION_\w+ (\d+)", (ROOT / "runtime
 SERIES = VERSION.rpartition(".")[0] # version part in the names of shared libraries and packages
 HEADS = ROOT / "quant" / "heads"
 HASH = (HERE / "golden_hash.txt").read_text().strip()
-FEATURES = ("comparison", "stereo", "streams", "learned", "refinement", "extras")
+FEATURES = ("comparison", "stereo", "streams", "learned", "refinement", "extras", "backdrop")
 WARNINGS = ["-Wall", "-Wextra", "-Wshadow", "-Werror"]
 
 

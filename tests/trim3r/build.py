@@ -29,6 +29,7 @@ def refused():
         "--fill-radius": ["9"],
         "--bridge-radius": ["256"],
         "--planes": ["1", ""],
+        "--backdrop": ["1", ""],
         "--flying": ["1", ""],
         "--redundancy": ["yes"],
         "--exposure": ["On"],

@@ -6,7 +6,7 @@ from conan import ConanFile
 from conan.tools.cmake import CMake, CMakeToolchain, cmake_layout
 from conan.tools.files import copy
 
-FEATURES = ("comparison", "stereo", "streams", "learned", "refinement", "extras")
+FEATURES = ("comparison", "stereo", "streams", "learned", "refinement", "extras", "backdrop")
 
 
 class Trim3rConan(ConanFile):

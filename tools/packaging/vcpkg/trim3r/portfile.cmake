@@ -9,7 +9,8 @@ vcpkg_check_features(OUT_FEATURE_OPTIONS FEATURE_OPTIONS
     streams T3R_WITH_STREAMS
     learned T3R_WITH_LEARNED
     refinement T3R_WITH_REFINEMENT
-    extras T3R_WITH_EXTRAS)
+    extras T3R_WITH_EXTRAS
+    backdrop T3R_WITH_BACKDROP)
 string(COMPARE EQUAL "${VCPKG_LIBRARY_LINKAGE}" "dynamic" WITH_SHARED)
 
 vcpkg_cmake_configure(

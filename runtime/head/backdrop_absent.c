@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Stub for builds without a backdrop: core/config.c refuses configurations that ask for one. */
+#include "backdrop.h"
+
+#if !T3R_FEATURE_BACKDROP
+
+void t3r_add_backdrop(t3r_runtime *rt, const t3r_view *views)
+{
+    (void)rt, (void)views;
+}
+
+#endif

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The backdrop is inside the budget, leaves no pixel of an orbit black, and has no depth; same bits by every variant.
+ */
+#include "rgbd_frame.h"
+#include "unit/unit.h"
+
+#include "core/hash.h"
+#include "host/cpu.h"
+#include "room/room.h"
+
+enum { SIDE = 64, PIXELS = SIDE * SIDE, MOST = 1000, DIRECTIONS = 16 };
+
+/* A runtime, its scene, and a render of it. */
+typedef struct place {
+    void *memory;
+    t3r_runtime *rt;
+    t3r_scene scene;
+    uint8_t rgb[PIXELS * 3];
+    uint32_t depth_q20[PIXELS];
+    uint16_t alpha_q15[PIXELS];
+} place;
+
+static place *open_place(const t3r_config *config)
+{
+    place *p = calloc(1, sizeof *p);
+    size_t least, bytes;
+    assert_non_null(p);
+    assert_int_equal(t3r_plan_bytes(config, &least, &bytes), T3R_OK);
+    assert_int_equal(posix_memalign(&p->memory, T3R_ARENA_ALIGN, bytes), 0);
+    assert_int_equal(t3r_init(&p->rt, p->memory, bytes, config), T3R_OK);
+    return p;
+}
+
+static void close_place(place *p)
+{
+    free(p->memory);
+    free(p);
+}
+
+/* Builds a scene of two views of the room. */
+static place *build(t3r_config config, uint32_t features)
+{
+    config.keep_analysis = !config.stream;
+    place *p = open_place(&config);
+    assert_int_equal(t3r_set_cpu(p->rt, features), T3R_OK);
+    for (uint32_t v = 0; v < 2; v++) {
+        static uint8_t rgb[PIXELS * 3], depth[PIXELS * 2];
+        static uint16_t depth_mm[PIXELS];
+        t3r_camera camera;
+        room_camera(2 * v, SIDE, SIDE, &camera);
+        room_frame(2 * v, SIDE, SIDE, 1, rgb, depth_mm);
+        for (uint32_t i = 0; i < PIXELS; i++) {
+            depth[2 * i] = (uint8_t)depth_mm[i];
+            depth[2 * i + 1] = (uint8_t)(depth_mm[i] >> 8);
+        }
+        const t3r_frame frame = rgbd_frame(rgb, depth, SIDE, SIDE, ROOM_DEPTH_UNIT_Q40);
+        assert_int_equal(config.stream ? t3r_stream_keyframe(p->rt, &frame, &camera, NULL)
+                                       : t3r_add_view(p->rt, &frame, &camera),
+                         T3R_OK);
+    }
+    assert_int_equal(config.stream ? t3r_get_scene(p->rt, &p->scene) : t3r_reconstruct(p->rt, NULL, &p->scene), T3R_OK);
+    return p;
+}
+
+static t3r_config config_of(uint32_t gaussians, uint32_t refine)
+{
+    t3r_config config = t3r_default_config(SIDE, SIDE, 2, gaussians);
+    config.backdrop = 1;
+    config.refine = refine;
+    return config;
+}
+
+static uint32_t count_backdrop(const t3r_scene *scene)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < scene->count; i++) {
+        count += scene->gaussians[i].view == T3R_NO_VIEW;
+    }
+    return count;
+}
+
+TEST(test_the_budget_is_exact)
+{
+    const struct {
+        uint32_t budget, backdrop;
+    } cases[] = {{1, 0}, {95, 0}, {96, 6}, {383, 6}, {384, 24}, {863, 24}, {864, 54}, {1000, 54}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        for (uint32_t refine = 0; refine <= 2; refine += 2) {
+            place *p = build(config_of(cases[i].budget, refine), 0);
+            assert_int_equal(p->scene.count, cases[i].budget);
+            assert_int_equal(count_backdrop(&p->scene), cases[i].backdrop);
+            close_place(p);
+        }
+    }
+}
+
+TEST(test_streams_and_settings_without_it_have_none)
+{
+    t3r_config config = config_of(MOST, 0);
+    config.backdrop = 0;
+    place *p = build(config, 0);
+    assert_int_equal(count_backdrop(&p->scene), 0);
+    close_place(p);
+    config.backdrop = config.stream = 1;
+    p = build(config, 0);
+    assert_int_equal(count_backdrop(&p->scene), 0);
+    close_place(p);
+}
+
+/* Draws a view of an orbit around the room: outwards at half of them, inwards from afar at the others. */
+static void draw(place *p, uint32_t view)
+{
+    const double turn = 6.283185307179586 * view / DIRECTIONS, tilt = 0.6 * ((int)(view % 3) - 1);
+    const double away = view % 2 == 0 ? 0.5 : -9,
+                 q[4] = {cos(turn / 2) * cos(tilt / 2), cos(turn / 2) * sin(tilt / 2), sin(turn / 2) * cos(tilt / 2),
+                         -sin(turn / 2) * sin(tilt / 2)};
+    t3r_camera camera = straight_camera(SIDE);
+    camera.position_q32[0] = (int64_t)(away * sin(turn) * 0x1p32);
+    camera.position_q32[2] = (int64_t)((2 + away * cos(turn)) * 0x1p32);
+    for (int i = 0; i < 4; i++) {
+        camera.rotation_q30[i] = (int32_t)(q[i] * (1 << 30));
+    }
+    const t3r_target target = {.width = SIDE,
+                               .height = SIDE,
+                               .rgb = p->rgb,
+                               .rgb_stride_bytes = 3 * SIDE,
+                               .depth_q20 = p->depth_q20,
+                               .depth_stride_bytes = 4 * SIDE,
+                               .alpha_q15 = p->alpha_q15,
+                               .alpha_stride_bytes = 2 * SIDE};
+    assert_int_equal(t3r_render(p->rt, &camera, &target), T3R_OK);
+}
+
+/* Makes the scene without its backdrop. */
+static place *without_backdrop(const place *p)
+{
+    t3r_config config = t3r_default_config(SIDE, SIDE, 0, MOST);
+    config.refine = config.align = config.fit_widths = 0;
+    place *bare = open_place(&config);
+    assert_int_equal(t3r_scene_begin(bare->rt, &p->scene.frame), T3R_OK);
+    for (uint32_t i = 0; i < p->scene.count; i++) {
+        if (p->scene.gaussians[i].view != T3R_NO_VIEW) {
+            assert_int_equal(t3r_scene_append(bare->rt, &p->scene.gaussians[i]), T3R_OK);
+        }
+    }
+    return bare;
+}
+
+/* Checks that no pixel is black, and that depth is that of the scene without its backdrop. */
+static void check_orbit(uint32_t budget)
+{
+    place *p = build(config_of(budget, 0), 0), *bare = without_backdrop(p);
+    uint32_t beyond = 0;
+    for (uint32_t view = 0; view < DIRECTIONS; view++) {
+        draw(p, view);
+        draw(bare, view);
+        assert_memory_equal(p->depth_q20, bare->depth_q20, sizeof p->depth_q20);
+        for (uint32_t i = 0; i < PIXELS; i++) {
+            const uint8_t *rgb = p->rgb + (size_t)3 * i;
+            if (p->alpha_q15[i] < 28000 || rgb[0] + rgb[1] + rgb[2] < 60) {
+                fail_msg("budget %u, view %u, pixel %u: alpha %u, colour %u %u %u", budget, view, i, p->alpha_q15[i],
+                         rgb[0], rgb[1], rgb[2]);
+            }
+            beyond += bare->alpha_q15[i] == 0;
+        }
+    }
+    assert_true(beyond > DIRECTIONS * PIXELS / 4);
+    close_place(p);
+    close_place(bare);
+}
+
+TEST(test_an_orbit_is_not_black_and_has_no_new_depth)
+{
+    check_orbit(96);
+    check_orbit(384);
+    check_orbit(MOST);
+}
+
+/* Checks that the backdrop is light above and dark below where the pictures are: in the borders' colours. */
+TEST(test_colours_are_those_of_the_borders)
+{
+    static uint8_t rgb[PIXELS * 3], depth[PIXELS * 2];
+    t3r_config config = t3r_default_config(SIDE, SIDE, 1, MOST);
+    config.backdrop = 1;
+    config.refine = config.align = config.fit_widths = 0;
+    place *p = open_place(&config);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        const bool above = i / SIDE < SIDE / 2, border = i / SIDE == 0 || i / SIDE == SIDE - 1;
+        rgb[3 * i] = border && above ? 200 : 0;
+        rgb[3 * i + 2] = border && !above ? 200 : 0;
+        depth[2 * i + 1] = 4;
+    }
+    const t3r_frame frame = rgbd_frame(rgb, depth, SIDE, SIDE, ROOM_DEPTH_UNIT_Q40);
+    const t3r_camera camera = straight_camera(SIDE);
+    assert_int_equal(t3r_add_view(p->rt, &frame, &camera), T3R_OK);
+    assert_int_equal(t3r_reconstruct(p->rt, NULL, &p->scene), T3R_OK);
+    uint32_t seen = 0;
+    for (uint32_t i = 0; i < p->scene.count; i++) {
+        const t3r_gaussian *g = &p->scene.gaussians[i];
+        if (g->view == T3R_NO_VIEW && g->position_q20[2] > 0 && g->position_q20[0] == 0 && g->position_q20[1] != 0) {
+            assert_true(g->position_q20[1] < 0 ? g->colour_q7[0] > 2 * g->colour_q7[2]
+                                               : g->colour_q7[2] > 2 * g->colour_q7[0]);
+            seen++;
+        }
+    }
+    assert_int_equal(seen, 4); /* two of the face ahead, and one of each face above and below */
+    close_place(p);
+}
+
+TEST(test_every_variant_has_the_same_bits)
+{
+    const uint32_t features[] = {0, t3r_cpu_features()};
+    uint64_t hash[2];
+    for (int i = 0; i < 2; i++) {
+        place *p = build(config_of(MOST, 2), features[i]);
+        hash[i] = t3r_hash_bytes(T3R_HASH_START, (const uint8_t *)p->scene.gaussians,
+                                 p->scene.count * sizeof *p->scene.gaussians);
+        for (uint32_t view = 0; view < DIRECTIONS; view++) {
+            draw(p, view);
+            hash[i] = t3r_hash_bytes(hash[i], p->rgb, sizeof p->rgb);
+            hash[i] = t3r_hash_bytes(hash[i], (const uint8_t *)p->depth_q20, sizeof p->depth_q20);
+        }
+        close_place(p);
+    }
+    assert_int_equal(hash[0], hash[1]);
+}
