@@ -174,9 +174,7 @@ static t3r_status head(t3r_runtime *rt, const t3r_view *views, const t3r_budget_
     rt->gaussians = 0;
     t3r_status status = t3r_views_to_gaussians(rt, views, settings, scene, &rt->gaussians);
     if (status == T3R_OK) {
-        if (rt->build.refine == 0) {
-            t3r_add_backdrop(rt, views);
-        }
+        t3r_add_backdrop(rt, views);
         t3r_hash_scene(rt, T3R_STAGE_HEAD);
     }
     return status;
@@ -192,7 +190,6 @@ static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
     rt->passes = rt->config.fit_passes ? t3r_fitted_passes(rt, views, rt->build.refine) : rt->build.refine;
     t3r_status status = t3r_refine(rt, views, rt->passes);
     if (status == T3R_OK) {
-        t3r_add_backdrop(rt, views);
         t3r_hash_scene(rt, T3R_STAGE_REFINE);
     }
     return status;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The backdrop: wide Gaussians far away in all directions, in the colours of the borders of the context views. So a
- * view beyond what the context views show is not black. It has no depth and no part in refinement (SPEC.md,
- * "Backdrop"). */
+ * view beyond what the context views show is not black. It has no depth, and refinement draws it but leaves it as it
+ * is (SPEC.md, "Backdrop"). */
 #ifndef T3R_BACKDROP_H
 #define T3R_BACKDROP_H
 

@@ -191,7 +191,7 @@ int evaluation_views_make(evaluation_views *views, const evaluation_case *what, 
     options.config.allocate = T3R_ALLOCATE_UNIFORM;
     options.config.flying = options.config.redundancy = options.config.exposure = options.config.fit_widths =
         options.config.align = 0;
-    options.config.keep_analysis = false;
+    options.config.keep_analysis = options.config.backdrop = false;
     options.config.refine = 0;
     options.hash = false;
     options.arena = ARENA_FULL;
