@@ -71,7 +71,7 @@ extern "C" {
 #define T3R_TEXT_(number) T3R_QUOTE_(number)
 #define T3R_QUOTE_(number) #number
 /* Raised by every change of any output bit; recordings and scenes carry the epoch that made them. */
-#define T3R_BITS_EPOCH 12
+#define T3R_BITS_EPOCH 13
 
 #define T3R_MAX_SIDE 4096         /* largest width or height of working size, frame or target, in pixels */
 #define T3R_MIN_SIDE 8            /* smallest working width or height, in pixels */
@@ -733,8 +733,8 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
  */
 uint32_t t3r_render_passes(const t3r_runtime *rt);
 
-/* Returns the number of refinement passes that the last build took, 0..`refine`. 0 without a runtime, before a build,
- * and with a stream. */
+/* Returns the number of refinement passes that the last build took: at most `refine`, or 5/4 of it where passes
+ * compare a part of the pixels. 0 without a runtime, before a build, and with a stream. */
 uint32_t t3r_refinement_passes(const t3r_runtime *rt);
 
 /* Returns the camera of context view `view`, at the working size and without distortion, as the last analysis placed

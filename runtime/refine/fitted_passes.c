@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "fitted_passes.h"
 
+#include <stdbool.h>
+
 #include "core/fixed.h"
 #include "pointmap/disagreement.h"
 
@@ -10,6 +12,11 @@
 #define STEP 2u                /* pixels between compared pixels */
 #define PAIRS_LEAST 64u        /* with fewer compared pairs, the disagreement is unknown */
 #define UNKNOWN_Q8 (150u << 8) /* levels^2, typical of good sensors */
+
+/* Disagreement from which passes compare a part of the pixels, levels^2: almost all recorded views of the training
+ * scenes have more, and rendered ones from near by less. */
+#define PARTS_FROM_Q8 (50u << 8)
+#define PARTS_LEAST 3u /* so few whole passes at least: with fewer, the last one has to do too much */
 
 uint32_t t3r_predict_passes(uint32_t points, uint32_t gaussians, uint32_t disagreement_q8, uint32_t most)
 {
@@ -24,11 +31,18 @@ uint32_t t3r_predict_passes(uint32_t points, uint32_t gaussians, uint32_t disagr
     return (uint32_t)t3r_clamp64(((int64_t)t3r_isqrt64(square) + 1) / 2, 1, most);
 }
 
-uint32_t t3r_fitted_passes(t3r_runtime *rt, const t3r_view *views, uint32_t most)
+t3r_passes t3r_passes_in_parts(uint32_t whole, uint32_t disagreement_q8)
 {
-    uint32_t pairs;
-    const uint32_t disagreement_q8 =
-        t3r_disagreement_q8(views, rt->views, rt->frame.exponent, rt->gain_q14, STEP, &pairs);
-    return t3r_predict_passes(rt->valid_points, rt->gaussians, pairs < PAIRS_LEAST ? UNKNOWN_Q8 : disagreement_q8,
-                              most);
+    const uint32_t count = whole + (whole + 1) / 4;
+    const bool in_parts = whole >= PARTS_LEAST && disagreement_q8 >= PARTS_FROM_Q8;
+    return in_parts ? (t3r_passes){count, count - 1} : (t3r_passes){whole, 0};
+}
+
+t3r_passes t3r_fitted_passes(t3r_runtime *rt, const t3r_view *views, uint32_t most)
+{
+    uint32_t pairs,
+        disagreement_q8 = t3r_disagreement_q8(views, rt->views, rt->frame.exponent, rt->gain_q14, STEP, &pairs);
+    disagreement_q8 = pairs < PAIRS_LEAST ? UNKNOWN_Q8 : disagreement_q8;
+    const uint32_t whole = t3r_predict_passes(rt->valid_points, rt->gaussians, disagreement_q8, most);
+    return rt->config.structural ? (t3r_passes){whole, 0} : t3r_passes_in_parts(whole, disagreement_q8);
 }
