@@ -130,7 +130,7 @@ static void ask_for_sums(const t3r_refine_slice *slice, uint32_t index)
     }
 }
 
-/* Leading zeros of weights below 1/64: a splat with no larger one in the tile adds nothing. */
+/* Leading zeros of weights below 1/64, which a pass over a part of the pixels passes over. */
 #define FAINT_SCALE 6
 
 /* Goes through the kept splats from the last down to list entry `first`: accumulates each and removes it from the
@@ -151,7 +151,8 @@ static void take_off(const t3r_refine_view *job, const uint32_t *list, const kep
             .span = &span, .rows = rows_at(job, rows), .scale = job->kept[i] & ((1 << SCALE_BITS) - 1)};
         rows -= t3r_rows_of(&span);
         t3r_refine_sums *sums = NULL;
-        if (splat.scale < FAINT_SCALE && is_in(&job->slice, index)) {
+        const bool faint = job->lattice.spread > 0 && splat.scale >= FAINT_SCALE;
+        if (!faint && is_in(&job->slice, index)) {
             sums = t3r_refine_sums_in(job->bands, job->band, job->borders, &job->slice, s, index, job->across);
             place(sums, s, tile->left + span.column, tile->top + span.first, tile->spread, &splat);
             splat.pixels = (span.x1 - span.x0 + 1u) * (span.last - span.first + 1u);

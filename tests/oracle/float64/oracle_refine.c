@@ -113,122 +113,49 @@ static void add(sums *s, const footprint *f, const oracle_gaussian *g, double dx
     }
 }
 
-/* A splat adds nothing in a tile in which no weight of it reaches this. */
-#define WEIGHT_LEAST (1.0 / 64)
-#define TILE_SIDE 16
-
-/* One view's visible splats, by depth. */
-typedef struct seen_scene {
-    const oracle_gaussian *scene;
-    const footprint *splats;
-    size_t visible;
-} seen_scene;
-
-/* Calls for_each for every splat that draws the pixel, front to back, with its weight and the transmittance left. */
-static void blend(const seen_scene *seen, double px, double py,
-                  void (*for_each)(void *context, size_t splat, double weight, double left), void *context)
-{
-    double left = 1;
-    for (size_t i = 0; i < seen->visible && left >= 1e-4; i++) {
-        const footprint *f = &seen->splats[i];
-        const double weight = left * alpha_at(f, &seen->scene[f->index], px - f->x, py - f->y);
-        left -= weight;
-        if (weight != 0) {
-            for_each(context, i, weight, left);
-        }
-    }
-}
-
-typedef struct pixel_job {
-    const seen_scene *seen;
-    double *largest; /* weight of each splat in the tile */
-    double px, py, whole[3], so_far[3], residual[3];
-    sums *all;
-} pixel_job;
-
-static void note_weight(void *context, size_t splat, double weight, double left)
-{
-    (void)left;
-    pixel_job *job = context;
-    job->largest[splat] = fmax(job->largest[splat], weight);
-}
-
-static void add_colour(void *context, size_t splat, double weight, double left)
-{
-    (void)left;
-    pixel_job *job = context;
-    for (int c = 0; c < 3; c++) {
-        job->whole[c] += weight * 255 * job->seen->scene[job->seen->splats[splat].index].colour[c];
-    }
-}
-
-static void add_splat(void *context, size_t splat, double weight, double left)
-{
-    pixel_job *job = context;
-    const footprint *f = &job->seen->splats[splat];
-    const oracle_gaussian *g = &job->seen->scene[f->index];
-    double behind[3];
-    for (int c = 0; c < 3; c++) {
-        job->so_far[c] += weight * 255 * g->colour[c];
-        behind[c] = (job->whole[c] - job->so_far[c]) / left;
-    }
-    if (job->largest[splat] >= WEIGHT_LEAST) {
-        add(&job->all[f->index], f, g, job->px - f->x, job->py - f->y, weight, behind, job->residual);
-    }
-}
-
-static void measure_pixel(const seen_scene *seen, const oracle_context *view, size_t x, size_t y, double *largest,
-                          sums *all)
-{
-    const size_t pixel = y * view->camera.width + x;
-    pixel_job job = {.seen = seen, .largest = largest, .px = (double)x, .py = (double)y, .all = all};
-    if (!view->counts[pixel]) {
-        return;
-    }
-    blend(seen, job.px, job.py, add_colour, &job);
-    for (int c = 0; c < 3; c++) {
-        job.residual[c] = view->rgb[3 * pixel + (size_t)c] - job.whole[c];
-    }
-    blend(seen, job.px, job.py, add_splat, &job);
-}
-
-static void measure_tile(const seen_scene *seen, const oracle_context *view, size_t left, size_t top, double *largest,
-                         sums *all)
-{
-    const size_t right = left + TILE_SIDE < view->camera.width ? left + TILE_SIDE : view->camera.width;
-    const size_t bottom = top + TILE_SIDE < view->camera.height ? top + TILE_SIDE : view->camera.height;
-    pixel_job weights = {.largest = largest};
-    memset(largest, 0, seen->visible * sizeof *largest);
-    for (size_t y = top; y < bottom; y++) {
-        for (size_t x = left; x < right; x++) {
-            blend(seen, (double)x, (double)y, note_weight, &weights);
-        }
-    }
-    for (size_t y = top; y < bottom; y++) {
-        for (size_t x = left; x < right; x++) {
-            measure_pixel(seen, view, x, y, largest, all);
-        }
-    }
-}
-
 /* Measures every pixel of one view by visiting all splats: slow and plain. */
 static void measure(const oracle_gaussian *scene, size_t count, const oracle_context *view, sums *all)
 {
-    footprint *splats = take(count, sizeof *splats);
-    double *largest = take(count, sizeof *largest);
-    seen_scene seen = {scene, splats, 0};
+    footprint *seen = take(count, sizeof *seen);
+    size_t visible = 0;
     for (size_t i = 0; i < count; i++) {
-        splats[seen.visible].index = i;
-        seen.visible += (size_t)look(&scene[i], &view->camera, &splats[seen.visible]);
+        seen[visible].index = i;
+        visible += (size_t)look(&scene[i], &view->camera, &seen[visible]);
     }
-    qsort(splats, seen.visible, sizeof *splats, by_depth);
-    for (size_t top = 0; top < view->camera.height; top += TILE_SIDE) {
-        for (size_t left = 0; left < view->camera.width; left += TILE_SIDE) {
-            measure_tile(&seen, view, left, top, largest, all);
+    qsort(seen, visible, sizeof *seen, by_depth);
+    for (size_t pixel = 0; pixel < (size_t)view->camera.width * view->camera.height; pixel++) {
+        if (!view->counts[pixel]) {
+            continue;
+        }
+        double px = (double)(pixel % view->camera.width), py = (double)(pixel / view->camera.width);
+        double whole[3] = {0}, so_far[3] = {0}, residual[3], left = 1;
+        for (size_t i = 0; i < visible && left >= 1e-4; i++) {
+            const oracle_gaussian *g = &scene[seen[i].index];
+            double weight = left * alpha_at(&seen[i], g, px - seen[i].x, py - seen[i].y);
+            for (int c = 0; c < 3; c++) {
+                whole[c] += weight * 255 * g->colour[c];
+            }
+            left -= weight;
+        }
+        for (int c = 0; c < 3; c++) {
+            residual[c] = view->rgb[3 * pixel + (size_t)c] - whole[c];
+        }
+        left = 1;
+        for (size_t i = 0; i < visible && left >= 1e-4; i++) {
+            const oracle_gaussian *g = &scene[seen[i].index];
+            double weight = left * alpha_at(&seen[i], g, px - seen[i].x, py - seen[i].y), behind[3];
+            if (weight == 0) {
+                continue;
+            }
+            left -= weight;
+            for (int c = 0; c < 3; c++) {
+                so_far[c] += weight * 255 * g->colour[c];
+                behind[c] = (whole[c] - so_far[c]) / left;
+            }
+            add(&all[seen[i].index], &seen[i], g, px - seen[i].x, py - seen[i].y, weight, behind, residual);
         }
     }
-    free(largest);
-    free(splats);
+    free(seen);
 }
 
 static void solve(const sums *s, double x[PARAMETERS])

@@ -295,12 +295,6 @@ static double largest_of(const layer *l)
     return most;
 }
 
-/* Whether no weight reaches 1/64: the layer is removed and adds nothing. */
-static bool is_faint(const layer *l)
-{
-    return largest_of(l) < 1.0 / 64;
-}
-
 /* Weights have 10 to 15 bits, rounded down. The error of moments is at most a hundredth of their terms, which have 8
  * to 14 bits, and the largest g . r. */
 static double compare_sums(const t3r_refine_sums *got, const expected *want, double unit)
@@ -329,7 +323,7 @@ TEST(follows_double)
     static t3r_refine_sums sums[SPLATS];
     static layer layers[SPLATS];
     static tile_behind behind;
-    uint32_t accumulated = 0, faint = 0;
+    uint32_t accumulated = 0;
     double share = 0;
     for (uint64_t seed = 11; seed < 31; seed++) {
         make_scene(seed);
@@ -352,19 +346,13 @@ TEST(follows_double)
                 const own_axes axes = axes_of(&scene[list[n]], s);
                 const double unit = exp2(floor(log2(largest_of(&layers[n]))) + 1); /* 2^-scale */
                 const expected want = take_off(&layers[n], s, &axes, left, top, &drawn, unit, &behind);
-                if (is_faint(&layers[n])) {
-                    assert_int_equal(sums[list[n]].weight, 0);
-                    faint++;
-                    continue;
-                }
                 share = fmax(share, compare_sums(&sums[list[n]], &want, unit));
                 accumulated++;
             }
         }
     }
-    print_message("%u splats accumulated, off by at most %.2f of what is allowed; %u faint ones\n", accumulated, share,
-                  faint);
-    assert_true(accumulated > 3000 && faint > 1000);
+    print_message("%u splats accumulated, off by at most %.2f of what is allowed\n", accumulated, share);
+    assert_true(accumulated > 5000);
 }
 
 /* A Gaussian that is not in front of the camera has no footprint there. */
