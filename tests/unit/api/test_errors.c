@@ -66,7 +66,8 @@ static void note(const char *cause, const char *call, t3r_status want, t3r_statu
         (void)call##_error(status, __VA_ARGS__, cut, CUT);                                                             \
         assert_memory_equal(before, arena, sizeof arena);                                                              \
         assert_true(strlen(cut) == CUT - 1 && cut[CUT] == 'x' && strncmp(cut, text, CUT - 1) == 0);                    \
-        assert_string_equal(call##_error(status, __VA_ARGS__, NULL, 0), t3r_error_text(status));                       \
+        assert_string_equal(call##_error(status, __VA_ARGS__, NULL, CUT), t3r_error_text(status));                     \
+        assert_string_equal(call##_error(status, __VA_ARGS__, cut, 0), t3r_error_text(status));                        \
     } while (0)
 
 /* The call is refused for this cause. */
@@ -74,6 +75,15 @@ static void note(const char *cause, const char *call, t3r_status want, t3r_statu
     do {                                                                                                               \
         const t3r_status status_ = call(__VA_ARGS__);                                                                  \
         SAID(cause, call, want, status_, __VA_ARGS__);                                                                 \
+    } while (0)
+
+/* The call is refused for a cause that it shares with others, in the same words. */
+#define REFUSED_TOO(words, want, call, ...)                                                                            \
+    do {                                                                                                               \
+        char text_[T3R_ERROR_BYTES];                                                                                   \
+        const t3r_status status_ = call(__VA_ARGS__);                                                                  \
+        assert_int_equal(status_, want);                                                                               \
+        assert_non_null(strstr(call##_error(status_, __VA_ARGS__, text_, sizeof text_), words));                       \
     } while (0)
 
 /* ---- a runtime and good arguments ----------------------------------------------------------------------------------
@@ -324,11 +334,7 @@ TEST(strips)
     empty();
     memset(depth, 0, sizeof depth);
     assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, 8, 0, 8), T3R_OK);
-    char said[T3R_ERROR_BYTES];
-    const t3r_status blind = t3r_add_rows(rt, &frame, &camera, 8, 24, 8, 24); /* which discards the rows before */
-    assert_int_equal(blind, T3R_ERR_NO_DEPTH);
-    assert_non_null(
-        strstr(t3r_add_rows_error(blind, rt, &frame, &camera, 8, 24, 8, 24, said, sizeof said), "no measurement"));
+    REFUSED_TOO("no measurement", T3R_ERR_NO_DEPTH, t3r_add_rows, rt, &frame, &camera, 8, 24, 8, 24); /* discards rows */
     WITH(warm, 1);
     add(2);
     REFUSED("a strip that would replace a view", T3R_ERR_STATE, t3r_add_rows, rt, &frame, &camera, 0, 8, 0, 8);
@@ -539,17 +545,102 @@ TEST(rows_of_pixels)
     REFUSED("no background", T3R_ERR_ARGUMENT, t3r_composite_row, picture, picture_alpha, SIDE, NULL);
 }
 
+/* Makes a lens that shows hardly anything. */
+static void fold_lens(void)
+{
+    camera.distortion = T3R_DISTORTION_RADTAN;
+    camera.distortion_q24[0] = -(100 << 24);
+}
+
+TEST(lenses_that_show_too_little)
+{
+    empty();
+    fold_lens();
+    REFUSED_TOO("more than half", T3R_ERR_CAMERA, t3r_add_rows, rt, &frame, &camera, 0, 8, 0, 8);
+    REFUSED_TOO("more than half", T3R_ERR_CAMERA, t3r_develop, rt, &frame, &camera, picture, NULL, &undistorted);
+    WITH(stream, 1);
+    fold_lens();
+    REFUSED_TOO("more than half", T3R_ERR_CAMERA, t3r_stream_keyframe, rt, &frame, &camera, &report);
+    good_arguments();
+    assert_int_equal(t3r_stream_keyframe(rt, &frame, &camera, NULL), T3R_OK);
+    fold_lens();
+    REFUSED_TOO("more than half", T3R_ERR_CAMERA, t3r_stream_keyframe, rt, &frame, &camera, &report);
+}
+
+TEST(strips_like_views)
+{
+    empty();
+    REFUSED_TOO("rt is NULL", T3R_ERR_ARGUMENT, t3r_add_rows, NULL, &frame, &camera, 0, 8, 0, 8);
+    frame.depth = NULL;
+    REFUSED_TOO("frame.depth is NULL", T3R_ERR_NO_DEPTH, t3r_add_rows, rt, &frame, &camera, 0, 8, 0, 8);
+    good_arguments();
+    frame.width = 0;
+    REFUSED_TOO("frame.width is 0", T3R_ERR_FRAME, t3r_add_rows, rt, &frame, &camera, 0, 8, 0, 8);
+    good_arguments();
+    add(2);
+    REFUSED_TOO("all 2 views", T3R_ERR_STATE, t3r_add_rows, rt, &frame, &camera, 0, 8, 0, 8);
+}
+
+/* t3r_rebuild_least() has the errors of the rebuilds and of the pictures that it makes. */
+TEST(least_budgets_like_rebuilds)
+{
+    t3r_least found;
+    WITH(keep_analysis, 1);
+    add(1);
+    REFUSED_TOO("there is no analysis", T3R_ERR_STATE, t3r_rebuild_least, rt, NULL, 256, &target, &scene, &found);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+    request.head = T3R_HEAD_COUNT;
+    REFUSED_TOO("request.head", T3R_ERR_ARGUMENT, t3r_rebuild_least, rt, &request, 256, &target, &scene, &found);
+    target.rgb_stride_bytes = SIDE;
+    REFUSED_TOO("rgb_stride_bytes", T3R_ERR_ARGUMENT, t3r_rebuild_least, rt, NULL, 256, &target, &scene, &found);
+}
+
+TEST(streams_like_views)
+{
+    good_config();
+    config.stream = 1;
+    config.gate = 0;
+    open_runtime();
+    assert_int_equal(t3r_stream_keyframe(rt, &frame, &camera, NULL), T3R_OK);
+    memset(depth, 0, sizeof depth);
+    REFUSED_TOO("no measurement", T3R_ERR_NO_DEPTH, t3r_stream_keyframe, rt, &frame, &camera, &report);
+    camera.position_q32[2] = INT64_C(1) << 50;
+    REFUSED_TOO("more than 1,024", T3R_ERR_CAMERA, t3r_stream_overlap, rt, &camera, SIDE, SIDE, &overlap_q8);
+}
+
+/* Another interface is reported by each call that takes a configuration or an arena. */
+TEST(another_interface)
+{
+    const uint64_t other = t3r_header_interface() + 1;
+    char text[T3R_ERROR_BYTES];
+    t3r_plan_info plan;
+    size_t least, bytes;
+    empty();
+    const t3r_status planned = t3r_plan_as(other, &config, &plan);
+    const t3r_status summed = t3r_plan_bytes_as(other, &config, &least, &bytes);
+    const t3r_status within = t3r_plan_within_as(other, sizeof arena, &config);
+    const t3r_status attached = t3r_attach_as(other, &rt, arena, arena_bytes);
+    assert_non_null(strstr(t3r_plan_error(planned, &config, &plan, text, sizeof text), "another trim3r.h"));
+    assert_non_null(
+        strstr(t3r_plan_bytes_error(summed, &config, &least, &bytes, text, sizeof text), "another trim3r.h"));
+    assert_non_null(strstr(t3r_plan_within_error(within, sizeof arena, &config, text, sizeof text), "another trim3r.h"));
+    assert_non_null(
+        strstr(t3r_attach_error(attached, &rt, arena, arena_bytes, text, sizeof text), "another trim3r.h"));
+}
+
 /* An error that no check explains, a status that the call did not return, and no error. */
 TEST(other_errors)
 {
     empty();
     add(1);
     char text[T3R_ERROR_BYTES];
-    static const t3r_status others[] = {T3R_OK, T3R_ERR_CANCELLED, T3R_ERR_FULL, -1000};
+    static const t3r_status others[] = {T3R_OK, T3R_ERR_CANCELLED, T3R_ERR_FULL, T3R_ERR_CAMERA, -1000};
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
         assert_string_equal(t3r_reconstruct_error(others[i], rt, NULL, &scene, text, sizeof text),
                             t3r_error_text(others[i]));
         assert_string_equal(t3r_render_error(others[i], rt, &camera, &target, text, sizeof text),
+                            t3r_error_text(others[i]));
+        assert_string_equal(t3r_add_view_error(others[i], NULL, &frame, &camera, text, sizeof text),
                             t3r_error_text(others[i]));
     }
 }

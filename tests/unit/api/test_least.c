@@ -119,6 +119,41 @@ TEST(not_met)
     }
 }
 
+/* One Gaussian draws black views without an error. */
+TEST(exact)
+{
+    const t3r_config config = good_config();
+    memset(rgb, 0, sizeof rgb);
+    t3r_runtime *rt = analysed(&config);
+    t3r_scene scene;
+    t3r_least found;
+    assert_int_equal(t3r_rebuild_least(rt, NULL, T3R_MAX_PSNR_Q8, &picture, &scene, &found), T3R_OK);
+    assert_true(scene.count == 1 && found.psnr_q8 == T3R_MAX_PSNR_Q8 && worst_psnr(rt) * 256 == T3R_MAX_PSNR_Q8);
+    (void)make_views(NULL);
+}
+
+static int cancel_drawing(void *user, t3r_stage stage, uint32_t done, uint32_t total)
+{
+    (void)user;
+    (void)done;
+    (void)total;
+    return stage == T3R_STAGE_RASTER;
+}
+
+/* A call that is cancelled while it draws a view ends with that scene. */
+TEST(cancelled_as_it_draws)
+{
+    const t3r_config config = good_config();
+    t3r_runtime *rt = analysed(&config);
+    const t3r_hooks hooks = {.progress = cancel_drawing};
+    t3r_scene scene;
+    t3r_least found;
+    assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
+    assert_int_equal(t3r_rebuild_least(rt, NULL, 30 * DB, &picture, &scene, &found), T3R_ERR_CANCELLED);
+    assert_int_equal(found.builds, 1);
+    assert_int_equal(t3r_get_scene(rt, &scene), T3R_OK);
+}
+
 /* A refused call changes nothing. */
 TEST(refused)
 {

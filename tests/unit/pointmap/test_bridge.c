@@ -274,6 +274,24 @@ TEST(out_of_steps_is_not_lent)
     free(s);
 }
 
+/* A view whose first step is beyond the scene takes that step for any depth. */
+TEST(steps_longer_than_the_scene)
+{
+    enum { EXPONENT = -5, STEPS = 2 * UNIT >> -EXPONENT }; /* a wall two scene units away */
+    rig *s = pair_new();
+    s->view[0].depth_unit_q40 = UINT64_C(1) << 46;
+    for (int i = 0; i < PIXELS; i++) {
+        forget(s, 0, i);
+        s->depth[1][i] = STEPS;
+    }
+    t3r_bridge_lend(s->view, PAIR, 0, EXPONENT, &alone);
+    assert_true(of_kind(s, 0, T3R_BRIDGED | T3R_MARK_LENT) > PIXELS / 2);
+    for (int i = 0; i < PIXELS; i++) {
+        assert_int_equal(s->depth[0][i], s->validity[0][i] != T3R_NO_DEPTH);
+    }
+    free(s);
+}
+
 /* A surface that neither view measured is bridged in the first and covered in the second. */
 TEST(bridged_once)
 {
@@ -296,12 +314,13 @@ TEST(seen_through)
 {
     for (int steps = UNIT; steps <= 3 * UNIT; steps += 7) {
         rig *s = pair_new();
+        place_view(s, 2, 0.25, 0, 2); /* says the same as the second view */
         int at = 24 * W + 45, there = at - (int)lround(0.25 * F * UNIT / steps);
         s->depth[0][at] = (uint16_t)steps;
         s->validity[0][at] = T3R_BRIDGED;
         int behind = steps - s->depth[1][there];
         bool before = 16 * -behind > steps, same = 16 * abs(behind) <= steps;
-        assert_int_equal(t3r_bridge_settle(s->view, PAIR, 0, 0, 0, &alone), !before && !same);
+        assert_int_equal(t3r_bridge_settle(s->view, VIEWS, 0, 0, 0, &alone), !before && !same);
         assert_int_equal(s->validity[0][at], before ? T3R_NO_DEPTH
                                              : same ? T3R_BRIDGED | T3R_MARK_COVERED
                                                     : T3R_BRIDGED);

@@ -366,3 +366,31 @@ TEST(unseen_have_no_footprint)
     }
     assert_false(t3r_footprint_rows(&projection, &g, a, b));
 }
+
+/* A splat's box on a lattice holds those of its pixels that the box in the view holds, and its centre stays. */
+TEST(boxes_on_lattices)
+{
+    enum { MOST = 5 };
+    for (uint32_t box = 0; box < MOST * MOST * MOST * MOST; box++) {
+        const uint16_t x0 = (uint16_t)(box % MOST), y0 = (uint16_t)(box / MOST % MOST);
+        const t3r_splat in_view = {.x0 = x0,
+                                   .y0 = y0,
+                                   .x1 = (uint16_t)(x0 + box / (MOST * MOST) % MOST),
+                                   .y1 = (uint16_t)(y0 + box / (MOST * MOST * MOST)),
+                                   .x_q12 = 3 << 12,
+                                   .y_q12 = 4 << 12,
+                                   .z_q20 = 7};
+        for (uint32_t at = 0; at < 4; at++) {
+            const t3r_lattice lattice = {1, at & 1, at >> 1};
+            t3r_splat s = in_view;
+            t3r_to_lattice(&lattice, &s);
+            assert_true(s.x_q12 == in_view.x_q12 - (int32_t)(lattice.x << 12));
+            assert_true(s.y_q12 == in_view.y_q12 - (int32_t)(lattice.y << 12));
+            for (uint32_t pixel = 0; pixel < MOST * MOST; pixel++) {
+                const uint32_t x = pixel % MOST, y = pixel / MOST, u = 2 * x + lattice.x, v = 2 * y + lattice.y;
+                const bool on = u >= in_view.x0 && u <= in_view.x1 && v >= in_view.y0 && v <= in_view.y1;
+                assert_int_equal(s.z_q20 == 7 && x >= s.x0 && x <= s.x1 && y >= s.y0 && y <= s.y1, on);
+            }
+        }
+    }
+}

@@ -43,7 +43,7 @@ static double off(const t3r_camera *a, const t3r_camera *b)
 /* The motion from one camera to another takes the first to the second, and back again. */
 TEST(from_camera_to_camera)
 {
-    for (int32_t exponent = -6; exponent <= 6; exponent += 3) {
+    for (int32_t exponent = -15; exponent <= 6; exponent += 3) {
         const double unit = ldexp(1, exponent);
         const t3r_scene_frame frame = {{INT64_C(5) << 32, -(INT64_C(3) << 32), 7}, exponent};
         const t3r_camera a = camera_at(5 + unit, -3, unit / 3, 0.2, -0.5, 0.6);

@@ -116,6 +116,18 @@ TEST(counts_on_its_own_surface)
     }
 }
 
+/* The disc of a Gaussian as sparse as its distance reaches from the first step of depth on. */
+TEST(discs_that_reach_the_camera)
+{
+    static site s;
+    open_site(&s);
+    s.view.fx_q16 = s.view.fy_q16 = 8 << 16;
+    add(&s, (WIDTH - 1) / 2.0, (HEIGHT - 1) / 2.0, 2, -8000);
+    t3r_map_discs_find(&s.map, &s.keyframe, &s.workers, s.discs);
+    assert_int_equal(s.discs[0].nearest, 1);
+    assert_in_range(s.discs[0].farthest, 6124, 6125); /* 2 + 2 x 16 / 8 + 2 / 16 */
+}
+
 /* Fills the wall with a regular grid of Gaussians, `step` pixels apart, noted as of another density. Returns a central
  * one. */
 static uint32_t fill_wall(site *s, int step, int noted_q10)

@@ -6,6 +6,7 @@
 #include "rgbd_frame.h"
 #include "room/room.h"
 #include "state/state.h"
+#include "stream/stream_gate.h"
 #include "stream/stream_map.h"
 
 enum { W = 64, H = 48, PIXELS = W * H, CAP = 1500, LIVE = 3, STRIDE = 3, FIRST = 8 };
@@ -117,6 +118,36 @@ static void blind_hand(void)
     cover(0);
 }
 
+/* Depth is lost in three quarters of the picture. */
+static void glare(void)
+{
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        depth[i] = i % W < W / 4 ? depth[i] : 0;
+    }
+}
+
+/* The lens is shifted so far to the right that three eighths of the picture are left. */
+static void aside(void)
+{
+    enum { KEPT = W * 3 / 8, OFF = W - KEPT };
+    camera.cx_q16 -= OFF << 16;
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        const bool kept = i % W < KEPT;
+        depth[i] = kept ? depth[i + OFF] : 0;
+        for (uint32_t c = 0; c < 3 && kept; c++) {
+            rgb[3 * i + c] = rgb[3 * (i + OFF) + c];
+        }
+    }
+}
+
+/* Something is between the camera and all that the map has. */
+static void nearer(void)
+{
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        depth[i] /= 2;
+    }
+}
+
 static void jump(void)
 {
     camera.position_q32[0] += (int64_t)(0.7 * 4294967296.0);
@@ -157,6 +188,47 @@ TEST(honest_frames_pass)
 {
     t3r_runtime *rt = begin(1);
     walk(rt, 0, 2 * 70 / STRIDE);
+}
+
+/* The picture still shows the map where depth is lost, and a frame may show little of what was seen last. */
+TEST(frames_that_say_little_pass)
+{
+    t3r_runtime *rt = begin(1);
+    t3r_stream_report report;
+    walk(rt, 0, FIRST);
+    look(FIRST * STRIDE);
+    glare();
+    assert_int_equal(take(rt, &report), T3R_OK);
+    assert_true(report.refusal == T3R_REFUSAL_NONE && report.hidden_q8 > 160 && report.hidden_likeness_q8 > 80);
+    rt = begin(1);
+    walk(rt, 0, FIRST);
+    look(FIRST * STRIDE);
+    aside();
+    assert_int_equal(take(rt, &report), T3R_OK);
+    assert_true(report.refusal == T3R_REFUSAL_NONE && report.recent > 32 && report.in_view_q8 < 128);
+}
+
+/* Gaussians of one colour have no likeness, and grey pictures no detail; the ratio of levels has a bound. */
+TEST(grey_rooms)
+{
+    enum { LEVEL = 16 };
+    t3r_runtime *rt = begin(1);
+    t3r_stream_report report;
+    for (uint32_t i = 0; i < FIRST; i++) {
+        look(i * STRIDE);
+        memset(rgb, LEVEL, sizeof rgb);
+        assert_int_equal(take(rt, &report), T3R_OK);
+        assert_true(report.refusal == T3R_REFUSAL_NONE && report.likeness_q8 == 256 && report.detail_q8 == 0);
+    }
+    const t3r_map map = t3r_map_of(rt);
+    for (uint32_t i = 0; i < map.count; i++) {
+        map.gaussians[i].colour_q7[1] = LEVEL * 128;
+    }
+    look(FIRST * STRIDE);
+    white();
+    assert_int_equal(take(rt, &report), T3R_OK);
+    assert_int_equal(report.refusal, T3R_REFUSAL_BRIGHT);
+    assert_int_equal(report.exposure_q8, 4 * (T3R_RATIO_BINS / 2 - 1));
 }
 
 /* Whether everything that later keyframes use is as it was: the map, the keyframes and their state. */
@@ -221,6 +293,32 @@ TEST(without_a_gate)
     }
 }
 
+/* A reason that may last holds off a number of frames. The next one is taken, into the same piece of the map. */
+TEST(lasting_troubles_are_taken)
+{
+    static const struct {
+        void (*apply)(void);
+        t3r_refusal refusal;
+        uint32_t align, refused;
+    } lasting[] = {{blur, T3R_REFUSAL_BLURRED, 1, 4},
+                   {dark, T3R_REFUSAL_EXPOSURE, 1, 16},
+                   {hand, T3R_REFUSAL_COVERED, 1, 32},
+                   {nearer, T3R_REFUSAL_CONTRADICTS, 0, 4},
+                   {nearer, T3R_REFUSAL_CONTRADICTS, 1, 4}};
+    for (size_t t = 0; t < sizeof lasting / sizeof *lasting; t++) {
+        t3r_runtime *rt = begin_with(1, lasting[t].align);
+        walk(rt, 0, FIRST);
+        for (uint32_t i = 0; i <= lasting[t].refused; i++) {
+            t3r_stream_report report;
+            look(FIRST * STRIDE);
+            lasting[t].apply();
+            assert_int_equal(take(rt, &report), T3R_OK);
+            assert_int_equal(report.refusal, i < lasting[t].refused ? lasting[t].refusal : T3R_REFUSAL_NONE);
+            assert_int_equal(report.moved + report.realigned, 0);
+        }
+    }
+}
+
 /* Frames that contradict the map before the map may move with poses, and before one of another place is taken. */
 enum { REFUSED_OF_JUMP = 2, REFUSED = 4 };
 
@@ -278,6 +376,105 @@ TEST(a_lasting_jump_moves_the_map)
     }
     assert_true(squares < 32 * sizeof drawn[0]); /* 33 dB */
     walk_on(rt, jump);
+}
+
+static void jump_with_holes(void)
+{
+    jump();
+    for (uint32_t i = 0; i < PIXELS; i += 3) {
+        depth[i] = 0;
+    }
+}
+
+static int cancel_alignment(void *user, t3r_stage stage, uint32_t done, uint32_t total)
+{
+    (void)user;
+    (void)done;
+    (void)total;
+    return stage == T3R_STAGE_POINTMAP;
+}
+
+/* A frame that is cancelled while it is aligned leaves no trace, and the same frame then moves the map. */
+TEST(a_jump_that_is_cancelled)
+{
+    t3r_runtime *rt = begin(1);
+    t3r_stream_report report;
+    walk(rt, 0, FIRST + 1); /* the frame's slot is between those of other keyframes */
+    for (uint32_t i = 1; i <= REFUSED_OF_JUMP + 2; i++) {
+        const bool cancelled = i == REFUSED_OF_JUMP + 1;
+        const t3r_hooks hooks = {.progress = cancelled ? cancel_alignment : NULL};
+        look((FIRST + T3R_MIN(i, REFUSED_OF_JUMP + 1u)) * STRIDE);
+        jump_with_holes();
+        assert_int_equal(t3r_set_hooks(rt, &hooks), T3R_OK);
+        memcpy(before, arena, arena_bytes);
+        assert_int_equal(take(rt, &report), cancelled ? T3R_ERR_CANCELLED : T3R_OK);
+        assert_true(i == REFUSED_OF_JUMP + 2 || is_as_before(rt));
+    }
+    assert_true(report.refusal == T3R_REFUSAL_NONE && report.realigned == 1);
+}
+
+/* Places where a copied arena may say that the jump began. */
+static void nowhere(const t3r_runtime *rt, t3r_placement *from)
+{
+    (void)rt;
+    *from = (t3r_placement){.position_q32 = {(int64_t)1000000 << 32}};
+}
+
+/* The camera turned about the vertical axis, so far away that the frame is at the edge of the map's range: the grid of
+ * guesses begins beyond it. Without the turn the frame is beyond it. */
+static void edge(const t3r_runtime *rt, t3r_placement *from)
+{
+    const t3r_camera *last = &rt->camera[(rt->next_slot + LIVE - 1) % LIVE];
+    const int32_t *q = last->rotation_q30;
+    const int64_t unit_q32 = INT64_C(1) << (32 + rt->frame.exponent);
+    *from = (t3r_placement){.rotation_q30 = {-q[2], q[3], q[0], -q[1]}};
+    memcpy(from->position_q32, camera.position_q32, sizeof from->position_q32);
+    from->position_q32[0] += rt->frame.origin_q32[0] - last->position_q32[0] - (1024 * unit_q32 - unit_q32 / 64);
+}
+
+/* A frame whose jump cannot be followed begins a new piece, as without alignment. */
+TEST(jumps_from_anywhere)
+{
+    void (*const places[])(const t3r_runtime *, t3r_placement *) = {nowhere, edge};
+    for (size_t p = 0; p < sizeof places / sizeof *places; p++) {
+        t3r_runtime *rt = begin(1);
+        t3r_stream_report report;
+        walk(rt, 0, FIRST);
+        for (uint32_t i = 0; i <= REFUSED; i++) {
+            look((FIRST + i) * STRIDE);
+            jump();
+            places[p](rt, &rt->gate.contradicts_from);
+            memcpy(before, arena, arena_bytes);
+            assert_int_equal(take(rt, &report), T3R_OK);
+            assert_int_equal(report.refusal, i < REFUSED ? T3R_REFUSAL_CONTRADICTS : T3R_REFUSAL_NONE);
+            assert_true(i == REFUSED || is_as_before(rt));
+        }
+        assert_true(report.moved == 1 && report.realigned == 0);
+    }
+}
+
+/* Figures from another pose agree if there are enough of them, they are good, and clearly better than those before. */
+TEST(figures_that_agree)
+{
+    const t3r_stream_report good = {.compared = 32, .recent = 256, .in_view_q8 = 256, .likeness_q8 = 156};
+    t3r_stream_report other = {.compared = 200, .recent = 256, .in_view_q8 = 256, .likeness_q8 = 256 - 134}, figures = good;
+    assert_true(t3r_gate_agrees(&good, &other));
+    other.likeness_q8++; /* 133, and 100 is more than 3/4 of it */
+    assert_false(t3r_gate_agrees(&good, &other));
+    other.compared = 31; /* the frame missed the map from there */
+    assert_true(t3r_gate_agrees(&good, &other));
+    figures.likeness_q8 = 256 - 167;
+    assert_true(t3r_gate_agrees(&figures, &other));
+    figures.likeness_q8--;
+    assert_false(t3r_gate_agrees(&figures, &other));
+    figures = good;
+    figures.compared--;
+    assert_false(t3r_gate_agrees(&figures, &other));
+    figures = good;
+    figures.recent++;
+    assert_false(t3r_gate_agrees(&figures, &other));
+    figures.in_view_q8 = 127;
+    assert_true(t3r_gate_agrees(&figures, &other));
 }
 
 /* Without alignment a new piece begins: what the new frames cover and do not show leaves the map. */

@@ -216,6 +216,29 @@ TEST(counts_are_held)
     }
 }
 
+/* A keyframe without a depth there leaves a Gaussian in the map, but not one of an earlier piece. */
+TEST(earlier_pieces_are_not_trusted)
+{
+    static site s;
+    uint64_t seed = 15;
+    fill(&s, &seed, 100);
+    memset(s.validity, T3R_NO_DEPTH, sizeof s.validity);
+    s.map.count = 2;
+    for (int i = 0; i < 2; i++) {
+        s.gaussians[i] = (t3r_gaussian){.position_q20 = {0, 0, 2 << 20}};
+    }
+    s.records[1].fitted = T3R_EARLIER_PIECE;
+    s.view.fx_q16 = s.view.fy_q16 = 30 << 16;
+    s.view.cx_q16 = s.view.cy_q16 = 10 << 16;
+    s.view.depth_unit_q40 = UINT64_C(1) << 30;
+    for (int i = 0; i < 3; i++) {
+        s.view.pose.rotation_q30[4 * i] = 1 << 30;
+    }
+    const t3r_pointmap keyframe = t3r_pointmap_of(&s.view, 0);
+    assert_int_equal(see(&s, &keyframe, 0, 0), 1);
+    assert_true(s.map.count == 1 && s.records[0].fitted != T3R_EARLIER_PIECE);
+}
+
 /* A head's Gaussians at the end of the range or beyond are dropped; the others keep their own pixel's record. */
 TEST(what_is_out_of_range_is_left_out)
 {

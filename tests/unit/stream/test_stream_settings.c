@@ -65,7 +65,7 @@ TEST(each_setting)
     base.refine = 1;
     base.gate = 0; /* the pictures have little to do with each other */
     const uint32_t usually = run(&base, usual);
-    t3r_config other[14];
+    t3r_config other[16];
     size_t n = 0;
 #define OTHER(field, value) (other[n] = base, other[n].field = (value), n++)
     OTHER(bridge_radius, 0);
@@ -77,6 +77,8 @@ TEST(each_setting)
     OTHER(structural, 1);
     OTHER(align, 0);
     OTHER(remember, 1);
+    OTHER(refine_stride, 1);
+    OTHER(refine_stride, 2);
     OTHER(clusters, 5);
     OTHER(allocate, T3R_ALLOCATE_PAPER);
     OTHER(allocate, T3R_ALLOCATE_PIXEL);
