@@ -78,9 +78,8 @@ static bool is_scene(const t3r_runtime *rt)
 static bool is_stream(const t3r_runtime *rt)
 {
     bool full = rt->views == rt->config.views;
-    return !rt->analysed && rt->next_slot <= rt->views && rt->next_slot < rt->config.views &&
-           (full || rt->next_slot == rt->views) && rt->gaussians <= rt->config.gaussians &&
-           rt->remembered <= rt->config.remember &&
+    return !rt->analysed && rt->next_slot < rt->config.views && (full || rt->next_slot == rt->views) &&
+           rt->gaussians <= rt->config.gaussians && rt->remembered <= rt->config.remember &&
            (rt->has_scene ? rt->views > 0 && rt->keyframes >= rt->views
                           : rt->views == 0 && rt->keyframes == 0 && rt->gaussians == 0);
 }

@@ -229,10 +229,10 @@ const char *t3r_config_error(const t3r_config *config)
 
 #define VALUE(text, value, low, high) (value),
 
-/* Returns the value that is out of its range, UINT64_MAX for another fault. */
+/* Returns the value of a configuration that is out of its range, UINT64_MAX for another fault. */
 static uint64_t value_of_fault(const t3r_config *c, size_t fault)
 {
-    if (fault == 0 || is_blank(c)) {
+    if (is_blank(c)) {
         return UINT64_MAX;
     }
     if (fault <= RANGES_COUNT) {

@@ -152,11 +152,9 @@ static void move(t3r_runtime *rt, const t3r_motion *motion, uint32_t slot)
 t3r_status t3r_realign(t3r_runtime *rt, uint32_t slot, t3r_stream_report *report)
 {
     const t3r_camera given = rt->camera[slot];
-    t3r_status status = T3R_OK;
-    if (guess(rt, slot)) {
-        status = align(rt, slot);
-    }
-    if (status == T3R_OK) {
+    const bool found = guess(rt, slot);
+    const t3r_status status = found ? align(rt, slot) : T3R_OK;
+    if (found && status == T3R_OK) {
         t3r_stream_report aligned = *report;
         const t3r_view view = t3r_view_of(rt, slot);
         t3r_motion motion;

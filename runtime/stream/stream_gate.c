@@ -269,7 +269,7 @@ t3r_refusal t3r_gate_decide(t3r_runtime *rt, const t3r_view *view, const t3r_cam
     }
     gate->refusal = (uint8_t)fault;
     if (fault != T3R_REFUSAL_NONE && !waited) {
-        gate->refused = (uint8_t)T3R_MIN(gate->refused + (patience[fault] > 0), UINT8_MAX);
+        gate->refused = (uint8_t)(gate->refused + (patience[fault] > 0)); /* at most its patience */
         memcpy(gate->refused_at_q20, view->pose.position_q20, sizeof gate->refused_at_q20);
         return fault;
     }

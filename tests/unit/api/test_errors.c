@@ -334,7 +334,7 @@ TEST(strips)
     empty();
     memset(depth, 0, sizeof depth);
     assert_int_equal(t3r_add_rows(rt, &frame, &camera, 0, 8, 0, 8), T3R_OK);
-    REFUSED_TOO("no measurement", T3R_ERR_NO_DEPTH, t3r_add_rows, rt, &frame, &camera, 8, 24, 8, 24); /* discards rows */
+    REFUSED_TOO("no measurement", T3R_ERR_NO_DEPTH, t3r_add_rows, rt, &frame, &camera, 8, 24, 8, 24);
     WITH(warm, 1);
     add(2);
     REFUSED("a strip that would replace a view", T3R_ERR_STATE, t3r_add_rows, rt, &frame, &camera, 0, 8, 0, 8);
@@ -608,6 +608,70 @@ TEST(streams_like_views)
     REFUSED_TOO("more than 1,024", T3R_ERR_CAMERA, t3r_stream_overlap, rt, &camera, SIDE, SIDE, &overlap_q8);
 }
 
+TEST(missing_arguments)
+{
+    t3r_least found;
+    empty();
+    REFUSED_TOO("rt is NULL", T3R_ERR_ARGUMENT, t3r_bind_head, NULL, t3r_head_tiny, t3r_head_tiny_bytes);
+    REFUSED_TOO("rt is NULL", T3R_ERR_ARGUMENT, t3r_develop, NULL, &frame, &camera, picture, NULL, &undistorted);
+    REFUSED_TOO("rt is NULL", T3R_ERR_ARGUMENT, t3r_get_scene, NULL, &scene);
+    REFUSED_TOO("rt is NULL", T3R_ERR_ARGUMENT, t3r_render, NULL, &camera, &target);
+    REFUSED_TOO("rt is NULL", T3R_ERR_ARGUMENT, t3r_scene_begin, NULL, &scene_frame);
+    REFUSED_TOO("rt is NULL", T3R_ERR_ARGUMENT, t3r_scene_append, NULL, &gaussian);
+    REFUSED_TOO("scene is NULL", T3R_ERR_ARGUMENT, t3r_get_scene, rt, NULL);
+    REFUSED_TOO("scene is NULL", T3R_ERR_ARGUMENT, t3r_rebuild_least, rt, NULL, 256, &target, NULL, &found);
+    REFUSED_TOO("frame is NULL", T3R_ERR_ARGUMENT, t3r_scene_begin, rt, NULL);
+    REFUSED_TOO("camera is NULL", T3R_ERR_ARGUMENT, t3r_render, rt, NULL, &target);
+    REFUSED_TOO("camera is NULL", T3R_ERR_ARGUMENT, t3r_view_camera, rt, 0, NULL);
+    REFUSED_TOO("camera is NULL", T3R_ERR_ARGUMENT, t3r_stream_overlap, rt, NULL, SIDE, SIDE, &overlap_q8);
+    REFUSED_TOO("no stream", T3R_ERR_STATE, t3r_stream_overlap, rt, &camera, SIDE, SIDE, &overlap_q8);
+    REFUSED_TOO("config is NULL", T3R_ERR_ARGUMENT, t3r_init, &rt, arena, sizeof arena, NULL);
+    REFUSED_TOO("config is NULL", T3R_ERR_ARGUMENT, t3r_plan_within, sizeof arena, NULL);
+    REFUSED_TOO("arena is NULL", T3R_ERR_ARGUMENT, t3r_attach, &rt, NULL, sizeof arena);
+    REFUSED_TOO("arena is 8 bytes", T3R_ERR_ARENA, t3r_attach, &rt, arena + 8, sizeof arena - 8);
+}
+
+/* Ranges from their other end. */
+TEST(other_bounds)
+{
+    t3r_least found;
+    good_config();
+    assert_int_equal(t3r_plan_within(sizeof arena, &config), T3R_OK);
+    config.gaussians = config.max_gaussians + 1;
+    REFUSED_TOO("config.gaussians", T3R_ERR_CONFIG, t3r_plan_within, sizeof arena, &config);
+    config.max_gaussians = T3R_MAX_GAUSSIANS + 1;
+    REFUSED_TOO("config.max_gaussians", T3R_ERR_CONFIG, t3r_plan_within, sizeof arena, &config);
+    good_config();
+    config.width = 4;
+    REFUSED_TOO("width must be", T3R_ERR_CONFIG, t3r_plan_within, sizeof arena, &config);
+    WITH(keep_analysis, 1);
+    build();
+    target.width = 0;
+    REFUSED_TOO("target.width", T3R_ERR_ARGUMENT, t3r_render, rt, &camera, &target);
+    good_arguments();
+    target.height = 0;
+    REFUSED_TOO("target.height", T3R_ERR_ARGUMENT, t3r_render, rt, &camera, &target);
+    REFUSED_TOO("working size", T3R_ERR_ARGUMENT, t3r_rebuild_least, rt, NULL, 256, &target, &scene, &found);
+    good_arguments();
+    target.alpha_stride_bytes++;
+    REFUSED_TOO("alpha_stride_bytes", T3R_ERR_ARGUMENT, t3r_render, rt, &camera, &target);
+    good_arguments();
+    camera.fx_q16 = 0;
+    REFUSED_TOO("camera.fx_q16", T3R_ERR_CAMERA, t3r_render, rt, &camera, &target);
+    gaussian.factor_exponent = -61;
+    REFUSED_TOO("factor_exponent", T3R_ERR_ARGUMENT, t3r_scene_append, rt, &gaussian);
+    request.importance = planes;
+    request.importance_stride_bytes = 2 * SIDE + 1;
+    REFUSED_TOO("importance_stride_bytes", T3R_ERR_ARGUMENT, t3r_rebuild, rt, &request, &scene);
+    WITH(stream, 1);
+    REFUSED_TOO("a stream's", T3R_ERR_STATE, t3r_scene_begin, rt, &scene_frame);
+    good_config();
+    config.stream = 1;
+    config.head = T3R_HEAD_LEARNED;
+    open_runtime();
+    REFUSED_TOO("no head is bound", T3R_ERR_STATE, t3r_stream_keyframe, rt, &frame, &camera, &report);
+}
+
 /* Another interface is reported by each call that takes a configuration or an arena. */
 TEST(another_interface)
 {
@@ -623,9 +687,9 @@ TEST(another_interface)
     assert_non_null(strstr(t3r_plan_error(planned, &config, &plan, text, sizeof text), "another trim3r.h"));
     assert_non_null(
         strstr(t3r_plan_bytes_error(summed, &config, &least, &bytes, text, sizeof text), "another trim3r.h"));
-    assert_non_null(strstr(t3r_plan_within_error(within, sizeof arena, &config, text, sizeof text), "another trim3r.h"));
     assert_non_null(
-        strstr(t3r_attach_error(attached, &rt, arena, arena_bytes, text, sizeof text), "another trim3r.h"));
+        strstr(t3r_plan_within_error(within, sizeof arena, &config, text, sizeof text), "another trim3r.h"));
+    assert_non_null(strstr(t3r_attach_error(attached, &rt, arena, arena_bytes, text, sizeof text), "another trim3r.h"));
 }
 
 /* An error that no check explains, a status that the call did not return, and no error. */
@@ -639,6 +703,8 @@ TEST(other_errors)
         assert_string_equal(t3r_reconstruct_error(others[i], rt, NULL, &scene, text, sizeof text),
                             t3r_error_text(others[i]));
         assert_string_equal(t3r_render_error(others[i], rt, &camera, &target, text, sizeof text),
+                            t3r_error_text(others[i]));
+        assert_string_equal(t3r_attach_error(others[i], &rt, arena, arena_bytes, text, sizeof text),
                             t3r_error_text(others[i]));
         assert_string_equal(t3r_add_view_error(others[i], NULL, &frame, &camera, text, sizeof text),
                             t3r_error_text(others[i]));

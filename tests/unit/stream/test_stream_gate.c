@@ -231,6 +231,19 @@ TEST(grey_rooms)
     assert_int_equal(report.exposure_q8, 4 * (T3R_RATIO_BINS / 2 - 1));
 }
 
+/* Stripes as wide as half the reach of coarse differences have the most detail. */
+TEST(fine_stripes)
+{
+    t3r_runtime *rt = begin(1);
+    t3r_stream_report report;
+    look(0);
+    for (uint32_t i = 0; i < sizeof rgb; i++) {
+        rgb[i] = i / 3 % W == W - 1 ? 100 : i / 3 % 4 < 2 ? 40 : 200;
+    }
+    assert_int_equal(take(rt, &report), T3R_OK);
+    assert_int_equal(report.detail_q8, 1024);
+}
+
 /* Whether everything that later keyframes use is as it was: the map, the keyframes and their state. */
 static bool is_as_before(const t3r_runtime *rt)
 {
@@ -457,7 +470,8 @@ TEST(jumps_from_anywhere)
 TEST(figures_that_agree)
 {
     const t3r_stream_report good = {.compared = 32, .recent = 256, .in_view_q8 = 256, .likeness_q8 = 156};
-    t3r_stream_report other = {.compared = 200, .recent = 256, .in_view_q8 = 256, .likeness_q8 = 256 - 134}, figures = good;
+    t3r_stream_report other = {.compared = 200, .recent = 256, .in_view_q8 = 256, .likeness_q8 = 256 - 134},
+                      figures = good;
     assert_true(t3r_gate_agrees(&good, &other));
     other.likeness_q8++; /* 133, and 100 is more than 3/4 of it */
     assert_false(t3r_gate_agrees(&good, &other));

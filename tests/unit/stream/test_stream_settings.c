@@ -12,10 +12,12 @@ enum { SIDE = 32, PIXELS = SIDE * SIDE, BUDGET = 80, KEYFRAMES = 4 };
 static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[1 << 20];
 static uint8_t rgb[PIXELS * 3], depth[PIXELS * 2];
 
+/* Goes to and fro along both axes, so that Gaussians leave the picture on each side. */
 static t3r_camera camera_at(uint32_t step)
 {
     t3r_camera camera = straight_camera(SIDE);
-    camera.position_q32[0] = (int64_t)step << 29;
+    camera.position_q32[0] = (int64_t)(step ^ step >> 1) << 29;
+    camera.position_q32[1] = (int64_t)(step % 3) << 29;
     return camera;
 }
 
