@@ -46,8 +46,8 @@ TEST(fewer_where_less_is_shared)
 TEST(in_parts_where_views_disagree)
 {
     for (uint32_t whole = 1; whole <= T3R_MAX_REFINE; whole++) {
-        const t3r_passes agreeing = t3r_passes_in_parts(whole, 50 * 256 - 1);
-        const t3r_passes disagreeing = t3r_passes_in_parts(whole, 50 * 256);
+        const t3r_passes agreeing = t3r_passes_in_parts(whole, 140 * 256 - 1);
+        const t3r_passes disagreeing = t3r_passes_in_parts(whole, 140 * 256);
         assert_int_equal(agreeing.count, whole);
         assert_int_equal(agreeing.parts, 0);
         assert_int_equal(disagreeing.count, whole < 3 ? whole : whole + (whole + 1) / 4);
