@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "fitted_passes.h"
 
-#include <stdbool.h>
-
 #include "core/fixed.h"
 #include "pointmap/disagreement.h"
 
@@ -12,11 +10,6 @@
 #define STEP 2u                /* pixels between compared pixels */
 #define PAIRS_LEAST 64u        /* with fewer compared pairs, the disagreement is unknown */
 #define UNKNOWN_Q8 (150u << 8) /* levels^2, typical of good sensors */
-
-/* Disagreement from which passes compare a part of the pixels, levels^2: most recorded views of the training scenes
- * have more. Rendered ones have less, also where their pictures have noise and their poses are exact. */
-#define PARTS_FROM_Q8 (140u << 8)
-#define PARTS_LEAST 3u /* so few whole passes at least: with fewer, the last one has to do too much */
 
 uint32_t t3r_predict_passes(uint32_t points, uint32_t gaussians, uint32_t disagreement_q8, uint32_t most)
 {
@@ -31,18 +24,11 @@ uint32_t t3r_predict_passes(uint32_t points, uint32_t gaussians, uint32_t disagr
     return (uint32_t)t3r_clamp64(((int64_t)t3r_isqrt64(square) + 1) / 2, 1, most);
 }
 
-t3r_passes t3r_passes_in_parts(uint32_t whole, uint32_t disagreement_q8)
-{
-    const uint32_t count = whole + (whole + 1) / 4;
-    const bool in_parts = whole >= PARTS_LEAST && disagreement_q8 >= PARTS_FROM_Q8;
-    return in_parts ? (t3r_passes){count, count - 1} : (t3r_passes){whole, 0};
-}
-
-t3r_passes t3r_fitted_passes(t3r_runtime *rt, const t3r_view *views, uint32_t most)
+uint32_t t3r_fitted_passes(t3r_runtime *rt, const t3r_view *views, uint32_t most)
 {
     uint32_t pairs;
-    const uint32_t measured_q8 = t3r_disagreement_q8(views, rt->views, rt->frame.exponent, rt->gain_q14, STEP, &pairs);
-    const bool known = pairs >= PAIRS_LEAST;
-    const uint32_t whole = t3r_predict_passes(rt->valid_points, rt->gaussians, known ? measured_q8 : UNKNOWN_Q8, most);
-    return known && !rt->config.structural ? t3r_passes_in_parts(whole, measured_q8) : (t3r_passes){whole, 0};
+    const uint32_t disagreement_q8 =
+        t3r_disagreement_q8(views, rt->views, rt->frame.exponent, rt->gain_q14, STEP, &pairs);
+    return t3r_predict_passes(rt->valid_points, rt->gaussians, pairs < PAIRS_LEAST ? UNKNOWN_Q8 : disagreement_q8,
+                              most);
 }

@@ -62,7 +62,7 @@ def test_good_folder():
     check(status == 0, f"good folder: {error}")
     report = json.loads(out)
     expected = {"frames": 3, "depth_frames": 3, "posed_frames": 3, "triplets": 1, "width": 40, "height": 30,
-                "bytes": os.path.getsize(target), "skipped": 0, "left_out": [], "depth_left_out": [], "remarks": []}
+                "bytes": os.path.getsize(target), "border": [0] * 4, "skipped": 0, "left_out": [], "depth_left_out": [], "remarks": []}
     check(report == expected, f"good folder: {report}")
     status, out, _ = run("info", target, "--json")
     info = json.loads(out)

@@ -42,19 +42,6 @@ TEST(fewer_where_less_is_shared)
     assert_int_equal(by_views, 2);
 }
 
-/* From three on, passes over a part of the pixels are a quarter more, and the last one is whole. */
-TEST(in_parts_where_views_disagree)
-{
-    for (uint32_t whole = 1; whole <= T3R_MAX_REFINE; whole++) {
-        const t3r_passes agreeing = t3r_passes_in_parts(whole, 140 * 256 - 1);
-        const t3r_passes disagreeing = t3r_passes_in_parts(whole, 140 * 256);
-        assert_int_equal(agreeing.count, whole);
-        assert_int_equal(agreeing.parts, 0);
-        assert_int_equal(disagreeing.count, whole < 3 ? whole : whole + (whole + 1) / 4);
-        assert_int_equal(disagreeing.parts, whole < 3 ? 0 : disagreeing.count - 1);
-    }
-}
-
 TEST(extremes)
 {
     const uint32_t most_points = 1u << 28, worst = 1u << 24;
