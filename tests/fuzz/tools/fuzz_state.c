@@ -15,7 +15,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 enum { SIDE = 32, FRAMES = 4, SAVED_FRAMES = 3, BUDGET = 40, EDIT_BYTES = 6 };
 
-/* What is made once: a recording, and the state after its first frames. */
+/* Holds a recording, and the state after its first frames; made once. */
 typedef struct sound {
     t3r_recording *recording;
     uint8_t *bytes;
