@@ -74,10 +74,6 @@
       "refine structure more than level: local contrast, and not what a whole view shows brighter")                    \
     X(depth, depth, T3R_DEPTH_SENSOR, T3R_DEPTH_COUNT - 1, T3R_DEPTH_SENSOR, STEREO, T3R_DEPTH_STEREO, BUILD, "depth", \
       "source of depth; stereo matches the colours of two or more posed frames and ignores recorded depth")            \
-    /* 1 = pixels that stereo cannot match continue the planes on which the matched pixels of their view lie; 0 =      \
-     * the neighbouring surface in the picture. Needs depth by stereo and fill_radius above 0. */                      \
-    X(planes, toggle, 0, 1, 0, STEREO, 1, BUILD, "planes",                                                             \
-      "continue what --depth stereo does not match along the planes of what it does")                                  \
     /* 1 = 54 of a budget of 864 and more, 24 of 384, 6 of 96 are wide Gaussians 256 scene units away. They lie in all \
      * directions and have the colours of the views' borders, so that views for people are not black where no context  \
      * view saw. Their t3r_gaussian.view is T3R_NO_VIEW, and renders have no depth there. Ignored with `stream`. */    \

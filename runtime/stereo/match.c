@@ -134,9 +134,7 @@ void t3r_match_all(const t3r_match *match, bool fill)
 {
     t3r_match_pair(match);
     t3r_match_agree(match);
-    if (match->distrust_outlines) {
-        t3r_plane_outline(match);
-    }
+    t3r_plane_outline(match);
     for (uint32_t side = 0; side < 2; side++) {
         (void)t3r_match_speckles(match, side);
         t3r_match_smooth(match, side);

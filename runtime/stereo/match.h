@@ -24,7 +24,6 @@ typedef struct t3r_match {
     uint32_t disparities;    /* 16..T3R_PATH_MOST, a multiple of 16 */
     uint32_t paths;          /* 4 or 8 */
     uint32_t p1, p2, p2_min; /* penalties: P1; P2 where luma doesn't change; least P2 */
-    bool distrust_outlines;  /* no confidence for outlines that match each other (plane_outline.h) */
     const uint8_t *luma[2];  /* left, right: 1..255, 0 = no luma */
     uint16_t *disparity[2];  /* as in kernels/disparity_at.h; of the left and the right plane's width */
     uint8_t *confidence[2];  /* margin of the chosen disparity over all others: 1..255, 0 = not trusted */

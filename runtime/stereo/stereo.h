@@ -29,7 +29,6 @@ typedef struct t3r_stereo_settings {
     uint32_t paths;       /* 4 or 8 */
     uint32_t fill;        /* 1 = holes get the depth of their surroundings, T3R_STEREO_FILLED */
     t3r_workers workers;  /* share rows; all 0: one row after the other */
-    uint32_t planes;      /* 1 = matches of outlines with outlines are not trusted (plane_outline.h) */
 } t3r_stereo_settings;
 
 /* Computes depth and match confidence of two views of one size from their colours and checked, undistorted cameras.

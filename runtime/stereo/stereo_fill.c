@@ -236,16 +236,16 @@ static void finish(const filling *f)
     }
 }
 
-void t3r_stereo_fill(const t3r_view *view, void *work)
+const uint16_t *t3r_stereo_fill(const t3r_view *view, void *work)
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
     t3r_cut cut = t3r_cut_of(work, T3R_STEREO_FILL_BYTES(view->width, view->height));
-    filling f = {.view = view, .sums = t3r_take(&cut, T3R_STEREO_FILL_CELLS_BYTES)};
+    filling f = {.view = view, .cost = t3r_take(&cut, pixels * sizeof *f.cost)};
+    f.sums = t3r_take(&cut, T3R_STEREO_FILL_CELLS_BYTES);
     f.cell = (T3R_MAX(view->width, view->height) + CELLS - 1) / CELLS;
     f.columns = (view->width + f.cell - 1) / f.cell;
     f.rows = (view->height + f.cell - 1) / f.cell;
     f.source = t3r_take(&cut, pixels * sizeof *f.source);
-    f.cost = t3r_take(&cut, pixels * sizeof *f.cost);
     f.luma = t3r_take(&cut, pixels);
     begin(&f);
     sum_cells(&f);
@@ -255,4 +255,5 @@ void t3r_stereo_fill(const t3r_view *view, void *work)
         }
     }
     finish(&f);
+    return f.cost;
 }

@@ -7,7 +7,6 @@
 #include "state/state.h"
 #include "stereo.h"
 #include "stereo/planes/plane_fill.h"
-#include "stereo_fill.h"
 #include "stereo_fuse.h"
 
 #define PARTNERS T3R_STEREO_PARTNERS
@@ -38,7 +37,6 @@ static t3r_stereo_settings stereo_settings(const t3r_runtime *rt)
         .paths = T3R_STEREO_PATHS,
         .fill = 0,
         .workers = t3r_workers_of(rt),
-        .planes = rt->config.planes,
     };
 }
 
@@ -180,19 +178,22 @@ typedef struct fill_job {
     size_t bytes;   /* of each task */
 } fill_job;
 
+void t3r_stereo_finish(const t3r_runtime *rt, const t3r_view *views, uint32_t v, uint32_t other, void *work)
+{
+    const t3r_plane_pair pair = {&rt->kernels, &views[v], &views[other], &rt->camera[v], &rt->camera[other]};
+    if (rt->config.fill_radius > 0) {
+        t3r_plane_fill(&pair, work);
+    }
+    t3r_stereo_marks(&views[v], T3R_STEREO_SURE);
+}
+
 static void finish_view(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
     const fill_job *job = context;
-    const t3r_view *view = &job->views[job->first + index];
-    if (job->rt->config.fill_radius > 0) {
-        uint8_t *work = (uint8_t *)t3r_buffer_at(job->rt, T3R_BUFFER_STEREO_WORK) + index * job->bytes;
-        if (job->rt->config.planes != 0) {
-            t3r_plane_fill(view, work);
-        }
-        t3r_stereo_fill(view, work);
-    }
-    t3r_stereo_marks(view, T3R_STEREO_SURE);
+    const uint32_t v = job->first + index;
+    uint8_t *work = (uint8_t *)t3r_buffer_at(job->rt, T3R_BUFFER_STEREO_WORK) + index * job->bytes;
+    t3r_stereo_finish(job->rt, job->views, v, job->rt->stereo_partner[v], work);
 }
 
 /* Finishes as many views at once as fit into the work memory of pairs. */
@@ -200,8 +201,7 @@ static void finish_views(const t3r_runtime *rt, const t3r_view *views)
 {
     const uint32_t width = rt->config.width, height = rt->config.height;
     const t3r_workers workers = t3r_workers_of(rt);
-    const size_t fill = T3R_STEREO_FILL_BYTES(width, height), planes = T3R_PLANE_FILL_BYTES(width, height);
-    fill_job job = {.rt = rt, .views = views, .bytes = rt->config.planes ? T3R_MAX(fill, planes) : fill};
+    fill_job job = {.rt = rt, .views = views, .bytes = T3R_PLANE_FILL_BYTES(width, height)};
     const size_t room = T3R_STEREO_WORK_BYTES(width, height, T3R_STEREO_DISPARITIES, T3R_STEREO_PATHS) / job.bytes;
     const uint32_t round = t3r_is_parallel(&workers) ? (uint32_t)T3R_MIN(room, rt->views) : 1;
     for (job.first = 0; job.first < rt->views; job.first += round) {

@@ -17,4 +17,8 @@ void t3r_stereo_clear(const t3r_view *views, uint32_t count);
  * which pair each came from. Returns T3R_ERR_STEREO when no pair can be matched, or T3R_ERR_CANCELLED. */
 t3r_status t3r_stereo_views(t3r_runtime *rt, t3r_view *views);
 
+/* Fills view v, which was matched with view `other`, if the configuration says so, and sets its validity. work: that
+ * of a pair. */
+void t3r_stereo_finish(const t3r_runtime *rt, const t3r_view *views, uint32_t v, uint32_t other, void *work);
+
 #endif

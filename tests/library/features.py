@@ -42,7 +42,7 @@ def of_cmake(folder):
 
 
 # The features that a line of the driver needs, unless it has its feature's name.
-NEEDS = {"align": {"comparison"}, "planes": {"stereo"}, "warm": {"streams"}, "loss": {"refinement", "extras"},
+NEEDS = {"align": {"comparison"}, "warm": {"streams"}, "loss": {"refinement", "extras"},
          **dict.fromkeys(("allocations", "wavelets", "workers", "lenses"), {"extras"})}
 # Features that depend on comparison.
 OF_VIEWS = {"stereo", "streams"}
@@ -62,7 +62,7 @@ def expected(whole, left_out):
         elif call:
             lines.append(f"{name}, a call: unsupported")
         else:
-            first = "comparison" if "comparison" in left_out and name in {"planes", *OF_VIEWS} else min(lacking)
+            first = "comparison" if "comparison" in left_out and name in OF_VIEWS else min(lacking)
             lines.append(f"{name}: unsupported: this library was built without {first}")
     return lines
 

@@ -42,8 +42,6 @@ static void print_scenes(void)
     config.align = 0;
     config.depth = T3R_DEPTH_STEREO;
     print_scene("stereo", &config);
-    config.planes = 1;
-    print_scene("planes", &config);
     config = plain_config();
     config.views = SCENE_VIEWS;
     config.stream = 1;

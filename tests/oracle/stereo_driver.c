@@ -146,7 +146,7 @@ int main(int argc, char **argv)
     }
     const uint32_t width = (uint32_t)atoi(argv[2]), height = (uint32_t)atoi(argv[3]);
     const t3r_stereo_settings settings = {
-        &t3r_kernels_c, (uint32_t)atoi(argv[4]), (uint32_t)atoi(argv[5]), 1, {NULL, 1}, 0};
+        &t3r_kernels_c, (uint32_t)atoi(argv[4]), (uint32_t)atoi(argv[5]), 1, {NULL, 1}};
     if (strcmp(argv[1], "match") == 0) {
         return match(width, height, settings.disparities, settings.paths, 0);
     }

@@ -28,7 +28,6 @@ def refused():
         "--keep-percent": ["101"],
         "--fill-radius": ["9"],
         "--bridge-radius": ["256"],
-        "--planes": ["1", ""],
         "--backdrop": ["1", ""],
         "--flying": ["1", ""],
         "--redundancy": ["yes"],

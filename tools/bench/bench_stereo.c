@@ -4,7 +4,6 @@
 #include "state/state.h"
 #include "stereo/planes/plane_fill.h"
 #include "stereo/stereo.h"
-#include "stereo/stereo_fill.h"
 #include "stereo/stereo_views.h"
 
 bool bench_stereo_run(t3r_runtime *runtime)
@@ -17,7 +16,7 @@ bool bench_stereo_run(t3r_runtime *runtime)
 size_t bench_stereo_bytes(uint32_t width, uint32_t height, uint32_t paths)
 {
     size_t pair = T3R_STEREO_WORK_BYTES(width, height, T3R_STEREO_DISPARITIES, paths);
-    size_t fill = T3R_STEREO_FILL_BYTES(width, height);
+    size_t fill = T3R_PLANE_FILL_BYTES(width, height);
     return pair > fill ? pair : fill;
 }
 
@@ -29,7 +28,6 @@ bool bench_stereo_paths_run(t3r_runtime *runtime, uint32_t paths, void *work)
         .paths = paths,
         .fill = 0,
         .workers = t3r_workers_of(runtime),
-        .planes = runtime->config.planes,
     };
     t3r_view views[T3R_MAX_VIEWS];
     uint64_t unit_q40;
@@ -37,14 +35,8 @@ bool bench_stereo_paths_run(t3r_runtime *runtime, uint32_t paths, void *work)
     if (t3r_stereo_depth(&settings, runtime->camera, views, work, &unit_q40) != T3R_PAIR_OK) {
         return false;
     }
-    for (int v = 0; v < 2; v++) {
-        if (runtime->config.fill_radius > 0) {
-            if (runtime->config.planes) {
-                t3r_plane_fill(&views[v], work);
-            }
-            t3r_stereo_fill(&views[v], work);
-        }
-        t3r_stereo_marks(&views[v], T3R_STEREO_SURE);
+    for (uint32_t v = 0; v < 2; v++) {
+        t3r_stereo_finish(runtime, views, v, 1 - v, work);
     }
     return true;
 }

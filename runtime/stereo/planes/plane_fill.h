@@ -1,19 +1,31 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Fills pixels that stereo could not match along the planes of matched pixels (SPEC.md, "Stereo: planes"). */
+/* Fills pixels that stereo could not match, by labels of planes and surroundings (SPEC.md, "Stereo: planes"). */
 #ifndef T3R_PLANE_FILL_H
 #define T3R_PLANE_FILL_H
 
 #include <stddef.h>
 
+#include "plane_labels.h"
 #include "plane_search.h"
+#include "plane_sweep.h"
+#include "stereo/stereo_fill.h"
 
-/* Bytes of work, aligned to 64; fewer than matching takes. */
+/* Bytes of work, aligned to 64: the search, the filling, and the labels beside its lengths of paths. */
 #define T3R_PLANE_FILL_BYTES(width, height)                                                                            \
-    (T3R_PLANE_SEARCH_BYTES + T3R_UP_(T3R_PIXELS_(width, height) * 2) + 2 * T3R_UP_(T3R_PIXELS_(width, height)))
+    T3R_MAX_(T3R_MAX_(T3R_PLANE_SEARCH_BYTES, T3R_STEREO_FILL_BYTES(width, height)),                                   \
+             T3R_STEREO_FILL_LENGTHS_BYTES(width, height) + T3R_PLANE_LABELS_BYTES +                                   \
+                 T3R_PLANE_SWEEP_BYTES(width, height))
 
-/* Fills pixels that show something and have no depth, with match confidence T3R_STEREO_FILLED. A pixel takes the plane
- * of the nearest matched pixels; steps of luma, and few pixels on a plane, lengthen the path. Pixels nearest to
- * matches on no plane are left to t3r_stereo_fill(). */
-void t3r_plane_fill(const t3r_view *view, void *work);
+/* A view with matches, and the one that it was matched with; both of one size. */
+typedef struct t3r_plane_pair {
+    const t3r_kernels *kernels;
+    const t3r_view *view, *other;
+    const t3r_camera *camera, *other_camera; /* checked and undistorted */
+} t3r_plane_pair;
+
+/* Fills pixels that show something and have no depth, with match confidence T3R_STEREO_FILLED, as t3r_stereo_fill()
+ * does; then gives them a mix of that depth, of the planes on which the view's matched pixels lie, and of a far one.
+ * Reads only colours of the other view. */
+void t3r_plane_fill(const t3r_plane_pair *pair, void *work);
 
 #endif

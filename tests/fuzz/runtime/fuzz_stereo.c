@@ -67,10 +67,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
         return 0;
     }
     const t3r_stereo_settings settings = {
-        &t3r_kernels_c,  16 * (1 + h.disparities % 16u), h.paths % 2 == 0 ? 4 : 8, h.paths >> 1 & 1, {NULL, 1},
-        h.paths >> 2 & 1};
+        &t3r_kernels_c, 16 * (1 + h.disparities % 16u), h.paths % 2 == 0 ? 4 : 8, h.paths >> 1 & 1, {NULL, 1}};
     const size_t pixels = (size_t)width * height;
-    const size_t bytes_of_work = T3R_STEREO_WORK_BYTES(width, height, settings.disparities, settings.paths);
+    const size_t of_pair = T3R_STEREO_WORK_BYTES(width, height, settings.disparities, settings.paths);
+    const size_t bytes_of_work = T3R_MAX_(of_pair, T3R_PLANE_FILL_BYTES(width, height));
     void *work = aligned_alloc(64, bytes_of_work);
     uint8_t *planes = malloc(pixels * 8);
     uint16_t *depth = malloc(pixels * 4);
@@ -112,8 +112,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
         REQUIRE(memcmp(again[i].match_confidence, views[i].match_confidence, pixels) == 0);
     }
     for (size_t i = 0; i < 2 && pair == T3R_PAIR_OK && width >= T3R_STEREO_LEAST_SIDE; i++) {
-        if (height >= T3R_STEREO_LEAST_SIDE && settings.planes) {
-            t3r_plane_fill(&views[i], work);
+        if (height >= T3R_STEREO_LEAST_SIDE) {
+            views[i].depth_unit_q40 = unit;
+            const t3r_plane_pair both = {settings.kernels, &views[i], &views[1 - i], &h.cameras[i], &h.cameras[1 - i]};
+            t3r_plane_fill(&both, work);
         }
     }
     free(other_depth);

@@ -7,7 +7,7 @@
 #include "stereo/stereo_depth.h"
 
 enum { W = 120, H = 96, PIXELS = W * H };
-static const t3r_stereo_settings settings = {&t3r_kernels_c, 64, 4, 1, {NULL, 1}, 0};
+static const t3r_stereo_settings settings = {&t3r_kernels_c, 64, 4, 1, {NULL, 1}};
 static const double straight[4] = {1, 0, 0, 0};
 
 typedef struct shot {
@@ -137,7 +137,7 @@ TEST(pairs)
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         for (uint32_t paths = 4; paths <= 8; paths += 4) {
-            const t3r_stereo_settings how = {&t3r_kernels_c, 64, paths, 1, {NULL, 1}, 0};
+            const t3r_stereo_settings how = {&t3r_kernels_c, 64, paths, 1, {NULL, 1}};
             shot *a = shoot(0, 0, 0, straight, 1, 1, 7);
             shot *b = shoot(all[i].at[0], all[i].at[1], all[i].at[2], all[i].q, all[i].gain, 1, 7);
             uint64_t unit = 0;
@@ -182,7 +182,7 @@ TEST(refused)
 
     shot *b = shoot(0.25, 0, 0, straight, 1, 1, 7), *other = shoot(0.25, 0, 0, straight, 1, 1, 5000);
     /* another place: the more candidates pixels have, the fewer match by chance */
-    const t3r_stereo_settings many = {&t3r_kernels_c, 128, 4, 1, {NULL, 1}, 0};
+    const t3r_stereo_settings many = {&t3r_kernels_c, 128, 4, 1, {NULL, 1}};
     assert_int_equal(match(&many, a, other, 0, &unit), T3R_PAIR_OVERLAP);
     shot_free(other);
 
@@ -228,8 +228,7 @@ TEST(anything)
     shot *a = shoot(0, 0, 0, straight, 1, 1, 7), *b = shoot(0.25, 0, 0, straight, 1, 1, 7);
     for (int turn = 0; turn < 60; turn++) {
         const t3r_stereo_settings how = {
-            &t3r_kernels_c, (uint32_t)unit_between(&seed, 1, 8) * 16, turn % 2 == 0 ? 4 : 8, turn % 5 != 0, {NULL, 1},
-            turn % 7 == 0};
+            &t3r_kernels_c, (uint32_t)unit_between(&seed, 1, 8) * 16, turn % 2 == 0 ? 4 : 8, turn % 5 != 0, {NULL, 1}};
         for (int i = 0; i < 3; i++) {
             b->camera.position_q32[i] = unit_between(&seed, -(INT64_C(3) << 30), INT64_C(3) << 30);
             b->camera.rotation_q30[1 + i] = (int32_t)unit_between(&seed, -(1 << 27), 1 << 27);
@@ -254,7 +253,7 @@ TEST(unfilled)
     uint64_t unit[2];
     shot *a[2], *b[2];
     for (uint32_t fill = 0; fill < 2; fill++) {
-        const t3r_stereo_settings how = {&t3r_kernels_c, 64, 4, fill, {NULL, 1}, 0};
+        const t3r_stereo_settings how = {&t3r_kernels_c, 64, 4, fill, {NULL, 1}};
         a[fill] = shoot(0, 0, 0, straight, 1, 1, 7);
         b[fill] = shoot(0.25, 0.1, 0, straight, 1, 1, 7);
         assert_int_equal(match(&how, a[fill], b[fill], 0, &unit[fill]), T3R_PAIR_OK);
@@ -341,8 +340,8 @@ TEST(small_pictures_have_few_workers)
     const size_t bytes = T3R_STEREO_WORK_BYTES(SIDE, SIDE, MOST, 4);
     void *work = aligned_alloc(64, (bytes + 63) / 64 * 64);
     const t3r_hooks hooks = {.parallel_for = by_worker_15};
-    const t3r_stereo_settings one = {&t3r_kernels_c, MOST, 4, 1, {NULL, 1}, 0},
-                              many = {&t3r_kernels_c, MOST, 4, 1, {&hooks, 16}, 0};
+    const t3r_stereo_settings one = {&t3r_kernels_c, MOST, 4, 1, {NULL, 1}},
+                              many = {&t3r_kernels_c, MOST, 4, 1, {&hooks, 16}};
     uint32_t score, shared;
     assert_non_null(work);
     memset(work, 0, bytes);
@@ -379,13 +378,13 @@ TEST(bands_where_nothing_is_kept)
         uint16_t *depth = unit_array(4 * count, 2);
         void *work = aligned_alloc(64, (bytes + 63) / 64 * 64);
         assert_non_null(work);
-        uint64_t seed = 4, unit[2] = {0};
+        uint64_t seed = 3, unit[2] = {0};
         for (size_t i = 0; i < 6 * count; i++) {
             noise[i] = (uint8_t)unit_random(&seed);
         }
         for (size_t k = 0; k < sizeof counts / sizeof counts[0]; k++) {
             const size_t turn = k > 0;
-            const t3r_stereo_settings how = {&t3r_kernels_c, MOST, 4, 1, {&hooks, counts[k]}, 0};
+            const t3r_stereo_settings how = {&t3r_kernels_c, MOST, 4, 1, {&hooks, counts[k]}};
             t3r_view views[2];
             for (size_t v = 0; v < 2; v++) {
                 cameras[v].fx_q16 = cameras[v].fy_q16 = times * focal_q16[v];
