@@ -5,6 +5,7 @@
 #include "core/features.h"
 #include "core/memory.h"
 #include "depth/depth.h"
+#include "depth/surroundings.h"
 #include "head/backdrop.h"
 #include "pointmap/align.h"
 #include "pointmap/bridge.h"
@@ -78,7 +79,8 @@ bool t3r_pointmap_step(const t3r_runtime *rt, t3r_view_span span, t3r_pointmap_p
     return t3r_progress(rt, T3R_STAGE_POINTMAP, step_of(rt, span, part, done), t3r_pointmap_steps(rt, span));
 }
 
-/* Bridges a sensor's holes. Stereo has filled its own: pixels that it left without depth show nothing. */
+/* Bridges a sensor's holes, and guesses what stays. Stereo has filled its own: pixels that it left without depth show
+ * nothing. */
 t3r_status t3r_bridge_holes(t3r_runtime *rt, t3r_view *views, t3r_view_span span)
 {
     if (t3r_is_by_stereo(&rt->config) || rt->config.bridge_radius == 0) {
@@ -99,6 +101,9 @@ t3r_status t3r_bridge_holes(t3r_runtime *rt, t3r_view *views, t3r_view_span span
         }
         if (!t3r_is_reused(rt, v)) {
             t3r_bridge_view(&views[v], rt->config.bridge_radius, &work);
+            if (t3r_guesses(&rt->config)) {
+                (void)t3r_fill_surroundings(&views[v], T3R_BRIDGED, t3r_buffer_at(rt, T3R_BUFFER_POINTMAP_WORK));
+            }
         }
     }
     for (uint32_t v = span.first; v < span.end; v++) {

@@ -45,4 +45,10 @@ static inline bool t3r_is_stream(const t3r_config *config)
     return T3R_FEATURE_STREAMS && config->stream != 0;
 }
 
+/* Whether depth that is missing after bridging is guessed; a constant false in builds without comparison. */
+static inline bool t3r_guesses(const t3r_config *config)
+{
+    return T3R_FEATURE_COMPARISON && config->guess != 0 && !t3r_is_stream(config);
+}
+
 #endif

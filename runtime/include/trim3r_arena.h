@@ -131,6 +131,21 @@
 #define T3R_PART_BYTES_(type, part, count) +T3R_UP_((count) * sizeof(type))
 #define T3R_MATCH_PATH_BYTES_(width, height, disparities, paths)                                                       \
     ((size_t)0 T3R_MATCH_PARTS_(T3R_PART_BYTES_, width, height, disparities, paths))
+/* Filling by the surroundings: lengths of paths; sums of cells; planes of sources and luma */
+#define T3R_SURROUNDINGS_CELLS_ 8u /* along a view's longer side, for the slopes of surfaces */
+#define T3R_SURFACE_SUMS_BYTES_ 72
+#define T3R_SURROUNDINGS_CELLS_BYTES_                                                                                  \
+    T3R_UP_((size_t)T3R_SURROUNDINGS_CELLS_ *T3R_SURROUNDINGS_CELLS_ *T3R_SURFACE_SUMS_BYTES_)
+#define T3R_SURROUNDINGS_LENGTHS_(width, height) T3R_UP_(T3R_PIXELS_(width, height) * 2)
+#define T3R_SURROUNDINGS_BYTES_(width, height)                                                                         \
+    (T3R_SURROUNDINGS_LENGTHS_(width, height) + T3R_SURROUNDINGS_CELLS_BYTES_ +                                        \
+     T3R_UP_(T3R_PIXELS_(width, height) * 4) + T3R_UP_(T3R_PIXELS_(width, height)))
+/* Comparison of views, or before it the filling of a view; a stream has no filling. */
+#define T3R_POINTMAP_WORK_(shape)                                                                                      \
+    T3R_MAX_((T3R_VIEW_PIXELS_(shape) + 3 * T3R_RATIO_BINS) * 4,                                                       \
+             T3R_FEATURE_COMPARISON && !T3R_STREAMS_(shape)                                                            \
+                 ? T3R_SURROUNDINGS_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape))                                      \
+                 : (size_t)0)
 /* Bytes of a pair's work, aligned to 64: two planes' luma, disparities and confidences, and the matching. */
 #define T3R_STEREO_LEFT_(width, height) (T3R_RECTIFIED_SIDE(width, height) * T3R_RECTIFIED_SIDE(width, height))
 #define T3R_STEREO_RIGHT_(width, height, disparities)                                                                  \
@@ -273,8 +288,8 @@
       T3R_STEREO_BYTES_(T3R_WIDTH_(shape), T3R_HEIGHT_(shape), T3R_VIEWS_(shape), T3R_STEREO_(shape)), T3R_AT_DEPTH,   \
       T3R_AT_DEPTH)
 #define T3R_BUFFERS_IN_POINTMAP_(X, with, shape)                                                                       \
-    X(with, POINTMAP_WORK, "comparison of views",                                                                      \
-      T3R_BUILDS_(shape) * (T3R_VIEW_PIXELS_(shape) + 3 * T3R_RATIO_BINS) * 4, T3R_AT_POINTMAP, T3R_AT_POINTMAP)
+    X(with, POINTMAP_WORK, "comparison of views", T3R_BUILDS_(shape) * T3R_POINTMAP_WORK_(shape), T3R_AT_POINTMAP,     \
+      T3R_AT_POINTMAP)
 #define T3R_BUFFERS_FROM_WAVELET_(X, with, shape)                                                                      \
     X(with, TEXTURE, "texture planes", T3R_ANALYSED_PIXELS_(shape) * 2, T3R_AT_WAVELET,                                \
       T3R_LAST_ANALYSIS_(shape, T3R_AT_HEAD))

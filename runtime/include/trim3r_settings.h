@@ -84,6 +84,11 @@
     X(bridge_radius, number, 0, 255, 64, NONE, 0, BUILD, "bridge-radius",                                              \
       "bridge wider holes, bracketed within N pixels, where no other view measured the surface; 0 bridges "            \
       "none")                                                                                                          \
+    /* 1 = pixels that still have no depth after bridging take that of their surroundings, a guess with the confidence \
+     * of bridged pixels. Needs bridge_radius above 0. Ignored in a stream, and with depth by stereo, which always     \
+     * does so. */                                                                                                     \
+    X(guess, toggle, 0, 1, T3R_FEATURE_COMPARISON, COMPARISON, 1, BUILD, "guess",                                      \
+      "guess from the surroundings what depth is missing after --bridge-radius; not in a stream")                      \
     X(flying, toggle, 0, 1, 1, NONE, 0, BUILD, "flying",                                                               \
       "retain flying pixels last: points between surfaces, or in front of what another view measured")                 \
     X(redundancy, toggle, 0, 1, 1, NONE, 0, BUILD, "redundancy",                                                       \

@@ -3,6 +3,7 @@
 #include "align.h"
 #include "bridge.h"
 #include "contradiction.h"
+#include "depth/surroundings.h"
 #include "exposure.h"
 #include "redundancy.h"
 
@@ -30,6 +31,12 @@ uint32_t t3r_bridge_settle(const t3r_view *views, uint32_t count, uint32_t v, in
 {
     (void)views, (void)count, (void)v, (void)exponent, (void)settled, (void)work;
     return 0; /* the result is unused */
+}
+
+const uint16_t *t3r_fill_surroundings(const t3r_view *view, t3r_depth_source source, void *work)
+{
+    (void)view, (void)source;
+    return work; /* the result is unused */
 }
 
 void t3r_find_contradicted(const t3r_contradictions *job, t3r_points *points, const t3r_unprojection *from)

@@ -14,7 +14,7 @@
 /* Source of a pixel's depth: the two low bits of the validity plane. */
 typedef enum t3r_depth_source {
     T3R_NO_DEPTH,     /* all bits are 0 */
-    T3R_FILLED,       /* a small hole, filled from the measured pixels around it (depth.h, stereo_fill.h) */
+    T3R_FILLED,       /* a small hole, filled from the measured pixels around it (depth.h, surroundings.h) */
     T3R_BRIDGED,      /* a wide hole (bridge.h), bridged again by every analysis */
     T3R_MEASURED = 3, /* by the sensor, or matched by stereo */
     T3R_DEPTH_SOURCE_BITS = 3

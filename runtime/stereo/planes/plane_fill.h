@@ -5,16 +5,15 @@
 
 #include <stddef.h>
 
+#include "depth/surroundings.h"
 #include "plane_labels.h"
 #include "plane_search.h"
 #include "plane_sweep.h"
-#include "stereo/stereo_fill.h"
 
 /* Bytes of work, aligned to 64: the search, the filling, and the labels beside its lengths of paths. */
 #define T3R_PLANE_FILL_BYTES(width, height)                                                                            \
-    T3R_MAX_(T3R_MAX_(T3R_PLANE_SEARCH_BYTES, T3R_STEREO_FILL_BYTES(width, height)),                                   \
-             T3R_STEREO_FILL_LENGTHS_BYTES(width, height) + T3R_PLANE_LABELS_BYTES +                                   \
-                 T3R_PLANE_SWEEP_BYTES(width, height))
+    T3R_MAX_(T3R_MAX_(T3R_PLANE_SEARCH_BYTES, T3R_SURROUNDINGS_BYTES_(width, height)),                                 \
+             T3R_SURROUNDINGS_LENGTHS_(width, height) + T3R_PLANE_LABELS_BYTES + T3R_PLANE_SWEEP_BYTES(width, height))
 
 /* A view with matches, and the one that it was matched with; both of one size. */
 typedef struct t3r_plane_pair {
@@ -23,9 +22,9 @@ typedef struct t3r_plane_pair {
     const t3r_camera *camera, *other_camera; /* checked and undistorted */
 } t3r_plane_pair;
 
-/* Fills pixels that show something and have no depth, with match confidence T3R_STEREO_FILLED, as t3r_stereo_fill()
- * does; then gives them a mix of that depth, of the planes on which the view's matched pixels lie, and of a far one.
- * Reads only colours of the other view. */
+/* Fills pixels that show something and have no depth, with match confidence T3R_STEREO_FILLED, as
+ * t3r_fill_surroundings() does; then gives them a mix of that depth, of the planes on which the view's matched pixels
+ * lie, and of a far one. Reads only colours of the other view. */
 void t3r_plane_fill(const t3r_plane_pair *pair, void *work);
 
 #endif

@@ -8,9 +8,9 @@
 #include <stdint.h>
 
 #include "core/cut.h"
+#include "depth/surface.h"
 #include "plane_search.h"
 #include "stereo/stereo.h"
-#include "stereo/surface.h"
 
 /* Cells along a view's longer side */
 #define T3R_LABEL_CELLS 32u

@@ -6,7 +6,7 @@
 #include "plane_labels.h"
 
 /* Gives each filled pixel a mix of its labels and its own depth. length: of the path to each pixel's source, as
- * t3r_stereo_fill() returns it. */
+ * t3r_fill_surroundings() returns it. */
 void t3r_plane_mix(const t3r_plane_labels *labels, const uint16_t *length);
 
 #endif

@@ -7,8 +7,8 @@
 #include <stdint.h>
 
 #include "core/fixed.h"
+#include "depth/surface.h"
 #include "state/views.h"
-#include "stereo/surface.h"
 
 #define T3R_PLANES_MOST 8u
 

@@ -3,7 +3,7 @@
 
 #include "core/camera.h"
 #include "core/fixed.h"
-#include "stereo/stereo_fill.h"
+#include "depth/surroundings.h"
 
 /* SAMPLES x SAMPLES pixels of a cell are compared, of a smaller cell all. */
 #define SAMPLES 4u
@@ -137,7 +137,7 @@ static int32_t differing(const sweep *s, uint32_t cell, uint32_t label)
 /* Computes the census of a view, a row after the other; luma: of the view, set here. */
 static void census_of(const t3r_kernels *kernels, const t3r_view *view, uint8_t *luma, uint8_t *census)
 {
-    t3r_stereo_luma(view, luma);
+    t3r_luma_of_view(view, luma);
     for (uint32_t y = 0; y < view->height; y++) {
         const uint8_t *rows[T3R_CENSUS_ROWS];
         for (int32_t i = 0; i < T3R_CENSUS_ROWS; i++) {

@@ -3,10 +3,10 @@
  * on views of any size; and outlines that matched outlines. Whole builds are in test_stereo_views.c. */
 #include "unit/unit.h"
 
+#include "depth/surroundings.h"
 #include "stereo/planes/plane_fill.h"
 #include "stereo/planes/plane_outline.h"
 #include "stereo/stereo.h"
-#include "stereo/stereo_fill.h"
 
 enum { W = 96, H = 64, PIXELS = W * H };
 
@@ -81,8 +81,8 @@ static double off(const shot *s)
 /* Returns the error of the nearest surfaces alone. */
 static double plain_off(shot *s)
 {
-    uint8_t *room = aligned_alloc(64, T3R_STEREO_FILL_BYTES(W, H));
-    t3r_stereo_fill(&s->view, room);
+    uint8_t *room = aligned_alloc(64, T3R_SURROUNDINGS_BYTES_(W, H));
+    t3r_fill_surroundings(&s->view, T3R_FILLED, room);
     free(room);
     return off(s);
 }

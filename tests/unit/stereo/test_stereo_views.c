@@ -505,7 +505,7 @@ TEST(filled)
     enum { WIDTH = 16, HEIGHT = 9, COUNT = WIDTH * HEIGHT };
     uint8_t colour[COUNT], confidence[COUNT] = {0}, before[COUNT];
     uint16_t depth[COUNT] = {0};
-    void *work = unit_array(T3R_STEREO_FILL_BYTES(WIDTH, HEIGHT) / 8 + 1, 8);
+    void *work = unit_array(T3R_SURROUNDINGS_BYTES_(WIDTH, HEIGHT) / 8 + 1, 8);
     const t3r_view view = {.width = WIDTH,
                            .height = HEIGHT,
                            .colour = {colour, colour, colour},
@@ -515,7 +515,7 @@ TEST(filled)
         colour[i] = i % WIDTH < WIDTH / 2 ? 40 : 90;
     }
     colour[3] = 0;
-    t3r_stereo_fill(&view, work); /* nothing to fill from */
+    t3r_fill_surroundings(&view, T3R_FILLED, work); /* nothing to fill from */
     for (int i = 0; i < COUNT; i++) {
         assert_true(depth[i] == 0 && confidence[i] == T3R_STEREO_NONE);
     }
@@ -525,7 +525,7 @@ TEST(filled)
     confidence[left] = 200;
     confidence[right] = 2;
     memcpy(before, confidence, sizeof before);
-    t3r_stereo_fill(&view, work);
+    t3r_fill_surroundings(&view, T3R_FILLED, work);
     for (int i = 0; i < COUNT; i++) {
         assert_int_equal(depth[i], i == 3 ? 0 : i % WIDTH < WIDTH / 2 ? 100 : 900);
         assert_int_equal(confidence[i], i == 3 ? T3R_STEREO_NONE : before[i] != 0 ? before[i] : T3R_STEREO_FILLED);
@@ -540,7 +540,7 @@ TEST(extended_in_large_pictures)
     const size_t count = (size_t)WIDTH * HEIGHT;
     uint8_t *colour = unit_array(count, 1), *confidence = unit_array(count, 1);
     uint16_t *depth = unit_array(count, 2);
-    void *work = unit_array(T3R_STEREO_FILL_BYTES(WIDTH, HEIGHT) / 8 + 1, 8);
+    void *work = unit_array(T3R_SURROUNDINGS_BYTES_(WIDTH, HEIGHT) / 8 + 1, 8);
     const t3r_view view = {.width = WIDTH,
                            .height = HEIGHT,
                            .colour = {colour, colour, colour},
@@ -552,7 +552,7 @@ TEST(extended_in_large_pictures)
         depth[i] = (uint16_t)(known ? lround(64 * 480 / (479.5 - 0.9 * (double)(i / WIDTH))) : 0);
         confidence[i] = known ? 90 : T3R_STEREO_NONE;
     }
-    t3r_stereo_fill(&view, work);
+    t3r_fill_surroundings(&view, T3R_FILLED, work);
     for (size_t i = 0; i < count; i++) {
         const double truth = 64 * 480 / (479.5 - 0.9 * (double)(i / WIDTH));
         assert_true(fabs(depth[i] / truth - 1) < 0.03);
@@ -570,7 +570,7 @@ TEST(extended)
     uint8_t colour[COUNT], confidence[COUNT];
     uint16_t depth[COUNT];
     uint64_t noise = 3;
-    void *work = unit_array(T3R_STEREO_FILL_BYTES(WIDTH, HEIGHT) / 8 + 1, 8);
+    void *work = unit_array(T3R_SURROUNDINGS_BYTES_(WIDTH, HEIGHT) / 8 + 1, 8);
     const t3r_view view = {.width = WIDTH,
                            .height = HEIGHT,
                            .colour = {colour, colour, colour},
@@ -585,7 +585,7 @@ TEST(extended)
             depth[i] = (uint16_t)(known ? lround(truth) : 0);
             confidence[i] = known ? 90 : T3R_STEREO_NONE;
         }
-        t3r_stereo_fill(&view, work);
+        t3r_fill_surroundings(&view, T3R_FILLED, work);
         for (int i = 0; i < COUNT; i++) {
             const double truth = 1 / (1e-4 * (1 + slant * 0.004 * (i % WIDTH - 40) + 0.003 * (i / WIDTH - 32)));
             most = fmax(most, fabs(depth[i] / truth - 1));
@@ -600,7 +600,7 @@ TEST(extended)
             depth[i] = (uint16_t)(known ? lround(1 / (1e-4 * (1 + sign * 0.04 * (i % WIDTH)))) : 0);
             confidence[i] = known ? 90 : T3R_STEREO_NONE;
         }
-        t3r_stereo_fill(&view, work);
+        t3r_fill_surroundings(&view, T3R_FILLED, work);
         const double last = 1 / (1e-4 * (1 + sign * 0.04 * 19));
         const double expected = fmin(sign < 0 ? 2 * last : last / 2, UINT16_MAX);
         assert_true(fabs(depth[WIDTH - 1] / expected - 1) < 0.01);

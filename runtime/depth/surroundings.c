@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "stereo_fill.h"
+#include "surroundings.h"
 
 #include "core/cut.h"
 #include "core/fixed.h"
 #include "core/memory.h"
-#include "stereo.h"
 #include "surface.h"
 
 /* Sweeps over the picture: down, up, down, up. Paths with more bends are found as longer ones. */
@@ -13,11 +12,11 @@
 #define STRAIGHT 5
 #define DIAGONAL 7
 #define LEVEL 5
-#define CELLS T3R_STEREO_FILL_CELLS
+#define CELLS T3R_SURROUNDINGS_CELLS_
 /* Two square pixels, so that a slope needs more than one row or column. */
 #define SPREAD_Q4 32
 
-_Static_assert(sizeof(t3r_surface_sums) == T3R_STEREO_FILL_SUMS_BYTES, "stereo_fill.h knows the sums' size");
+_Static_assert(sizeof(t3r_surface_sums) == T3R_SURFACE_SUMS_BYTES_, "the arena's table knows the sums' size");
 
 /* A view being filled. */
 typedef struct filling {
@@ -36,7 +35,7 @@ static bool shows(const t3r_view *view, size_t i)
 
 /* ---- the nearest pixel with depth -------------------------------------------------------------------------------- */
 
-void t3r_stereo_luma(const t3r_view *view, uint8_t *restrict luma)
+void t3r_luma_of_view(const t3r_view *view, uint8_t *restrict luma)
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
     const uint8_t *r = view->colour[0], *g = view->colour[1], *b = view->colour[2];
@@ -55,7 +54,7 @@ static void begin(const filling *f)
         source[i] = (uint32_t)i;
         cost[i] = depth[i] != 0 ? 0 : UINT16_MAX;
     }
-    t3r_stereo_luma(f->view, f->luma);
+    t3r_luma_of_view(f->view, f->luma);
 }
 
 /* Gives pixel `to` the source of pixel `from`, if the path through it is shorter. */
@@ -213,7 +212,7 @@ static uint16_t extend(const filling *f, const t3r_surface_slope *slopes, uint32
     return (uint16_t)t3r_clamp64(t3r_round_div64(view->depth[source] * own, there), 1, UINT16_MAX);
 }
 
-static void finish(const filling *f)
+static void finish(const filling *f, t3r_depth_source source)
 {
     const t3r_view *view = f->view;
     t3r_surface_slope slopes[CELLS * CELLS];
@@ -230,18 +229,18 @@ static void finish(const filling *f)
             }
             if (shows(view, i)) {
                 view->depth[i] = extend(f, slopes, u, v);
-                view->match_confidence[i] = T3R_STEREO_FILLED;
+                view->validity[i] = (uint8_t)source;
             }
         }
     }
 }
 
-const uint16_t *t3r_stereo_fill(const t3r_view *view, void *work)
+const uint16_t *t3r_fill_surroundings(const t3r_view *view, t3r_depth_source source, void *work)
 {
     const size_t pixels = T3R_PIXELS_(view->width, view->height);
-    t3r_cut cut = t3r_cut_of(work, T3R_STEREO_FILL_BYTES(view->width, view->height));
+    t3r_cut cut = t3r_cut_of(work, T3R_SURROUNDINGS_BYTES_(view->width, view->height));
     filling f = {.view = view, .cost = t3r_take(&cut, pixels * sizeof *f.cost)};
-    f.sums = t3r_take(&cut, T3R_STEREO_FILL_CELLS_BYTES);
+    f.sums = t3r_take(&cut, T3R_SURROUNDINGS_CELLS_BYTES_);
     f.cell = (T3R_MAX(view->width, view->height) + CELLS - 1) / CELLS;
     f.columns = (view->width + f.cell - 1) / f.cell;
     f.rows = (view->height + f.cell - 1) / f.cell;
@@ -254,6 +253,6 @@ const uint16_t *t3r_stereo_fill(const t3r_view *view, void *work)
             sweep_row(&f, sweep % 2 == 0 ? i : view->height - 1 - i, i == 0, sweep % 2 == 0);
         }
     }
-    finish(&f);
+    finish(&f, source);
     return f.cost;
 }
