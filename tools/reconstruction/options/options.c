@@ -82,6 +82,7 @@ static void check_settings(struct argp_state *state, reconstruction_options *o)
             argp_error(state, "--depth belongs to a recording's own points, not to --prune");
         }
         o->config.fit_passes = 0; /* means of Gaussians lie off the surface, and views always disagree about them */
+        o->config.guess = 0;      /* where the scene has nothing, there is nothing */
     }
     if (o->max_loss > 0 && !o->automatic) {
         argp_error(state, "--max-loss belongs to --auto");
