@@ -7,8 +7,8 @@
 
 #define TEXT_BYTES 160
 
-/* Writes "0.2.0", or "0.2.0 without stereo, streams". */
-static void describe(t3r_program one, char text[TEXT_BYTES])
+/* Writes "0.2.0", or "0.2.0 without stereo, streams", which the other side has. */
+static void describe(t3r_program one, t3r_program other, char text[TEXT_BYTES])
 {
     static const struct {
         uint32_t bit;
@@ -21,7 +21,7 @@ static void describe(t3r_program one, char text[TEXT_BYTES])
     const char *before = " without ";
     int length = snprintf(text, TEXT_BYTES, "%.32s", one.version);
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        if ((one.features & rows[i].bit) == 0) {
+        if ((other.features & ~one.features & rows[i].bit) != 0) {
             length += snprintf(text + length, TEXT_BYTES - (size_t)length, "%s%s", before, rows[i].name);
             before = ", ";
         }
@@ -34,8 +34,8 @@ bool t3r_program_fits(t3r_program program, t3r_program library, char *error, siz
     if (program.digest == library.digest) {
         return true;
     }
-    describe(program, its);
-    describe(library, own);
+    describe(program, library, its);
+    describe(library, program, own);
     t3r_reason(error, error_bytes,
                "the program was compiled with the headers of trim3r %s, its library is trim3r %s: compile it again",
                its, own);

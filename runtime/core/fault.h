@@ -14,7 +14,7 @@
 
 /* The sentence of a failed check. */
 typedef struct t3r_fault {
-    const char *text;  /* # stands for the next number, @ for the next one without a sign */
+    const char *text;  /* # stands for the next number, @ for it without a sign, % for the features that are its bits */
     const char *after; /* NULL, or what follows the text */
     int64_t number[4];
 } t3r_fault;

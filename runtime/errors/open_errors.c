@@ -4,75 +4,85 @@
 #include "api/open_checks.h"
 #include "sentence.h"
 
-/* Shows a feature of this library, as "stereo=0". */
-#define FEATURE_TEXT_(FEATURE, name) " " #name "=" T3R_TEXT_(T3R_FEATURE_##FEATURE)
+#define OR_FEATURE(FEATURE, name) | T3R_HAS_##FEATURE
 
-/* Writes the sentence of a program that was compiled otherwise than the library. */
-static t3r_status mismatched(t3r_fault *fault)
+/* Checks that the program was compiled as this library. */
+static t3r_status agreed(uint64_t digest, t3r_fault *fault)
 {
-    t3r_note(fault,
-             "the program was compiled with another trim3r.h than this library's (" T3R_VERSION
-             "), with other T3R_FEATURE_... than its" T3R_FEATURE_ROWS(
-                 FEATURE_TEXT_) ", or by a compiler that lays structs out otherwise",
-             0, 0, 0, 0);
-    return T3R_ERR_INTERFACE;
+    const uint64_t differing = digest ^ t3r_header_interface();
+    T3R_CHECK(fault, (differing & ~(uint64_t)(T3R_HAS_NONE T3R_FEATURE_ROWS(OR_FEATURE))) == 0, T3R_ERR_INTERFACE,
+              "the program was compiled with another trim3r.h than this library's (" T3R_VERSION
+              "), or by a compiler that lays structs out otherwise");
+    T3R_CHECK(fault, differing == 0, T3R_ERR_INTERFACE,
+              "this library was built with %, and the program otherwise: compile it with the same", differing);
+    return T3R_OK;
 }
 
-static t3r_status planned(const t3r_config *config, const t3r_plan_info *plan, t3r_fault *fault)
+static t3r_status planned(uint64_t digest, const t3r_config *config, const t3r_plan_info *plan, t3r_fault *fault)
 {
+    T3R_PASS(agreed(digest, fault));
     T3R_CHECK(fault, plan != NULL, T3R_ERR_ARGUMENT, "plan is NULL");
     return t3r_plan_bytes_checks(config, &plan->min_bytes, &plan->bytes, fault);
 }
 
-const char *t3r_plan_error(t3r_status status, const t3r_config *config, const t3r_plan_info *plan, char *text,
-                           size_t text_bytes)
+const char *t3r_plan_as_error(t3r_status status, uint64_t digest, const t3r_config *config, const t3r_plan_info *plan,
+                              char *text, size_t text_bytes)
 {
     t3r_fault fault;
-    const t3r_status found = status == T3R_ERR_INTERFACE ? mismatched(&fault) : planned(config, plan, &fault);
+    return t3r_sentence(status, planned(digest, config, plan, &fault), &fault, text, text_bytes);
+}
+
+const char *t3r_plan_bytes_as_error(t3r_status status, uint64_t digest, const t3r_config *config,
+                                    const size_t *min_bytes, const size_t *bytes, char *text, size_t text_bytes)
+{
+    t3r_fault fault;
+    t3r_status found = agreed(digest, &fault);
+    found = found == T3R_OK ? t3r_plan_bytes_checks(config, min_bytes, bytes, &fault) : found;
     return t3r_sentence(status, found, &fault, text, text_bytes);
 }
 
-const char *t3r_plan_bytes_error(t3r_status status, const t3r_config *config, const size_t *min_bytes,
-                                 const size_t *bytes, char *text, size_t text_bytes)
+const char *t3r_plan_within_as_error(t3r_status status, uint64_t digest, size_t bytes, const t3r_config *config,
+                                     char *text, size_t text_bytes)
 {
     t3r_fault fault;
-    const t3r_status found =
-        status == T3R_ERR_INTERFACE ? mismatched(&fault) : t3r_plan_bytes_checks(config, min_bytes, bytes, &fault);
+    t3r_status found = agreed(digest, &fault);
+    found = found == T3R_OK ? t3r_plan_within_checks(bytes, config, &fault) : found;
     return t3r_sentence(status, found, &fault, text, text_bytes);
 }
 
-const char *t3r_plan_within_error(t3r_status status, size_t bytes, const t3r_config *config, char *text,
-                                  size_t text_bytes)
+const char *t3r_set_preset_as_error(t3r_status status, uint64_t digest, t3r_preset preset, const t3r_config *config,
+                                    const char *const *weights, char *text, size_t text_bytes)
 {
+    (void)weights; /* may be NULL */
     t3r_fault fault;
-    const t3r_status found =
-        status == T3R_ERR_INTERFACE ? mismatched(&fault) : t3r_plan_within_checks(bytes, config, &fault);
+    t3r_status found = agreed(digest, &fault);
+    found = found == T3R_OK ? t3r_set_preset_checks(preset, config, &fault) : found;
     return t3r_sentence(status, found, &fault, text, text_bytes);
 }
 
-/* Checks the pointer that t3r_init() and t3r_attach() fill. */
-static t3r_status opened(t3r_status status, t3r_runtime *const *rt, t3r_fault *fault)
+/* Checks the pointer that t3r_init() and t3r_attach() fill, and the program. */
+static t3r_status opened(uint64_t digest, t3r_runtime *const *rt, t3r_fault *fault)
 {
     T3R_CHECK(fault, rt != NULL, T3R_ERR_ARGUMENT, "rt is NULL: it receives the runtime");
-    return status == T3R_ERR_INTERFACE ? mismatched(fault) : T3R_OK;
+    return agreed(digest, fault);
 }
 
-const char *t3r_init_error(t3r_status status, t3r_runtime *const *rt, const void *arena, size_t arena_bytes,
-                           const t3r_config *config, char *text, size_t text_bytes)
+const char *t3r_init_as_error(t3r_status status, uint64_t digest, t3r_runtime *const *rt, const void *arena,
+                              size_t arena_bytes, const t3r_config *config, char *text, size_t text_bytes)
 {
     t3r_fault fault;
     t3r_layout layout;
-    t3r_status found = opened(status, rt, &fault);
+    t3r_status found = opened(digest, rt, &fault);
     found = found == T3R_OK ? t3r_init_checks(arena, arena_bytes, config, &layout, &fault) : found;
     return t3r_sentence(status, found, &fault, text, text_bytes);
 }
 
-const char *t3r_attach_error(t3r_status status, t3r_runtime *const *rt, const void *arena, size_t arena_bytes,
-                             char *text, size_t text_bytes)
+const char *t3r_attach_as_error(t3r_status status, uint64_t digest, t3r_runtime *const *rt, const void *arena,
+                                size_t arena_bytes, char *text, size_t text_bytes)
 {
     t3r_fault fault;
     t3r_layout layout;
-    t3r_status found = opened(status, rt, &fault);
+    t3r_status found = opened(digest, rt, &fault);
     found = found == T3R_OK ? t3r_attach_checks(arena, arena_bytes, &layout, &fault) : found;
     if (found == T3R_OK && status == T3R_ERR_EPOCH) {
         t3r_note(&fault, "arena is damaged, or another build of this library laid it out", 0, 0, 0, 0);

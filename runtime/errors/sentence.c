@@ -35,12 +35,36 @@ static void put_number(pen *p, int64_t number, bool is_signed)
     }
 }
 
+static void put_word(pen *p, const char *word)
+{
+    for (; *word != '\0'; word++) {
+        put(p, *word);
+    }
+}
+
+/* Writes the switches of a set of T3R_HAS_... bits as this library has them. */
+static void put_switches(pen *p, uint64_t set)
+{
+#define SWITCH(FEATURE, name) "T3R_FEATURE_" #FEATURE "=" T3R_TEXT_(T3R_FEATURE_##FEATURE),
+    static const char *const switches[] = {T3R_FEATURE_ROWS(SWITCH)};
+    const char *before = "";
+    for (size_t bit = 0; bit < sizeof switches / sizeof switches[0]; bit++) {
+        if ((set >> bit & 1) != 0) {
+            put_word(p, before);
+            put_word(p, switches[bit]);
+            before = ", ";
+        }
+    }
+}
+
 /* Writes a text with its numbers. Returns the number of the next one. */
 static size_t put_text(pen *p, const char *text, const int64_t *number, size_t next)
 {
     for (; *text != '\0'; text++) {
         if (*text == '#' || *text == '@') {
             put_number(p, number[next++], *text == '#');
+        } else if (*text == '%') {
+            put_switches(p, (uint64_t)number[next++]);
         } else {
             put(p, *text);
         }
@@ -60,9 +84,7 @@ const char *t3r_sentence(t3r_status status, t3r_status found, const t3r_fault *f
             (void)put_text(&p, fault->after, fault->number, next);
         }
     } else {
-        for (const char *word = t3r_error_text(status); *word != '\0'; word++) {
-            put(&p, *word);
-        }
+        put_word(&p, t3r_error_text(status));
     }
     *p.at = '\0';
     return text;

@@ -8,10 +8,9 @@
  *     t3r_plan()      how many bytes             t3r_attach()   an arena that was copied, as it was left
  *         |
  *     t3r_init() --> empty -- t3r_add_view() --> views -- t3r_reconstruct() --> scene -- t3r_render() --> scene alone
- *                      ^                         |   ^                          | ^ |                     |   | ^
+ *                      ^                         |   ^                          | ^ |                     |   ^ |
  *                      |                         +---+ t3r_add_view()           | +-+ t3r_reconstruct()   |   +-+
  *                      +--------------------------- t3r_reset() ----------------+-------------------------+
- * t3r_render()
  *
  *     a stream:      empty -- t3r_stream_keyframe() --> scene, and once more for each further keyframe
  *     from a file:   any -- t3r_scene_begin() --> scene alone, and t3r_scene_append() for each Gaussian
@@ -441,8 +440,8 @@ typedef struct t3r_stream_report {
 
 typedef struct t3r_runtime t3r_runtime;
 
-/* Returns a digest of this header's structs and features, as the program's compiler lays them out. t3r_interface()
- * returns the library's own.
+/* Returns a digest of this header's structs, as the program's compiler lays them out, and of its features, which invert
+ * the lowest bits: T3R_HAS_... . t3r_interface() returns the library's own.
  *
  * A program starts with one of the inline calls below. Each passes the program's digest to the call of the same name
  * with the suffix _as. If the digest differs from the library's, that call touches nothing and returns
@@ -450,11 +449,11 @@ typedef struct t3r_runtime t3r_runtime;
  * t3r_interface(). */
 static inline uint64_t t3r_header_interface(void)
 {
-    uint64_t digest = T3R_FEATURES_BUILT;
+    uint64_t digest = 0;
     T3R_INTERFACE_TYPES_(T3R_DIGEST_TYPE_)
     T3R_INTERFACE_FIELDS_(T3R_DIGEST_FIELD_)
     T3R_SETTINGS(T3R_DIGEST_SETTING_)
-    return digest;
+    return digest ^ T3R_FEATURES_BUILT;
 }
 uint64_t t3r_interface(void);
 
@@ -668,7 +667,7 @@ t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner
 /* Streams (t3r_config.stream): takes the next keyframe of a moving camera into the map, which is the scene in the
  * arena. The map holds at most the configuration's `gaussians` over any number of keyframes, and a call takes bounded
  * time. The caller chooses which frames are keyframes. t3r_render() and t3r_get_scene() work in between, and
- * t3r_reset() empties the map. `report` may be NULL; it is all 0 after an error.
+ * t3r_reset() empties the map. `report` may be NULL; it is all 0 after an error, unless the keyframe was taken.
  *
  * Pixels that the map already shows add nothing. The others compete with the Gaussians of the map by one score, texture
  * density against blue noise. Allocations by SuperClusters count as `pixel`, so that the score means the same in every
@@ -692,7 +691,8 @@ t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner
  * origin. T3R_ERR_NO_DEPTH: without `gate`, a frame without a measured depth. These five change nothing.
  * T3R_ERR_CANCELLED: the keyframe adds nothing; from its comparison with earlier keyframes on, refinement uses neither
  * it nor the one of `views` keyframes ago, and Gaussians that it contradicts may be gone. T3R_ERR_CANCELLED during
- * refinement: the keyframe is taken, and passes are missing. The map stays valid and within its cap after any error. */
+ * refinement: the keyframe is taken, with a report, and passes are missing; report->keyframes is above 0 then. The map
+ * stays valid and within its cap after any error. */
 t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                                t3r_stream_report *report);
 
@@ -792,18 +792,51 @@ t3r_status t3r_composite_row(uint8_t *rgb, const uint16_t *alpha_q15, uint32_t w
  * sentence, T3R_ERROR_BYTES of which hold any. It runs the checks of the call again and changes nothing, so call it
  * before anything else changes the runtime or the arguments. Returns `text`, or a constant text if it is NULL. For an
  * error that no check explains, such as T3R_ERR_CANCELLED, the text is that of t3r_error_text(), as for the calls
- * without such a function. A firmware that does not call them links neither them nor their sentences. */
+ * without such a function. The inline ones pass the program's digest, as their calls do. A firmware that does not call
+ * them links neither them nor their sentences. */
 #define T3R_ERROR_BYTES 320
-const char *t3r_plan_error(t3r_status status, const t3r_config *config, const t3r_plan_info *plan, char *text,
-                           size_t text_bytes);
-const char *t3r_plan_bytes_error(t3r_status status, const t3r_config *config, const size_t *min_bytes,
-                                 const size_t *bytes, char *text, size_t text_bytes);
-const char *t3r_plan_within_error(t3r_status status, size_t bytes, const t3r_config *config, char *text,
-                                  size_t text_bytes);
-const char *t3r_init_error(t3r_status status, t3r_runtime *const *rt, const void *arena, size_t arena_bytes,
-                           const t3r_config *config, char *text, size_t text_bytes);
-const char *t3r_attach_error(t3r_status status, t3r_runtime *const *rt, const void *arena, size_t arena_bytes,
-                             char *text, size_t text_bytes);
+const char *t3r_plan_as_error(t3r_status status, uint64_t digest, const t3r_config *config, const t3r_plan_info *plan,
+                              char *text, size_t text_bytes);
+static inline const char *t3r_plan_error(t3r_status status, const t3r_config *config, const t3r_plan_info *plan,
+                                         char *text, size_t text_bytes)
+{
+    return t3r_plan_as_error(status, t3r_header_interface(), config, plan, text, text_bytes);
+}
+const char *t3r_plan_bytes_as_error(t3r_status status, uint64_t digest, const t3r_config *config,
+                                    const size_t *min_bytes, const size_t *bytes, char *text, size_t text_bytes);
+static inline const char *t3r_plan_bytes_error(t3r_status status, const t3r_config *config, const size_t *min_bytes,
+                                               const size_t *bytes, char *text, size_t text_bytes)
+{
+    return t3r_plan_bytes_as_error(status, t3r_header_interface(), config, min_bytes, bytes, text, text_bytes);
+}
+const char *t3r_plan_within_as_error(t3r_status status, uint64_t digest, size_t bytes, const t3r_config *config,
+                                     char *text, size_t text_bytes);
+static inline const char *t3r_plan_within_error(t3r_status status, size_t bytes, const t3r_config *config, char *text,
+                                                size_t text_bytes)
+{
+    return t3r_plan_within_as_error(status, t3r_header_interface(), bytes, config, text, text_bytes);
+}
+const char *t3r_set_preset_as_error(t3r_status status, uint64_t digest, t3r_preset preset, const t3r_config *config,
+                                    const char *const *weights, char *text, size_t text_bytes);
+static inline const char *t3r_set_preset_error(t3r_status status, t3r_preset preset, const t3r_config *config,
+                                               const char *const *weights, char *text, size_t text_bytes)
+{
+    return t3r_set_preset_as_error(status, t3r_header_interface(), preset, config, weights, text, text_bytes);
+}
+const char *t3r_init_as_error(t3r_status status, uint64_t digest, t3r_runtime *const *rt, const void *arena,
+                              size_t arena_bytes, const t3r_config *config, char *text, size_t text_bytes);
+static inline const char *t3r_init_error(t3r_status status, t3r_runtime *const *rt, const void *arena,
+                                         size_t arena_bytes, const t3r_config *config, char *text, size_t text_bytes)
+{
+    return t3r_init_as_error(status, t3r_header_interface(), rt, arena, arena_bytes, config, text, text_bytes);
+}
+const char *t3r_attach_as_error(t3r_status status, uint64_t digest, t3r_runtime *const *rt, const void *arena,
+                                size_t arena_bytes, char *text, size_t text_bytes);
+static inline const char *t3r_attach_error(t3r_status status, t3r_runtime *const *rt, const void *arena,
+                                           size_t arena_bytes, char *text, size_t text_bytes)
+{
+    return t3r_attach_as_error(status, t3r_header_interface(), rt, arena, arena_bytes, text, text_bytes);
+}
 const char *t3r_set_cpu_error(t3r_status status, const t3r_runtime *rt, uint32_t features, char *text,
                               size_t text_bytes);
 const char *t3r_bind_head_error(t3r_status status, const t3r_runtime *rt, const void *weights, size_t bytes, char *text,

@@ -6,6 +6,7 @@
 #include "arena.h"
 #include "core/config.h"
 #include "core/fault.h"
+#include "core/features.h"
 
 /* Checks a configuration, for a sentence if one is wanted. */
 #define T3R_CHECK_CONFIG(config, fault)                                                                                \
@@ -43,6 +44,18 @@ T3R_CHECKS t3r_plan_within_checks(size_t bytes, const t3r_config *config, t3r_fa
     t3r_layout layout;
     T3R_CHECK(fault, t3r_lay_out(&one, bytes, &layout) == T3R_OK, T3R_ERR_ARENA,
               "bytes is @: with one Gaussian alone the arena has at least @", bytes, layout.min_bytes);
+    return T3R_OK;
+}
+
+#define T3R_PRESETS_NEED (T3R_HAS_LEARNED | T3R_HAS_LOSS)
+
+T3R_CHECKS t3r_set_preset_checks(t3r_preset preset, const t3r_config *config, t3r_fault *fault)
+{
+    T3R_MISUSE(fault, config != NULL, T3R_ERR_ARGUMENT, "config is NULL");
+    T3R_CHECK(fault, preset < T3R_PRESET_COUNT, T3R_ERR_ARGUMENT, "preset is @: a t3r_preset is 0..#", preset,
+              T3R_PRESET_COUNT - 1);
+    T3R_CHECK(fault, t3r_has(T3R_PRESETS_NEED), T3R_ERR_UNSUPPORTED,
+              "a preset needs features that this library was built without: %", T3R_PRESETS_NEED & ~t3r_features());
     return T3R_OK;
 }
 

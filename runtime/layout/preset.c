@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Presets: settings for an amount of work. */
-#include "core/features.h"
+#include "layout/plan_checks.h"
 #include "state/state.h"
 
 typedef struct preset_row {
@@ -20,13 +20,7 @@ _Static_assert(sizeof rows / sizeof *rows == T3R_PRESET_COUNT, "a row a preset")
 t3r_status t3r_set_preset_as(uint64_t digest, t3r_preset preset, t3r_config *config, const char **weights)
 {
     T3R_REFUSE_UNLESS(digest == t3r_header_interface(), T3R_ERR_INTERFACE);
-    T3R_REFUSE_UNLESS(config != NULL, T3R_ERR_ARGUMENT);
-    if (preset >= T3R_PRESET_COUNT) {
-        return T3R_ERR_ARGUMENT;
-    }
-    if (!t3r_has(T3R_HAS_LEARNED | T3R_HAS_LOSS)) {
-        return T3R_ERR_UNSUPPORTED;
-    }
+    T3R_PASS(t3r_set_preset_checks(preset, config, NULL));
     const preset_row *row = &rows[preset];
     config->head = T3R_HEAD_LEARNED;
     config->refine = row->refine;

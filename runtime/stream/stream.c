@@ -322,6 +322,8 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
     }
     if (status == T3R_OK) {
         count_map(rt, report);
+    } else {
+        *report = (t3r_stream_report){0};
     }
     return status;
 }

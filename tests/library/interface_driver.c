@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* interface_driver: prints the status of each call with which a program starts, and whether it wrote anything. */
+/* interface_driver: prints the status of each call with which a program starts, whether it wrote anything, and why the
+ * library refuses the program. */
 #include <stdio.h>
 #include <string.h>
 
@@ -41,5 +42,7 @@ int main(void)
     print_call("plan_within", t3r_plan_within(sizeof now.arena, &now.at.config));
     print_call("init", t3r_init(&rt, now.arena, sizeof now.arena, &config));
     print_call("attach", t3r_attach(&rt, now.arena, sizeof now.arena));
+    char text[T3R_ERROR_BYTES];
+    printf("reason: %s\n", t3r_plan_error(t3r_plan(&config, &now.at.plan), &config, &now.at.plan, text, sizeof text));
     return 0;
 }

@@ -297,9 +297,11 @@ TEST(finer_sights_replace)
     arena_free(&s.memory);
 }
 
-/* At any call where the hook cancels, the map stays valid and later calls work. */
+/* At any call where the hook cancels, the map stays valid and later calls work. The report has the keyframe, if it was
+ * taken, else zeros. */
 TEST(cancelled_anywhere)
 {
+    const t3r_stream_report nothing = {0};
     uint32_t cancelled = 0;
     for (uint32_t at = 1;; at++) {
         site s = site_of(stream_config(), ARENA_AT_MINIMUM);
@@ -310,9 +312,15 @@ TEST(cancelled_anywhere)
             pose p = step_of(i);
             s.calls = 0;
             s.cancel_at = i == AT_HAND || (i == 0 && at % 2 == 0) ? at : 0;
-            status = take(&s, &p, NULL);
+            t3r_stream_report r;
+            status = take(&s, &p, &r);
             assert_true(status == T3R_OK || (status == T3R_ERR_CANCELLED && s.calls == s.cancel_at));
             cancelled += status == T3R_ERR_CANCELLED;
+            if (status == T3R_ERR_CANCELLED && s.stage != T3R_STAGE_REFINE) {
+                assert_memory_equal(&r, &nothing, sizeof r);
+            } else {
+                assert_true(r.keyframes > 0 && r.gaussians > 0);
+            }
             t3r_scene scene;
             if (t3r_get_scene(s.rt, &scene) == T3R_OK) {
                 assert_true(scene.count <= CAP);

@@ -185,6 +185,8 @@ TEST(settings)
     REFUSED("too little memory for one Gaussian", T3R_ERR_ARENA, t3r_plan_within, 5000, &config);
     config.gaussians = 0;
     REFUSED("a budget of 0", T3R_ERR_CONFIG, t3r_plan_within, 50000, &config);
+    REFUSED("a preset that is not there", T3R_ERR_ARGUMENT, t3r_set_preset, T3R_PRESET_COUNT, &config, NULL);
+    REFUSED_TOO("config is NULL", T3R_ERR_ARGUMENT, t3r_set_preset, T3R_PRESET_FAST, NULL, NULL);
     (void)t3r_default_config_as(t3r_header_interface() + 1, &config, sizeof config, SIDE, SIDE, 1, 1);
     REFUSED("a configuration of another trim3r.h", T3R_ERR_CONFIG, t3r_plan, &config, &plan);
     assert_string_equal(t3r_config_error(&config), rows[row_count - 1].sentence);
@@ -193,9 +195,10 @@ TEST(settings)
 TEST(arenas)
 {
     good_config();
-    const t3r_status status = t3r_init_as(t3r_header_interface() + 1, &rt, arena, sizeof arena, &config);
-    SAID("a program with another trim3r.h or other features", t3r_init, T3R_ERR_INTERFACE, status, &rt, arena,
-         sizeof arena, &config);
+    REFUSED("a program with another trim3r.h", T3R_ERR_INTERFACE, t3r_init_as, ~t3r_header_interface(), &rt, arena,
+            sizeof arena, &config);
+    REFUSED("a program without stereo and streams", T3R_ERR_INTERFACE, t3r_init_as,
+            t3r_header_interface() ^ (T3R_HAS_STEREO | T3R_HAS_STREAMS), &rt, arena, sizeof arena, &config);
     REFUSED("no arena", T3R_ERR_ARGUMENT, t3r_init, &rt, NULL, sizeof arena, &config);
     REFUSED("no place for the runtime", T3R_ERR_ARGUMENT, t3r_init, NULL, arena, sizeof arena, &config);
     REFUSED("an arena that is not aligned", T3R_ERR_ARENA, t3r_init, &rt, arena + 8, sizeof arena - 8, &config);
@@ -672,24 +675,33 @@ TEST(other_bounds)
     REFUSED_TOO("no head is bound", T3R_ERR_STATE, t3r_stream_keyframe, rt, &frame, &camera, &report);
 }
 
-/* Another interface is reported by each call that takes a configuration or an arena. */
+#define SWITCH(FEATURE, name) "T3R_FEATURE_" #FEATURE "=1",
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+/* Another header, and each other feature, is named by each call that takes the program's digest. */
 TEST(another_interface)
 {
-    const uint64_t other = t3r_header_interface() + 1;
-    char text[T3R_ERROR_BYTES];
+    static const char *const switches[] = {T3R_FEATURE_ROWS(SWITCH)};
     t3r_plan_info plan;
     size_t least, bytes;
     empty();
-    const t3r_status planned = t3r_plan_as(other, &config, &plan);
-    const t3r_status summed = t3r_plan_bytes_as(other, &config, &least, &bytes);
-    const t3r_status within = t3r_plan_within_as(other, sizeof arena, &config);
-    const t3r_status attached = t3r_attach_as(other, &rt, arena, arena_bytes);
-    assert_non_null(strstr(t3r_plan_error(planned, &config, &plan, text, sizeof text), "another trim3r.h"));
-    assert_non_null(
-        strstr(t3r_plan_bytes_error(summed, &config, &least, &bytes, text, sizeof text), "another trim3r.h"));
-    assert_non_null(
-        strstr(t3r_plan_within_error(within, sizeof arena, &config, text, sizeof text), "another trim3r.h"));
-    assert_non_null(strstr(t3r_attach_error(attached, &rt, arena, arena_bytes, text, sizeof text), "another trim3r.h"));
+    for (size_t i = 0; i <= COUNT(switches); i++) {
+        const uint64_t other = t3r_header_interface() ^ (uint64_t)1 << i;
+        const char *words = i < COUNT(switches) ? switches[i] : "another trim3r.h";
+        REFUSED_TOO(words, T3R_ERR_INTERFACE, t3r_plan_as, other, &config, &plan);
+        REFUSED_TOO(words, T3R_ERR_INTERFACE, t3r_plan_bytes_as, other, &config, &least, &bytes);
+        REFUSED_TOO(words, T3R_ERR_INTERFACE, t3r_plan_within_as, other, sizeof arena, &config);
+        REFUSED_TOO(words, T3R_ERR_INTERFACE, t3r_set_preset_as, other, T3R_PRESET_FAST, &config, NULL);
+        REFUSED_TOO(words, T3R_ERR_INTERFACE, t3r_init_as, other, &rt, arena, sizeof arena, &config);
+        REFUSED_TOO(words, T3R_ERR_INTERFACE, t3r_attach_as, other, &rt, arena, arena_bytes);
+    }
+    char text[T3R_ERROR_BYTES];
+    const uint64_t without = t3r_header_interface() ^ t3r_features(); /* the library has all */
+    (void)t3r_plan_as_error(t3r_plan_as(without, &config, &plan), without, &config, &plan, text, sizeof text);
+    for (size_t i = 0; i < COUNT(switches); i++) {
+        assert_non_null(strstr(text, switches[i]));
+    }
+    assert_true(strlen(text) + 1 < sizeof text);
 }
 
 /* An error that no check explains, a status that the call did not return, and no error. */
@@ -724,8 +736,10 @@ TEST(table)
     assert_non_null(file);
     fprintf(file, "| cause | call | `t3r_error_text()` | `t3r_..._error()` |\n|---|---|---|---|\n");
     for (size_t i = 0; i < row_count; i++) {
-        fprintf(file, "| %s | `%s()` | %s | %s |\n", rows[i].cause, rows[i].call, t3r_error_text(rows[i].status),
-                rows[i].sentence);
+        const char *as = strstr(rows[i].call, "_as"); /* the inline call is the one that programs make */
+        const int length = (int)(as != NULL ? (size_t)(as - rows[i].call) : strlen(rows[i].call));
+        fprintf(file, "| %s | `%.*s()` | %s | %s |\n", rows[i].cause, length, rows[i].call,
+                t3r_error_text(rows[i].status), rows[i].sentence);
     }
     assert_int_equal(fclose(file), 0);
 }

@@ -34,12 +34,11 @@ def _in_python(text: str) -> str:
 
 def _reason(status: int, call: str, arguments: Sequence[Any]) -> str:
     """The sentence about an error of a call, or the words for its status."""
-    explain = getattr(lib, call.removesuffix("_as") + "_error", None)
+    explain = getattr(lib, call + "_error", None)
     if explain is None:
         return text_of(lib.t3r_error_text(status))
     text = ffi.new("char[]", lib.T3R_ERROR_BYTES)
-    same = arguments[1:] if call.endswith("_as") else arguments # without the digest
-    return _in_python(text_of(explain(status, *same, text, lib.T3R_ERROR_BYTES)))
+    return _in_python(text_of(explain(status, *arguments, text, lib.T3R_ERROR_BYTES)))
 
 
 def check(status: int, call: str, *arguments: Any, what: str = "") -> None:
