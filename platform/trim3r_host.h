@@ -9,10 +9,10 @@
  *     t3r_host_close(host);
  *
  * trim3r_capture.h has cameras and recordings. Functions that return a t3r_status write a text into error[] unless it
- * is NULL: why the call failed, "" after T3R_OK. They print nothing, catch no signals and keep no state, so any threads
- * may call them at the same time for different objects. An inline call passes what the program was compiled with to the
- * call of the same name with the suffix _as, which returns T3R_ERR_INTERFACE if the library has other headers or
- * features. */
+ * is NULL: why the call failed, "" after T3R_OK. It is cut at error_bytes: 512 hold all but long paths. They print
+ * nothing, catch no signals and keep no state, so any threads may call them at the same time for different objects. An
+ * inline call passes what the program was compiled with to the call of the same name with the suffix _as, which returns
+ * T3R_ERR_INTERFACE if the library has other headers or features. */
 #ifndef TRIM3R_HOST_H
 #define TRIM3R_HOST_H
 
@@ -212,6 +212,18 @@ static inline t3r_status t3r_host_open(t3r_host **host, const t3r_config *config
 t3r_runtime *t3r_host_runtime(const t3r_host *host);
 /* Binds the caller's progress and stage_hash (NULL: none); parallel_for remains the host's. */
 t3r_status t3r_host_set_hooks(t3r_host *host, const t3r_hooks *hooks);
+/* Returns the arena and its bytes, to be copied or saved between two calls of the runtime. */
+const void *t3r_host_arena(const t3r_host *host, size_t *bytes);
+/* Opens a runtime in a copy of `saved`, the bytes of an arena, as t3r_attach() does: with its settings, as many threads
+ * as its workers, and the processor's vectors. Bind hooks and head again. Returns the statuses of t3r_attach() and
+ * T3R_HOST_ERR_SYSTEM; *host is NULL then. */
+t3r_status t3r_host_attach_as(t3r_program program, t3r_host **host, const void *saved, size_t bytes, char *error,
+                              size_t error_bytes);
+static inline t3r_status t3r_host_attach(t3r_host **host, const void *saved, size_t bytes, char *error,
+                                         size_t error_bytes)
+{
+    return t3r_host_attach_as(t3r_host_program(), host, saved, bytes, error, error_bytes);
+}
 /* Frees the runtime with its arena and threads. NULL is allowed. */
 void t3r_host_close(t3r_host *host);
 

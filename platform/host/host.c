@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A runtime on this host: its arena, threads and vectors. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "program_check.h"
 #include "reason.h"
@@ -9,6 +10,7 @@
 struct t3r_host {
     t3r_runtime *runtime;
     void *arena;
+    size_t arena_bytes;
     t3r_threads *threads; /* NULL: the caller's alone */
     t3r_hooks hooks;      /* the caller's */
 };
@@ -43,8 +45,32 @@ t3r_status t3r_host_set_hooks(t3r_host *host, const t3r_hooks *hooks)
     return t3r_set_hooks(host->runtime, &own);
 }
 
-/* Allocates what the runtime needs, and lays it out. */
-static t3r_status start(t3r_host *host, const t3r_config *config, char *error, size_t error_bytes)
+static t3r_status reserve(t3r_host *host, size_t bytes, char *error, size_t error_bytes)
+{
+    if (posix_memalign(&host->arena, T3R_ARENA_ALIGN, bytes) != 0) {
+        host->arena = NULL;
+        t3r_reason(error, error_bytes, "no memory for an arena of %zu bytes", bytes);
+        return T3R_HOST_ERR_SYSTEM;
+    }
+    host->arena_bytes = bytes;
+    return T3R_OK;
+}
+
+/* Gives the runtime the processor's vectors, and a thread for each of its workers. */
+static t3r_status equip(t3r_host *host, char *error, size_t error_bytes)
+{
+    const uint32_t workers = t3r_get_config(host->runtime)->workers;
+    if (workers > 1 && (host->threads = t3r_threads_start(workers)) == NULL) {
+        t3r_reason(error, error_bytes, "the system refuses %u threads", workers);
+        return T3R_HOST_ERR_SYSTEM;
+    }
+    t3r_status status = t3r_set_cpu(host->runtime, t3r_cpu_features());
+    status = status == T3R_OK ? t3r_host_set_hooks(host, NULL) : status;
+    t3r_reason(error, error_bytes, "%s", status == T3R_OK ? "" : t3r_error_text(status));
+    return status;
+}
+
+static t3r_status lay_out(t3r_host *host, const t3r_config *config, char *error, size_t error_bytes)
 {
     size_t least, bytes;
     t3r_status status = t3r_plan_bytes(config, &least, &bytes);
@@ -52,20 +78,33 @@ static t3r_status start(t3r_host *host, const t3r_config *config, char *error, s
         (void)t3r_plan_bytes_error(status, config, &least, &bytes, error, error_bytes);
         return status;
     }
-    if (posix_memalign(&host->arena, T3R_ARENA_ALIGN, bytes) != 0) {
-        host->arena = NULL;
-        t3r_reason(error, error_bytes, "no memory for an arena of %zu bytes", bytes);
-        return T3R_HOST_ERR_SYSTEM;
-    }
-    if (config->workers > 1 && (host->threads = t3r_threads_start(config->workers)) == NULL) {
-        t3r_reason(error, error_bytes, "the system refuses %u threads", config->workers);
-        return T3R_HOST_ERR_SYSTEM;
+    if ((status = reserve(host, bytes, error, error_bytes)) != T3R_OK) {
+        return status;
     }
     status = t3r_init(&host->runtime, host->arena, bytes, config);
-    status = status == T3R_OK ? t3r_set_cpu(host->runtime, t3r_cpu_features()) : status;
-    status = status == T3R_OK ? t3r_host_set_hooks(host, NULL) : status;
-    t3r_reason(error, error_bytes, "%s", status == T3R_OK ? "" : t3r_error_text(status));
-    return status;
+    if (status != T3R_OK) {
+        (void)t3r_init_error(status, &host->runtime, host->arena, bytes, config, error, error_bytes);
+        return status;
+    }
+    return equip(host, error, error_bytes);
+}
+
+static t3r_status restore(t3r_host *host, const void *saved, size_t bytes, char *error, size_t error_bytes)
+{
+    t3r_status status = saved != NULL ? reserve(host, bytes, error, error_bytes) : T3R_ERR_ARGUMENT;
+    if (saved == NULL) {
+        t3r_reason(error, error_bytes, "saved is NULL");
+    }
+    if (status != T3R_OK) {
+        return status;
+    }
+    memcpy(host->arena, saved, bytes);
+    status = t3r_attach(&host->runtime, host->arena, bytes);
+    if (status != T3R_OK) {
+        (void)t3r_attach_error(status, &host->runtime, host->arena, bytes, error, error_bytes);
+        return status;
+    }
+    return equip(host, error, error_bytes);
 }
 
 t3r_program t3r_host_interface(void)
@@ -73,27 +112,54 @@ t3r_program t3r_host_interface(void)
     return t3r_host_program();
 }
 
-t3r_status t3r_host_open_as(t3r_program program, t3r_host **host, const t3r_config *config, uint32_t threads,
-                            char *error, size_t error_bytes)
+/* Makes an empty host for a program that fits. */
+static t3r_status begin(t3r_program program, t3r_host **host, char *error, size_t error_bytes)
 {
     *host = NULL;
     if (!t3r_program_fits(program, t3r_host_program(), error, error_bytes)) {
         return T3R_ERR_INTERFACE;
     }
-    t3r_host *opened = calloc(1, sizeof *opened);
-    if (opened == NULL) {
+    *host = calloc(1, sizeof **host);
+    if (*host == NULL) {
         t3r_reason(error, error_bytes, "out of memory");
         return T3R_HOST_ERR_SYSTEM;
     }
-    t3r_config own = *config;
-    own.workers = threads > 0 ? threads : t3r_cpu_count();
-    const t3r_status status = start(opened, &own, error, error_bytes);
+    return T3R_OK;
+}
+
+/* Passes the status on; after an error nothing is left of the host. */
+static t3r_status end(t3r_host **host, t3r_status status)
+{
     if (status != T3R_OK) {
-        t3r_host_close(opened);
+        t3r_host_close(*host);
+        *host = NULL;
+    }
+    return status;
+}
+
+t3r_status t3r_host_open_as(t3r_program program, t3r_host **host, const t3r_config *config, uint32_t threads,
+                            char *error, size_t error_bytes)
+{
+    const t3r_status status = begin(program, host, error, error_bytes);
+    if (status != T3R_OK) {
         return status;
     }
-    *host = opened;
-    return T3R_OK;
+    t3r_config own = *config;
+    own.workers = threads > 0 ? threads : t3r_cpu_count();
+    return end(host, lay_out(*host, &own, error, error_bytes));
+}
+
+t3r_status t3r_host_attach_as(t3r_program program, t3r_host **host, const void *saved, size_t bytes, char *error,
+                              size_t error_bytes)
+{
+    const t3r_status status = begin(program, host, error, error_bytes);
+    return status == T3R_OK ? end(host, restore(*host, saved, bytes, error, error_bytes)) : status;
+}
+
+const void *t3r_host_arena(const t3r_host *host, size_t *bytes)
+{
+    *bytes = host->arena_bytes;
+    return host->arena;
 }
 
 t3r_runtime *t3r_host_runtime(const t3r_host *host)

@@ -66,6 +66,11 @@ t3r_status t3r_reset(t3r_runtime *rt)
     return T3R_OK;
 }
 
+const t3r_config *t3r_get_config(const t3r_runtime *rt)
+{
+    return rt != NULL ? &rt->config : NULL;
+}
+
 t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks)
 {
     T3R_REFUSE_UNLESS(rt != NULL, T3R_ERR_ARGUMENT);

@@ -536,6 +536,10 @@ static inline t3r_status t3r_attach(t3r_runtime **rt, void *arena, size_t arena_
     return t3r_attach_as(t3r_header_interface(), rt, arena, arena_bytes);
 }
 
+/* Returns the configuration, for instance of an arena that was attached: that of t3r_init(), with `clusters`,
+ * `cluster_batches` and `refine_stride` as they were chosen. Valid as long as the runtime. NULL without a runtime. */
+const t3r_config *t3r_get_config(const t3r_runtime *rt);
+
 /* Binds callbacks (NULL: none). */
 t3r_status t3r_set_hooks(t3r_runtime *rt, const t3r_hooks *hooks);
 

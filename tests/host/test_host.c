@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A runtime that the host library opens: vectors and threads unasked, the same bits, and errors with their reasons. */
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "state/state.h"
@@ -108,6 +109,48 @@ TEST(vectors_and_threads_are_taken_unasked)
     t3r_host_close(NULL);
 }
 
+/* A saved arena goes on with its own number of threads, and the same bits. */
+TEST(a_saved_arena_goes_on)
+{
+    const t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, GAUSSIANS);
+    const t3r_hooks none = {0};
+    const uint64_t wanted = build(1).hash;
+    char error[256];
+    t3r_host *host, *again;
+    t3r_scene scene;
+    size_t bytes;
+    assert_int_equal(t3r_host_open(&host, &config, 3, NULL, 0), T3R_OK);
+    assert_int_equal(add_views(t3r_host_runtime(host)), T3R_OK);
+    const void *arena = t3r_host_arena(host, &bytes);
+    uint8_t *saved = malloc(bytes);
+    assert_non_null(saved);
+    memcpy(saved, arena, bytes);
+    t3r_host_close(host);
+
+    heard h = {.hash = 0};
+    const t3r_hooks hooks = {.user = &h, .progress = hear_progress, .stage_hash = hear_hash};
+    assert_int_equal(t3r_host_attach(&again, saved, bytes, error, sizeof error), T3R_OK);
+    assert_string_equal(error, "");
+    t3r_runtime *rt = t3r_host_runtime(again);
+    assert_int_equal(t3r_get_config(rt)->workers, 3);
+    assert_int_equal(t3r_get_cpu(rt), t3r_cpu_features());
+    assert_int_equal(t3r_host_set_hooks(again, &hooks), T3R_OK);
+    assert_memory_not_equal(&rt->hooks, &none, sizeof none);
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+    assert_true(h.hash == wanted);
+    t3r_host_close(again);
+
+    assert_int_equal(t3r_host_attach(&again, saved, bytes - 64, error, sizeof error), T3R_ERR_EPOCH);
+    assert_null(again);
+    assert_non_null(strstr(error, "the arena that was copied has"));
+    memset(saved, 0, 64);
+    assert_int_equal(t3r_host_attach(&again, saved, bytes, error, sizeof error), T3R_ERR_EPOCH);
+    assert_non_null(strstr(error, "arena holds no runtime"));
+    assert_int_equal(t3r_host_attach(&again, NULL, bytes, error, sizeof error), T3R_ERR_ARGUMENT);
+    assert_string_equal(error, "saved is NULL");
+    free(saved);
+}
+
 TEST(a_wrong_configuration_is_named)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, GAUSSIANS);
@@ -137,6 +180,7 @@ TEST(another_interface_is_refused)
     assert_string_equal(error,
                         "the program was compiled with the headers of trim3r 0.1.7 without stereo, its library is "
                         "trim3r " T3R_VERSION ": compile it again");
+    assert_int_equal(t3r_host_attach_as(old, &host, &config, sizeof config, NULL, 0), T3R_ERR_INTERFACE);
     assert_null(t3r_capture_open_as(old, "replay:none.mcap", NULL, error, sizeof error));
     assert_non_null(strstr(error, "0.1.7"));
     assert_null(t3r_replay_open_as(old, "none.mcap", error, sizeof error));

@@ -84,7 +84,7 @@ def answers(include, library, folder, *words):
     run("cc", "-std=c11", "-O1", *WARNINGS, *words, "-I", include, HERE / "interface_driver.c", library, "-o", program)
     ended = subprocess.run([program], capture_output=True, text=True, check=False)
     check(ended.returncode == 0, f"the program ends with {ended.returncode}: {ended.stdout}")
-    return dict(line.split(": ") for line in ended.stdout.splitlines())
+    return dict(line.split(": ", 1) for line in ended.stdout.splitlines())
 
 
 def check_mismatches(library, folder):

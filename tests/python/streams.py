@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """streams.py LIBRARY TRIM3R: a stream's map and reports equal those of `trim3r replay --stream`; it is stopped, refused,
-drawn and read in between."""
+drawn and read in between, and goes on from its state in another process."""
 import dataclasses
 import json
 import pathlib
 import sys
 import tempfile
+import zlib
 
 from common import SIDE, check, np, refused, small, trim3r
 
@@ -124,9 +125,98 @@ def check_stopping():
         check(made.keyframe(FRAMES[3]).taken, "goes on")
 
 
+# Goes on from a state with the frames from the fourth on; prints hashes and report, and saves the map's bytes.
+LATER = """
+import sys
+sys.path[:0] = [sys.argv[1]]
+import trim3r
+with trim3r.Stream({side}, {side}, {most}, head="tiny", workers=2) as stream:
+    stream.load_state(sys.argv[2])
+    for frame in trim3r.room({frames}, {side}, {side})[4:]:
+        stream.keyframe(frame)
+    open(sys.argv[3], "wb").write(stream.scene.gaussians.tobytes())
+    print(stream.stage_hashes, stream.report)
+"""
+
+
+def rewritten(state, at, value):
+    """Returns the bytes of a state with some of them changed, and a CRC that agrees."""
+    body = state[:at] + value + state[at + len(value):-4]
+    return body + zlib.crc32(body).to_bytes(4, sys.byteorder)
+
+
+def check_continued(folder):
+    """Goes on from a state: in a new process, and in a stream with a map of its own."""
+    path, ended = folder / "map.state", folder / "map.bytes"
+    made, reports = followed(FRAMES[:4], workers=2)
+    image = made.render(FRAMES[3].camera)
+    made.save_state(path)
+    state = path.read_bytes()
+    check(len(state) > made.arena_bytes and list(folder.glob("map.*")) == [path], "one whole file")
+    for frame in FRAMES[4:]:
+        made.keyframe(frame)
+    script = LATER.format(side=SIDE, most=MOST, frames=len(FRAMES))
+    said = run(sys.executable, "-B", "-c", script, pathlib.Path(sys.argv[1]).resolve().parent.parent, path, ended).stdout
+    check(said.strip() == f"{made.stage_hashes} {made.report}", f"{said}, not {made.stage_hashes} {made.report}")
+    check(ended.read_bytes() == made.scene.gaussians.tobytes(), "another map after going on")
+
+    other, _ = followed(FRAMES[5:7], workers=2)
+    scene = other.scene
+    other.load_state(path)
+    check(other.report == reports[-1] and other.keyframes == 4 and other.stage_hashes == {}, f"{other.report}")
+    check(np.array_equal(other.render(FRAMES[3].camera), image), "drawn as before")
+    with refused(trim3r.StateError, "copy()"):
+        scene.positions.sum()
+    with stream(workers=2) as unused: # nothing yet
+        unused.save_state(path)
+        other.load_state(path)
+    check(other.keyframes == 0 and other.report is None and other.keyframe(FRAMES[0]) == reports[0], "begun anew")
+    check_other_states(folder, state, reports)
+
+
+def check_other_states(folder, state, reports):
+    """Refuses states that do not fit, or are damaged; the stream is as before."""
+    path = folder / "wrong.state"
+    wrong = {"not the state of a stream": (b"", b"ply\n", b"T3RSTREA", state[8:]),
+             "another version": (rewritten(state, 8, b"\0\1\2\3"),),
+             "damaged or cut off": (state[:-1], state[:len(state) // 2], state[:40], state + b"\0",
+                                    state[:-100] + b"\1" + state[-99:]),
+             "arena holds no runtime": (rewritten(state, len(state) - 4 - stream(workers=2).arena_bytes, bytes(64)),)}
+    made, (report,) = followed(FRAMES[:1], workers=2)
+    kept = made.snapshot().gaussians.tobytes()
+    for words, files in wrong.items():
+        for file in files:
+            path.write_bytes(file)
+            with refused(trim3r.InputError, "wrong.state: ", words):
+                made.load_state(path)
+    path.write_bytes(state)
+    room = made.arena_bytes # the same for both, so that only the number of workers differs
+    for options, words in (({}, "workers is 2 in the state, not 1"), ({"arena_bytes": room}, "workers is 2"),
+                           ({"workers": 2, "head": "small"}, "another head"), ({"workers": 2, "most": 500}, "gaussians is 600"),
+                           ({"workers": 2, "views": 2}, "views is 4"), ({"workers": 2, "settings": {"gate": 0}}, "gate is 1")):
+        with stream(**options) as other, refused(trim3r.InputError, words):
+            other.load_state(path)
+    with refused(FileNotFoundError, "nowhere"):
+        made.load_state(folder / "nowhere")
+    with refused(IsADirectoryError):
+        made.load_state(folder)
+    with refused(FileNotFoundError, "at.state"):
+        made.save_state(folder / "nowhere" / "at.state")
+    for call in (made.save_state, made.load_state):
+        with refused(ValueError, "null byte"):
+            call(f"{folder}/a\0b")
+    check(made.report == report and made.snapshot().gaussians.tobytes() == kept, "the stream is as before")
+    check([made.keyframe(frame) for frame in FRAMES[1:3]] == reports[1:3], "goes on")
+    made.close()
+    for call in (made.save_state, made.load_state):
+        with refused(trim3r.StateError, "closed"):
+            call(path)
+
+
 def main():
     with tempfile.TemporaryDirectory(prefix="trim3r-python-") as folder:
         check_program(pathlib.Path(folder))
+        check_continued(pathlib.Path(folder))
     check_between()
     check_refusals()
     check_stopping()

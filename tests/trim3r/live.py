@@ -4,9 +4,11 @@
 pipe; and what ends it early: --until, --max-ms."""
 import json
 import os
+import pathlib
 import re
 import signal
 import subprocess
+import sys
 import time
 
 from program import TRIM3R, check, expect, expect_json, in_scratch, room, run, write
@@ -100,6 +102,21 @@ def count_lines(path):
         return file.read().count(b"\n")
 
 
+def forged_state():
+    """A state with the arena of a stream of fewer workers, whose hash agrees, is refused: threads would write beyond it."""
+    arena = 1 << 20
+    for threads in (1, 2):
+        expect(0, *STREAM, "--until", 3, "--arena", "1M", "--threads", threads, "--state", f"of{threads}.t3s")
+    one, two = (pathlib.Path(f"of{threads}.t3s").read_bytes() for threads in (1, 2))
+    at = one.index(b"tm3r")
+    check(at == two.index(b"tm3r") and one[:at] != two[:at] and len(one) >= at + arena, "blind: no arena")
+    forged, value = two[:at] + one[at:at + arena] + two[at + arena:-8], 0xcbf29ce484222325
+    for byte in forged: # FNV-1a
+        value = (value ^ byte) * 0x100000001b3 & (1 << 64) - 1
+    pathlib.Path("forged.t3s").write_bytes(forged + value.to_bytes(8, sys.byteorder))
+    expect(1, *STREAM, "--arena", "1M", "--threads", 2, "--state", "forged.t3s", "--resume", err="forged.t3s: its arena has other settings")
+
+
 def refused_states():
     """A state of other settings, another recording or another file is refused, and one that is cut or changed."""
     expect(0, *STREAM, "--until", 9, "--state", "some.t3s")
@@ -115,6 +132,7 @@ def refused_states():
     for broken in (whole[:-1], whole[:500], whole[:9000] + bytes([whole[9000] ^ 1]) + whole[9001:], whole[:8]):
         write("broken.t3s", broken)
         expect(1, *STREAM, "--state", "broken.t3s", "--resume", err="broken.t3s: ")
+    forged_state()
     expect(2, *STREAM, "--resume", err="--resume needs --state")
     expect(2, *STREAM, "--state", "room.mcap", err="one file")
     again = expect_json(*STREAM, *more)

@@ -528,6 +528,7 @@ static void call(t3r_runtime *rt, input *in)
     call_export(rt);
     (void)t3r_render_passes(rt);
     (void)t3r_head_crc(rt);
+    REQUIRE(t3r_get_config(rt) != NULL);
 }
 
 static void use(t3r_runtime *rt, input *in)

@@ -129,6 +129,7 @@ TEST(missing_pointers)
     assert_int_equal(t3r_plan_bytes(&config, &bytes, NULL), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_set_cpu(NULL, 0), T3R_ERR_ARGUMENT);
     assert_int_equal(t3r_get_cpu(NULL), 0);
+    assert_null(t3r_get_config(NULL));
     assert_int_equal(t3r_head_crc(NULL), 0);
     assert_int_equal(t3r_cluster_count(NULL), 0);
     assert_int_equal(t3r_cluster_batch_count(NULL), 0);

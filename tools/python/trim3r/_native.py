@@ -54,12 +54,12 @@ def called(call: str, *arguments: Any, what: str = "") -> None:
 
 
 def host_called(call: str, *arguments: Any, path: str = "") -> str:
-    """Calls a function of the host library by its name, and returns its remarks.
+    """Calls a function of the host library that writes into error[] by its name, and returns its remarks.
 
     Raises its error: OSError where the system refuses a file, which `path` names.
     """
     error = ffi.new("char[]", ERROR_BYTES)
-    status = getattr(lib, call + "_as")(HOST, *arguments, error, ERROR_BYTES)
+    status = getattr(lib, call)(*arguments, error, ERROR_BYTES)
     text = text_of(error)
     if status == lib.T3R_OK:
         return text

@@ -6,7 +6,7 @@ from typing import Any, Optional, Sequence, Tuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._native import address, ffi, host_called, lib
+from ._native import HOST, address, ffi, host_called, lib
 from .arguments import fixed, grid, whole
 from .errors import InputError
 
@@ -192,6 +192,6 @@ def _posed(pose: ArrayLike, axes: str, world_to_camera: bool) -> Tuple[Any, Any]
     matrix = np.eye(4)
     matrix[:len(given)] = given
     camera = ffi.new("t3r_recorded_camera *")
-    host_called("t3r_camera_pose_matrix", camera, address(matrix, "double *"),
+    host_called("t3r_camera_pose_matrix_as", HOST, camera, address(matrix, "double *"),
                 _AXES[axes] | (lib.T3R_WORLD_TO_CAMERA if world_to_camera else 0))
     return camera.position, camera.rotation

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._native import INTERFACE, address, called, check, ffi, lib, text_of
+from ._settings import SETTINGS
 from .arguments import pair, whole
 from .camera import Camera
 from .errors import InputError, StateError
@@ -39,11 +40,8 @@ class Runtime:
         self._arena = arena_of(plan.bytes if arena_bytes is None else arena_bytes)
         runtime = ffi.new("t3r_runtime **")
         called("t3r_init_as", INTERFACE, runtime, address(self._arena, "void *"), self._arena.nbytes, config)
-        lib.t3r_set_cpu(runtime[0], lib.t3r_cpu_features())
-        if head.nbytes and config.views > 0:
-            called("t3r_bind_head", runtime[0], head.weights, head.nbytes, what="head")
         self._hooks = Hooks(progress, config.workers)
-        self._hooks.bind(runtime[0])
+        self._bind(runtime[0])
         self._runtime = runtime[0]
         self._generation = 0
 
@@ -158,6 +156,32 @@ class Runtime:
             yield self._runtime
         finally:
             self._lock.release()
+
+    def _bind(self, runtime: Any) -> None:
+        """Gives a runtime what no arena holds: the processor's features, the head's weights and the callbacks."""
+        lib.t3r_set_cpu(runtime, lib.t3r_cpu_features())
+        if self._head.nbytes and self._config.views > 0:
+            called("t3r_bind_head", runtime, self._head.weights, self._head.nbytes, what="head")
+        self._hooks.bind(runtime)
+
+    def _attach(self, saved: "NDArray[np.uint8]", what: str) -> None:
+        """Goes on from the bytes of a saved arena. After an error nothing has changed.
+
+        Raises InputError where it is damaged, or of other settings or another head.
+        """
+        arena, runtime = arena_of(saved.nbytes), ffi.new("t3r_runtime **")
+        arena[:] = saved
+        called("t3r_attach_as", INTERFACE, runtime, address(arena, "void *"), arena.nbytes, what=what)
+        its, ours = (lib.t3r_get_config(one) for one in (runtime[0], self._runtime))
+        for name in SETTINGS:
+            if getattr(its, name) != getattr(ours, name):
+                raise InputError(f"{what}: {name} is {getattr(its, name)} in the state, not {getattr(ours, name)}")
+        if lib.t3r_head_crc(runtime[0]) != lib.t3r_head_crc(self._runtime):
+            raise InputError(f"{what}: the state is of another head")
+        self._bind(runtime[0])
+        self._arena, self._runtime = arena, runtime[0]
+        self._hooks.hashes.clear()
+        self._go_on()
 
     def _size(self, size: Optional[Tuple[int, int]]) -> Tuple[int, int]:
         """Returns the width and height of a picture. None: the working size."""

@@ -7,7 +7,7 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._native import address, borrowed, dtype_of, ffi, host_called, lib
+from ._native import HOST, address, borrowed, dtype_of, ffi, host_called, lib
 from .arguments import Path, path_bytes, readable, whole
 from .errors import InputError, StateError
 from .scene_arrays import IDENTITY, Arrays, arrays_of, checked, scene_of
@@ -73,7 +73,7 @@ class Scene:
         """
         file = ffi.new("t3r_scene_file *")
         flags = lib.T3R_SCENE_DROP_INVALID if drop_invalid else 0
-        _warn(host_called("t3r_scene_read", readable(path), flags, file, path=os.fsdecode(path)))
+        _warn(host_called("t3r_scene_read_as", HOST, readable(path), flags, file, path=os.fsdecode(path)))
         return cls._of_file(file)
 
     @classmethod
@@ -154,7 +154,7 @@ class Scene:
         """
         flags = (lib.T3R_SCENE_LOCAL if local else 0) | (lib.T3R_SCENE_COMMENTS if comments else 0)
         file, kept = self.native()
-        _warn(host_called("t3r_scene_file_write", path_bytes(path), file, flags, path=os.fsdecode(path)))
+        _warn(host_called("t3r_scene_file_write_as", HOST, path_bytes(path), file, flags, path=os.fsdecode(path)))
         del kept
 
     def copy(self) -> "Scene":

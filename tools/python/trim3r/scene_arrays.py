@@ -58,7 +58,7 @@ def scene_of(arrays: Arrays, antialiased: bool) -> Any:
     made = ffi.new("t3r_scene_file *")
     native = _native(arrays)
     native.mip = antialiased
-    host_called("t3r_scene_of_floats", native, made)
+    host_called("t3r_scene_of_floats_as", HOST, native, made)
     return made
 
 

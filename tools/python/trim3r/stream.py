@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Streams: a map of Gaussians that follows a moving camera."""
 import dataclasses
+import os
 from typing import Any, Dict, Optional, Tuple
 
-from ._native import ffi, lib, text_of
-from .arguments import grid, pair, whole
+from ._native import ffi, host_called, lib, text_of
+from .arguments import Path, grid, pair, path_bytes, whole
 from .camera import Camera
 from .configuration import Settings, configuration
 from .frame import Frame
@@ -13,6 +14,7 @@ from .hooks import Progress
 from .image_stage import camera_of
 from .runtime import Runtime
 from .scene import Scene
+from .stream_state import read_state, state_of
 
 _KEYFRAMES = 4  # live ones, as the program has them
 
@@ -92,6 +94,11 @@ def _report_of(native: Any) -> Report:
     return Report(**values)
 
 
+def _is_report(native: Any) -> bool:
+    """Whether a t3r_stream_report is about a frame; else it is all 0."""
+    return bool(native.keyframes > 0 or native.refusal != lib.T3R_REFUSAL_NONE)
+
+
 class Stream(Runtime):
     """A map that follows a moving camera with depth, in a fixed number of bytes: docs/streams.md.
 
@@ -128,7 +135,7 @@ class Stream(Runtime):
         config = configuration(width, height, views, gaussians, weights, {
             "workers": workers, "render_width": render_width, "render_height": render_height, **settings, "stream": 1})
         super().__init__(config, weights, arena_bytes, progress)
-        self._report: Optional[Report] = None
+        self._report = ffi.new("t3r_stream_report *")  # zeros: none yet
 
     def keyframe(self, frame: Frame) -> Report:
         """Takes a frame into the map, unless the gate refuses it: Report.refusal has the reason.
@@ -152,8 +159,8 @@ class Stream(Runtime):
             try:
                 self._check("t3r_stream_keyframe", runtime, native, camera, report)
             finally: # stopped in refinement, the frame is a keyframe
-                if report.keyframes > 0 or report.refusal != lib.T3R_REFUSAL_NONE:
-                    self._report = _report_of(report)
+                if _is_report(report):
+                    self._report = report
             del kept
         return _report_of(report)
 
@@ -195,19 +202,56 @@ class Stream(Runtime):
     @property
     def report(self) -> Optional[Report]:
         """The report on the last frame that was taken or refused; None before one."""
-        return self._report
+        return _report_of(self._report) if _is_report(self._report) else None
 
     @property
     def keyframes(self) -> int:
         """Keyframes so far."""
-        return 0 if self._report is None else self._report.keyframes
+        return int(self._report.keyframes)
 
     def reset(self) -> None:
         """Empties the map; the settings stay."""
         with self._at_work() as runtime:
             self._go_on()
             self._check("t3r_reset", runtime)
-            self._report = None
+            self._report = ffi.new("t3r_stream_report *")
+
+    def save_state(self, path: Path) -> None:
+        """Writes all of the stream into a file: the map, the live keyframes, the report.
+
+        A stream of the same settings and head goes on from it by load_state(), with the same bits: in another process, on
+        a processor of the same word size and byte order, with the same build of trim3r. The file appears when it is whole.
+
+        Raises
+        ------
+        OSError
+            The system refuses to write it. An existing file stays.
+        StateError
+            The stream is closed or at work.
+        """
+        with self._at_work():
+            state = state_of(self._report, self._arena)
+        host_called("t3r_write_whole", path_bytes(path), ffi.from_buffer(state), len(state), path=os.fsdecode(path))
+
+    def load_state(self, path: Path) -> None:
+        """Goes on from a file of save_state(), in place of what the stream holds.
+
+        Raises
+        ------
+        OSError
+            The file cannot be read.
+        InputError
+            It is no state, or damaged; or it is of another version, head or setting, and the text says which. The
+            stream is then as before.
+        StateError
+            The stream is closed or at work.
+        """
+        name = os.fsdecode(path)
+        with self._at_work():
+            with open(name, "rb") as file:
+                report, arena = read_state(file.read(), name)
+            self._attach(arena, name)
+            self._report = report
 
     def __repr__(self) -> str:
         size = f"{self._config.width}x{self._config.height}"

@@ -126,6 +126,7 @@ static int take(const char *path, const uint8_t *bytes, size_t count, live_map *
             t3r_hash_bytes(T3R_HASH_START, bytes, count - sizeof hash)) {
         return cli_error(CLI_BAD_INPUT, "%s: damaged", path);
     }
+    const t3r_config own = *t3r_get_config(map->r.runtime);
     memcpy(map->r.arena, bytes + sizeof head, arena_bytes);
     memcpy(map->r.stage_hash, head.stage_hash, sizeof head.stage_hash);
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
@@ -139,7 +140,11 @@ static int take(const char *path, const uint8_t *bytes, size_t count, live_map *
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
     memcpy(state->more, bytes + sizeof head + arena_bytes, head.more_bytes);
-    return live_map_attach(map);
+    const int code = live_map_attach(map);
+    if (code == CLI_OK && memcmp(t3r_get_config(map->r.runtime), &own, sizeof own) != 0) {
+        return cli_error(CLI_BAD_INPUT, "%s: its arena has other settings", path); /* fewer workers than threads, say */
+    }
+    return code;
 }
 
 int live_state_read(const char *path, live_map *map, live_state *state)
