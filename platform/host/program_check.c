@@ -36,8 +36,10 @@ bool t3r_program_fits(t3r_program program, t3r_program library, char *error, siz
     }
     describe(program, library, its);
     describe(library, program, own);
-    t3r_reason(error, error_bytes,
-               "the program was compiled with the headers of trim3r %s, its library is trim3r %s: compile it again",
-               its, own);
+    t3r_reason(
+        error, error_bytes,
+        "the program was compiled with other headers than its library's: of trim3r %s, and the library is trim3r "
+        "%s: compile it again",
+        its, own);
     return false;
 }

@@ -178,8 +178,8 @@ TEST(another_interface_is_refused)
     assert_int_equal(t3r_host_open_as(old, &host, &config, 0, error, sizeof error), T3R_ERR_INTERFACE);
     assert_null(host);
     assert_string_equal(error,
-                        "the program was compiled with the headers of trim3r 0.1.7 without stereo, its library is "
-                        "trim3r " T3R_VERSION ": compile it again");
+                        "the program was compiled with other headers than its library's: of trim3r 0.1.7 without "
+                        "stereo, and the library is trim3r " T3R_VERSION ": compile it again");
     assert_int_equal(t3r_host_attach_as(old, &host, &config, sizeof config, NULL, 0), T3R_ERR_INTERFACE);
     assert_null(t3r_capture_open_as(old, "replay:none.mcap", NULL, error, sizeof error));
     assert_non_null(strstr(error, "0.1.7"));
