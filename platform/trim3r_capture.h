@@ -25,7 +25,7 @@ typedef struct t3r_capture_frame {
     uint32_t sequence;      /* the driver's count, with gaps; in recordings the index */
     int64_t stamp_ns;       /* time of the colour image, in the source's clock */
     int64_t depth_stamp_ns; /* time of the depth image; equal to stamp_ns if they are one image */
-    bool has_pose;          /* camera's pose is known */
+    bool has_pose;          /* camera's pose is known; else its rotation is 0 0 0 0, which the runtime refuses */
     bool has_intrinsics;    /* camera's intrinsics are known */
     bool straightened;      /* redrawn without the lens's distortion, which `camera` cannot hold */
     t3r_frame frame;        /* frame.depth is NULL without depth */

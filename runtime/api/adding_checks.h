@@ -34,7 +34,7 @@ static inline const char *t3r_no_view_text(const t3r_runtime *rt)
         return "config.views is 0: this runtime draws scenes and takes no views";
     }
     return rt->has_scene ? "there is a scene already: t3r_reset() comes before the next view, unless config.warm is set"
-                         : "all # views of config.views are there: t3r_reconstruct() is next, or t3r_reset()";
+                         : "there are # views, the most by config.views: t3r_reconstruct() is next, or t3r_reset()";
 }
 
 #define T3R_NO_DEPTH_TEXT "frame.depth is NULL: unless config.depth is T3R_DEPTH_STEREO each frame has a depth plane"
@@ -91,7 +91,7 @@ T3R_CHECKS t3r_add_rows_checks(const t3r_runtime *rt, const t3r_frame *frame, co
     T3R_PASS(t3r_taken_checks(rt, frame, camera, fault));
     T3R_MISUSE(fault, t3r_takes_view(rt), T3R_ERR_STATE, t3r_no_view_text(rt), rt->views);
     T3R_MISUSE(fault, t3r_slot_of_next(rt) == rt->views, T3R_ERR_STATE,
-               "all # views of config.views are there, and strips replace none: t3r_add_view() does", rt->views);
+               "there are # views, the most by config.views, and strips replace none: t3r_add_view() does", rt->views);
     *shown = *frame;
     if (t3r_is_by_stereo(&rt->config)) {
         shown->depth = NULL;

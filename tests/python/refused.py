@@ -3,9 +3,11 @@
 """refused.py LIBRARY: invalid input is refused with a reason, and leaves everything unchanged."""
 import dataclasses
 import pathlib
+import re
 import tempfile
 
-from common import FRAMES, SIDE, check, np, refused, small, trim3r, with_views
+from common import FRAMES, ROOT, SIDE, check, np, refused, small, trim3r, with_views
+from trim3r import _native
 
 from checks import done
 
@@ -219,6 +221,27 @@ def check_measures():
             trim3r.psnr(*what)
 
 
+# Calls that sentences name and the package makes itself; they are in no sentence that it raises.
+OWN_CALLS = {"init", "attach", "plan", "default_config", "cpu_found", "head_column_bytes", "bind_head"}
+
+
+def check_sentences():
+    """Sentences of the library name methods and values of the package."""
+    rows = re.findall(r"^\| [^|]+ \| `t3r_\w+\(\)` \| [^|]+ \| ([^|]+) \|$", (ROOT / "docs" / "errors.md").read_text(), re.M)
+    check(len(rows) > 100, f"blind: {len(rows)} sentences")
+    for row in rows:
+        text = _native._in_python(row)
+        for name in re.findall(r"\b(\w+)\(\)", text):
+            there = any(hasattr(owner, name) for owner in (trim3r.Reconstructor, trim3r.Stream, trim3r))
+            check(there or name in OWN_CALLS, f"there is no {name}(): {text}")
+        left = set(re.findall(r"\bT3R_\w+", text)) - {"T3R_ARENA_ALIGN"}
+        check(all(word.startswith("T3R_FEATURE_") for word in left), f"{left}: {text}")
+    with trim3r.Stream(SIDE, SIDE, 100, head="tiny") as stream, refused(trim3r.StateError, "call keyframe() first"):
+        stream.overlap(FRAMES[0].camera)
+    with small() as made, refused(trim3r.DepthError, "unless depth is 'stereo'"):
+        made.add_view(changed(depth=None))
+
+
 FRAMES_READ_ONLY = FRAMES[0].colour.copy()
 FRAMES_READ_ONLY.setflags(write=False)
 
@@ -230,6 +253,7 @@ def main():
     check_settings()
     check_builds()
     check_measures()
+    check_sentences()
     done()
 
 

@@ -16,7 +16,8 @@ lib: Any = ffi.dlopen(str(pathlib.Path(__file__).with_name("libtrim3r_python.so"
 ERROR_BYTES = 512
 INTERFACE: int = lib.t3r_interface() # the declarations are of the headers that the library was compiled with
 HOST: Any = lib.t3r_host_interface() # the same of the host library
-_CALLS = {"reconstruct": "build", "scene_begin": "load", "scene_append": "load"} # the package's names; others are the same
+_CALLS = {"reconstruct": "build", "scene_begin": "load", "scene_append": "load", "stream_keyframe": "keyframe"} # or the same
+_VALUE = re.compile(r"\bT3R_(?:ALLOCATE|DEPTH|DISTORTION|PIXEL)_(\w+)") # of settings and arguments that take names
 _STATUS_NAMES = {getattr(lib, name): name for name in dir(lib) if name.startswith(("T3R_ERR_", "T3R_HOST_ERR_"))}
 _SYSTEM = {os.strerror(code): code for code in errno.errorcode}
 
@@ -29,6 +30,7 @@ def text_of(pointer: Any) -> str:
 def _in_python(text: str) -> str:
     """A sentence of the library with the names that the package has for things."""
     text = re.sub(r"\bt3r_(\w+)\(\)", lambda match: _CALLS.get(match[1], match[1]) + "()", text)
+    text = _VALUE.sub(lambda match: repr(match[1].lower()), text)
     return re.sub(r"\bconfig\.", "", text).replace("NULL", "None").replace("--drop-invalid", "drop_invalid=True")
 
 
