@@ -581,7 +581,7 @@ TEST(strips_like_views)
     REFUSED_TOO("frame.width is 0", T3R_ERR_FRAME, t3r_add_rows, rt, &frame, &camera, 0, 8, 0, 8);
     good_arguments();
     add(2);
-    REFUSED_TOO("all 2 views", T3R_ERR_STATE, t3r_add_rows, rt, &frame, &camera, 0, 8, 0, 8);
+    REFUSED_TOO("the most by config.views", T3R_ERR_STATE, t3r_add_rows, rt, &frame, &camera, 0, 8, 0, 8);
 }
 
 /* t3r_rebuild_least() has the errors of the rebuilds and of the pictures that it makes. */
