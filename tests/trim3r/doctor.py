@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """doctor.py TRIM3R: what a machine has is listed, and a self-check that gives other bits is an error."""
+import json
 import os
 import shutil
 import subprocess
@@ -44,6 +45,29 @@ def away_from_its_modules():
           f"poses without modules: {ended}")
 
 
+def without_libheif():
+    """libheif is loaded for its pictures alone; where it does not load, they are refused by its name."""
+    os.makedirs("empty")
+    open("empty/libheif.so.1", "wb").close() # found first, and no library
+    environment = {**os.environ, "LD_LIBRARY_PATH": os.path.abspath("empty")}
+
+    def run(*arguments):
+        return subprocess.run([TRIM3R, *arguments], env=environment, capture_output=True, text=True)
+
+    check(run("--version").returncode == 0, "libheif is loaded to print a version")
+    if expect_json("doctor")["heif"] is None:
+        return
+    os.makedirs("photos")
+    for i in range(2):
+        with open(f"photos/{i}.heic", "wb") as file:
+            file.write(b"\0\0\0\x18ftypheic")
+    for ended, status in ((run("import", "photos", "--poses", "estimate", "-o", "no.mcap"), 1), (run("doctor"), 0)):
+        said = " ".join((ended.stdout + ended.stderr).split())
+        check(ended.returncode == status and "libheif does not load" in said and "Debian: libheif1" in said,
+              f"without libheif: {ended}")
+    check(json.loads(run("doctor", "--json").stdout)["heif"] is None, "doctor has a libheif that does not load")
+
+
 def the_same_bits_whatever_is_used():
     hashes = {expect_json("doctor", *given)["hash"] for given in
               ([], ["--cpu-mask", "none"], ["--cpu-mask", "avx2"], ["--threads", 3], ["--threads", 2, "--cpu-mask", "none"])}
@@ -63,4 +87,4 @@ def other_bits_are_an_error():
     expect(2, "doctor", "--cpu-mask", "avx9", err="--cpu-mask")
 
 
-in_scratch(lists, away_from_its_modules, the_same_bits_whatever_is_used, other_bits_are_an_error)
+in_scratch(lists, away_from_its_modules, without_libheif, the_same_bits_whatever_is_used, other_bits_are_an_error)

@@ -50,6 +50,9 @@ set(CPACK_DEBIAN_HOST_DEV_PACKAGE_DEPENDS "libtrim3r-dev (= ${PROJECT_VERSION}),
 libcjson-dev, libjpeg-dev, liblz4-dev, libwebp-dev, libzip-dev, libzstd-dev, zlib1g-dev")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME trim3r)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
+if(HEIF_FOUND)
+  set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS libheif1) # loaded when a picture needs it
+endif()
 foreach(component ${module_components})
   string(TOUPPER ${component} name)
   set(CPACK_DEBIAN_${name}_PACKAGE_NAME trim3r-${component})

@@ -9,9 +9,8 @@
 #include <string.h>
 #include <strings.h>
 
-#include <libheif/heif.h>
-
 #include "pictures/exif.h"
+#include "pictures/heif_functions.h"
 
 #define FILE_BYTES_MOST (256L << 20)
 #define BRAND_AT 4u /* "ftyp" and a brand of four letters */
@@ -19,6 +18,7 @@
 #define OFFSET_BYTES 4u /* before EXIF, of its TIFF header */
 
 typedef struct heif_file {
+    const heif_functions *call;
     uint8_t *bytes;
     size_t count;
     struct heif_context *context;
@@ -26,9 +26,13 @@ typedef struct heif_file {
     struct heif_image *image;
 } heif_file;
 
-const char *heif_library(void)
+int heif_describe(char *text, size_t text_bytes)
 {
-    return "libheif " LIBHEIF_VERSION;
+    const heif_functions *call = heif_functions_load(text, text_bytes);
+    if (call != NULL) {
+        snprintf(text, text_bytes, "libheif %s", call->get_version());
+    }
+    return call != NULL ? 0 : -1;
 }
 
 bool heif_is(const uint8_t *bytes, size_t count)
@@ -66,15 +70,15 @@ static int load(heif_file *h, FILE *file, char *error, size_t error_bytes)
 static int read_exif(const heif_file *h, picture *out)
 {
     heif_item_id id;
-    if (heif_image_handle_get_list_of_metadata_block_IDs(h->handle, "Exif", &id, 1) != 1) {
+    if (h->call->image_handle_get_list_of_metadata_block_IDs(h->handle, "Exif", &id, 1) != 1) {
         return 0;
     }
-    const size_t count = heif_image_handle_get_metadata_size(h->handle, id);
+    const size_t count = h->call->image_handle_get_metadata_size(h->handle, id);
     uint8_t *block = malloc(count + 1);
     if (block == NULL) {
         return -1;
     }
-    if (count > OFFSET_BYTES && heif_image_handle_get_metadata(h->handle, id, block).code == heif_error_Ok) {
+    if (count > OFFSET_BYTES && h->call->image_handle_get_metadata(h->handle, id, block).code == heif_error_Ok) {
         const size_t offset = (size_t)block[0] << 24 | (size_t)block[1] << 16 | (size_t)block[2] << 8 | block[3];
         const size_t at = offset < count - OFFSET_BYTES ? OFFSET_BYTES + offset : count;
         out->focal_35mm = exif_read(block + at, count - at).focal_35mm;
@@ -85,24 +89,24 @@ static int read_exif(const heif_file *h, picture *out)
 
 static int open_picture(heif_file *h, uint32_t most_side, picture *out, char *error, size_t error_bytes)
 {
-    h->context = heif_context_alloc();
+    h->context = h->call->context_alloc();
     if (h->context == NULL) {
         return t3r_reason(error, error_bytes, "out of memory");
     }
-    heif_context_set_maximum_image_size_limit(h->context, (int)most_side);
-    if (failed(heif_context_read_from_memory_without_copy(h->context, h->bytes, h->count, NULL), error, error_bytes) !=
-            0 ||
-        failed(heif_context_get_primary_image_handle(h->context, &h->handle), error, error_bytes) != 0) {
+    h->call->context_set_maximum_image_size_limit(h->context, (int)most_side);
+    if (failed(h->call->context_read_from_memory_without_copy(h->context, h->bytes, h->count, NULL), error,
+               error_bytes) != 0 ||
+        failed(h->call->context_get_primary_image_handle(h->context, &h->handle), error, error_bytes) != 0) {
         return -1;
     }
-    const int width = heif_image_handle_get_width(h->handle), height = heif_image_handle_get_height(h->handle);
+    const int width = h->call->image_handle_get_width(h->handle), height = h->call->image_handle_get_height(h->handle);
     if (width < 1 || height < 1 || (uint32_t)width > most_side || (uint32_t)height > most_side ||
         (uint64_t)width * (uint64_t)height > PICTURE_LARGEST_PIXELS) {
         return t3r_reason(error, error_bytes, "HEIF: image exceeds the largest size");
     }
     out->width = (uint32_t)width;
     out->height = (uint32_t)height;
-    out->channels = heif_image_handle_has_alpha_channel(h->handle) ? 4 : 3;
+    out->channels = h->call->image_handle_has_alpha_channel(h->handle) ? 4 : 3;
     out->bits = 8;
     out->orientation = EXIF_UPRIGHT;
     return read_exif(h, out) == 0 ? 0 : t3r_reason(error, error_bytes, "out of memory");
@@ -111,15 +115,15 @@ static int open_picture(heif_file *h, uint32_t most_side, picture *out, char *er
 static int decode(heif_file *h, picture *out, char *error, size_t error_bytes)
 {
     const enum heif_chroma form = out->channels == 4 ? heif_chroma_interleaved_RGBA : heif_chroma_interleaved_RGB;
-    if (failed(heif_decode_image(h->handle, &h->image, heif_colorspace_RGB, form, NULL), error, error_bytes) != 0) {
+    if (failed(h->call->decode_image(h->handle, &h->image, heif_colorspace_RGB, form, NULL), error, error_bytes) != 0) {
         return -1;
     }
     int stride;
-    const uint8_t *plane = heif_image_get_plane_readonly(h->image, heif_channel_interleaved, &stride);
+    const uint8_t *plane = h->call->image_get_plane_readonly(h->image, heif_channel_interleaved, &stride);
     const size_t row = (size_t)out->width * out->channels;
     if (plane == NULL || stride < 0 || (size_t)stride < row ||
-        heif_image_get_width(h->image, heif_channel_interleaved) != (int)out->width ||
-        heif_image_get_height(h->image, heif_channel_interleaved) != (int)out->height) {
+        h->call->image_get_width(h->image, heif_channel_interleaved) != (int)out->width ||
+        h->call->image_get_height(h->image, heif_channel_interleaved) != (int)out->height) {
         return t3r_reason(error, error_bytes, "HEIF: the picture has another size than its header states");
     }
     out->samples = malloc(row * out->height);
@@ -134,22 +138,25 @@ static int decode(heif_file *h, picture *out, char *error, size_t error_bytes)
 
 int heif_read(FILE *file, uint32_t most_side, bool header_only, picture *out, char *error, size_t error_bytes)
 {
-    heif_file h = {0};
+    heif_file h = {.call = heif_functions_load(error, error_bytes)};
+    if (h.call == NULL) {
+        return -1;
+    }
     int status = load(&h, file, error, error_bytes);
     status = status == 0 ? open_picture(&h, most_side, out, error, error_bytes) : status;
     status = status == 0 && !header_only ? decode(&h, out, error, error_bytes) : status;
-    heif_image_release(h.image);
-    heif_image_handle_release(h.handle);
-    heif_context_free(h.context);
+    h.call->image_release(h.image);
+    h.call->image_handle_release(h.handle);
+    h.call->context_free(h.context);
     free(h.bytes);
     return status;
 }
 
 #else
 
-const char *heif_library(void)
+int heif_describe(char *text, size_t text_bytes)
 {
-    return NULL;
+    return t3r_reason(text, text_bytes, "not in this build");
 }
 
 bool heif_is(const uint8_t *bytes, size_t count)

@@ -10,8 +10,9 @@
 
 #include "pictures/picture.h"
 
-/* Returns the library's name and version; NULL: this build has none. */
-const char *heif_library(void);
+/* Writes the library's name and version. Returns 0, or -1 with the reason in text[] where it is not in this build or
+ * does not load. */
+int heif_describe(char *text, size_t text_bytes);
 /* Whether bytes begin, or a name ends, as pictures that the library reads; never in a build without it. */
 bool heif_is(const uint8_t *bytes, size_t count);
 bool heif_is_named(const char *name);

@@ -25,7 +25,7 @@
 /* Both libraries report errors by longjmp. Everything that must survive a jump, or be freed after one, is in a struct
  * of the caller's, so that no local variable is read after a jump. */
 
-#define REASON_BYTES 160
+#define REASON_BYTES 256
 #define EXIF_BYTES 65533u /* most bytes of EXIF that are kept of a JPEG: one marker */
 #define OPAQUE_FROM 128u  /* least alpha of a valid pixel */
 

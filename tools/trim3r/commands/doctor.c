@@ -141,6 +141,8 @@ typedef struct machine {
     camera_list cameras;
     const pose_module *poses; /* NULL: no_poses says why */
     char no_poses[512];
+    bool heif_there;
+    char heif[512]; /* the library, or why it is not there */
     uint64_t hash, plain_hash; /* of the self-check; the second where the first is wrong */
 } machine;
 
@@ -156,6 +158,7 @@ static void look_around(machine *m, const options *o)
     m->available = memory_bytes(_SC_AVPHYS_PAGES);
     find_cameras(&m->cameras);
     m->poses = pose_module_load(m->no_poses, sizeof m->no_poses);
+    m->heif_there = heif_describe(m->heif, sizeof m->heif) == 0;
 }
 
 /* ---- output ---------------------------------------------------------------------------------------------------- */
@@ -184,8 +187,7 @@ static void print_json(const machine *m, const options *o)
     for (uint32_t i = 0; i < m->cameras.count; i++) {
         cJSON_AddItemToArray(cameras, cJSON_CreateString(m->cameras.name[i]));
     }
-    cJSON_AddItemToObject(root, "heif",
-                          heif_library() != NULL ? cJSON_CreateString(heif_library()) : cJSON_CreateNull());
+    cJSON_AddItemToObject(root, "heif", m->heif_there ? cJSON_CreateString(m->heif) : cJSON_CreateNull());
     cJSON_AddItemToObject(root, "poses", m->poses != NULL ? cJSON_CreateString(m->poses->version) : cJSON_CreateNull());
     json_add_hash(root, "hash", m->hash);
     json_add_hash(root, "expected", o->expected);
@@ -195,7 +197,7 @@ static void print_json(const machine *m, const options *o)
 
 static void print_text(const machine *m, const options *o)
 {
-    char line[512];
+    char line[600];
     printf("%-12s %s, bits epoch %d\n", "trim3r", T3R_VERSION, T3R_BITS_EPOCH);
     printf("%-12s %s\n", "processor", m->cpu[0] != '\0' ? m->cpu : "unnamed");
     printf("%-12s %s; used: %s\n", "features", m->features, m->used);
@@ -214,8 +216,7 @@ static void print_text(const machine *m, const options *o)
     if (m->cameras.count == 0) {
         printf("%-12s none\n", "cameras");
     }
-    snprintf(line, sizeof line, "PNG, JPEG; HEIC and AVIF: %s",
-             heif_library() != NULL ? heif_library() : "not in this build");
+    snprintf(line, sizeof line, "PNG, JPEG; HEIC and AVIF: %s", m->heif);
     wrapped_print(stdout, INDENT, "pictures", line);
     wrapped_print(stdout, INDENT, "poses", m->poses != NULL ? m->poses->version : m->no_poses);
     char text[HASH_TEXT_BYTES];
