@@ -15,6 +15,7 @@
 #define FILE_BYTES_MOST (256L << 20)
 #define BRAND_AT 4u /* "ftyp" and a brand of four letters */
 #define BRAND_BYTES 8u
+#define TILE_MOST 1024  /* side of a grid's tile, of which a small picture shows a part */
 #define OFFSET_BYTES 4u /* before EXIF, of its TIFF header */
 
 typedef struct heif_file {
@@ -112,8 +113,18 @@ static int open_picture(heif_file *h, uint32_t most_side, picture *out, char *er
     return read_exif(h, out) == 0 ? 0 : t3r_reason(error, error_bytes, "out of memory");
 }
 
+/* Limits what is decoded to the stored size, from which the library crops and turns the picture: a grid may state
+ * another, and only that is decoded. */
+static void limit_size(heif_file *h)
+{
+    const int width = h->call->image_handle_get_ispe_width(h->handle);
+    const int height = h->call->image_handle_get_ispe_height(h->handle), side = width > height ? width : height;
+    h->call->context_set_maximum_image_size_limit(h->context, side > TILE_MOST ? side : TILE_MOST);
+}
+
 static int decode(heif_file *h, picture *out, char *error, size_t error_bytes)
 {
+    limit_size(h);
     const enum heif_chroma form = out->channels == 4 ? heif_chroma_interleaved_RGBA : heif_chroma_interleaved_RGB;
     if (failed(h->call->decode_image(h->handle, &h->image, heif_colorspace_RGB, form, NULL), error, error_bytes) != 0) {
         return -1;

@@ -20,6 +20,8 @@
     FUNCTION(image_get_plane_readonly)                                                                                 \
     FUNCTION(image_get_width)                                                                                          \
     FUNCTION(image_handle_get_height)                                                                                  \
+    FUNCTION(image_handle_get_ispe_height)                                                                             \
+    FUNCTION(image_handle_get_ispe_width)                                                                              \
     FUNCTION(image_handle_get_list_of_metadata_block_IDs)                                                              \
     FUNCTION(image_handle_get_metadata)                                                                                \
     FUNCTION(image_handle_get_metadata_size)                                                                           \
