@@ -94,7 +94,7 @@ def colmap_lists():
     k = ROOM["camera_info"][0]
     camera = (7, 1, (WIDTH, HEIGHT), (k[0, 0], k[1, 1], k[0, 2] + 0.5, k[1, 2] + 0.5))
     images = []
-    for i in (2, 0, 1):
+    for i in (*range(2, FRAMES), 0, 1):
         inverse = np.linalg.inv(ROOM["pose"][i])
         images.append((i + 5, quaternion(inverse[:3, :3]), inverse[:3, 3], 7, f"view_{i}.png"))
     return camera, images

@@ -63,14 +63,24 @@ static uint16_t clamp_to(double value, int most)
     return (uint16_t)(value <= 0 ? 0 : value >= most ? most : nearbyint(value));
 }
 
-/* Converts harmonics. Returns whether one is beyond 8, where it is clamped. */
-static bool convert_harmonics(const scene_row *row, uint32_t degree, int16_t *harmonics_q12)
+/* Converts a coefficient of red, green and blue. Returns whether one is beyond 8, where it is clamped. */
+static bool convert_coefficient(const double coefficient[3], int16_t q12[3])
 {
     bool clipped = false;
-    for (uint32_t i = 0; i < 3 * (harmonics_rest(degree) + 1); i++) {
-        const double value = nearbyint((i < 3 ? row->harmonic[i] : row->rest[i / 3 - 1][i % 3]) * 4096);
-        harmonics_q12[i] = (int16_t)fmax(fmin(value, INT16_MAX), INT16_MIN);
-        clipped = clipped || value != harmonics_q12[i];
+    for (int i = 0; i < 3; i++) {
+        const double value = nearbyint(coefficient[i] * 4096);
+        q12[i] = (int16_t)(value > INT16_MAX ? INT16_MAX : value < INT16_MIN ? INT16_MIN : value);
+        clipped |= value != q12[i];
+    }
+    return clipped;
+}
+
+/* Converts harmonics. Returns whether one is clamped. */
+static bool convert_harmonics(const scene_row *row, uint32_t degree, int16_t *harmonics_q12)
+{
+    bool clipped = convert_coefficient(row->harmonic, harmonics_q12);
+    for (uint32_t i = 0; i < harmonics_rest(degree); i++) {
+        clipped |= convert_coefficient(row->rest[i], &harmonics_q12[3 * (i + 1)]);
     }
     return clipped;
 }

@@ -41,6 +41,21 @@ static t3r_frame tile_of(const t3r_frame *frame, uint32_t x, uint32_t y)
     return tile;
 }
 
+/* Copies a tile's planes of colour to its place in the picture. */
+static void join_planes(const uint8_t *planes, const t3r_frame *tile, uint32_t x, uint32_t y, picture *out)
+{
+    const size_t pixels = (size_t)tile->width * tile->height;
+    for (uint32_t row = 0; row < tile->height; row++) {
+        const uint8_t *from = planes + (size_t)row * tile->width;
+        uint8_t *to = (uint8_t *)out->samples + ((size_t)(y + row) * out->width + x) * 3;
+        for (uint32_t column = 0; column < tile->width; column++, from++, to += 3) {
+            to[0] = from[0];
+            to[1] = from[pixels];
+            to[2] = from[2 * pixels];
+        }
+    }
+}
+
 const char *bag_size_colour(const t3r_frame *frame, picture *out)
 {
     uint8_t *rgb = malloc((size_t)frame->width * frame->height * 3), *planes = malloc((size_t)TILE * TILE * 3);
@@ -54,10 +69,7 @@ const char *bag_size_colour(const t3r_frame *frame, picture *out)
             const size_t pixels = (size_t)tile.width * tile.height;
             uint8_t *const rows[3] = {planes, planes + pixels, planes + 2 * pixels};
             t3r_image_colour(&t3r_kernels_c, &tile, tile.width, tile.height, 0, tile.height, rows, NULL);
-            for (size_t i = 0; i < 3 * pixels; i++) {
-                const size_t pixel = i / 3, row = y + pixel / tile.width, column = x + pixel % tile.width;
-                rgb[(row * frame->width + column) * 3 + i % 3] = rows[i % 3][pixel];
-            }
+            join_planes(planes, &tile, x, y, out);
         }
     }
     free(planes);

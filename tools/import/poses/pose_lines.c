@@ -19,7 +19,10 @@ char *pose_lines_next(pose_lines *lines)
 
 bool pose_lines_number(char **text, double *value)
 {
-    char *end, *start = *text + strspn(*text, " \t,");
+    char *end, *start = *text;
+    while (*start == ' ' || *start == '\t' || *start == ',') {
+        start++;
+    }
     *value = strtod(start, &end);
     if (end == start) {
         return false;
