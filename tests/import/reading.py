@@ -14,7 +14,7 @@ import folder_makers
 import ros_bag
 from checks import check, done
 from folder_makers import ROOM, UNIT, colmap, colmap_binary, lens_option, make_room, pose_files, record3d, transforms, tum
-from program import TRIM3R, expect, run
+from program import TRIM3R, expect, run, write
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools", "study", "scripts"))
 from measured import PAGES, table, write_block  # noqa: E402
@@ -32,12 +32,25 @@ def instructions(program, *command, only=None):
     return int(re.search(r"refs: +([\d,]+)", ended.stderr)[1].replace(",", "")) if ended.returncode == 0 else None
 
 
+def ply(path):
+    """Returns the header of a binary .ply, without its last line, and its numbers."""
+    with open(path, "rb") as file:
+        header, rows = file.read().split(b"end_header\n", 1)
+    return header.decode(), np.frombuffer(rows, "<f4").reshape(-1, header.count(b"property"))
+
+
 def text_of(path, name):
-    """Writes a binary .ply as text."""
-    data = open(path, "rb").read()
-    header, rows = data.split(b"end_header\n", 1)
-    numbers = np.frombuffer(rows, "<f4").reshape(-1, header.count(b"property"))
-    np.savetxt(name, numbers, fmt="%.9g", comments="", header=header.decode().replace("binary_little_endian", "ascii") + "end_header")
+    header, numbers = ply(path)
+    np.savetxt(name, numbers, "%.9g", comments="", header=header.replace("binary_little_endian", "ascii") + "end_header")
+    return name
+
+
+def with_harmonics(path, name):
+    """Writes a .ply with harmonics of degree 3, which are random."""
+    header, numbers = ply(path)
+    rest = np.random.default_rng(0).normal(0, 0.1, (len(numbers), 45)).astype("<f4")
+    write(name, header.encode() + b"".join(b"property float f_rest_%d\n" % i for i in range(45)) + b"end_header\n"
+          + np.hstack((numbers, rest)).tobytes())
     return name
 
 
@@ -68,6 +81,7 @@ def inputs():
         if ending != "ply":
             expect(0, "convert", "scene.ply", "-o", name)
         yield f"`.{ending}`", ("info", name)
+    yield "`.ply` with harmonics", ("info", with_harmonics("scene.ply", "harmonics.ply"))
     yield "`.ply` as text", ("info", text_of("scene.ply", "text.ply"))
 
     def imported(name, *options):
