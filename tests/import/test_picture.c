@@ -9,6 +9,7 @@
 #include <jpeglib.h>
 #include <png.h>
 
+#include "pictures/heif_references.h"
 #include "pictures/picture.h"
 #include "scratch.h"
 #include "test.h"
@@ -292,6 +293,84 @@ TEST(refuses_four_inks)
     assert_non_null(strstr(error, "CMYK"));
     assert_non_null(strstr(error, "convert IN.jpg"));
     assert_null(in.samples);
+}
+
+/* Puts a box's size and type before its content of so many bytes; returns the bytes of both. */
+static size_t put_box(uint8_t *at, const char *type, size_t content)
+{
+    const size_t size = 8 + content;
+    memmove(at + 8, at, content);
+    for (int i = 0; i < 4; i++) {
+        at[i] = (uint8_t)(size >> (24 - 8 * i));
+        at[4 + i] = (uint8_t)type[i];
+    }
+    return size;
+}
+
+/* Makes a file of references from one picture to another, whose numbers have 2 bytes, or 4. */
+static size_t make_references(uint8_t *out, const char *type, const uint32_t (*pairs)[2], uint32_t count, bool wide)
+{
+    const size_t id_bytes = wide ? 4 : 2;
+    size_t at = 4;
+    memset(out, 0, at);
+    out[0] = wide; /* version */
+    for (uint32_t i = 0; i < count; i++) {
+        uint8_t *one = out + at;
+        memset(one, 0, 2 * id_bytes + 2);
+        one[id_bytes - 1] = (uint8_t)pairs[i][0];
+        one[id_bytes + 1] = 1;
+        one[2 * id_bytes + 1] = (uint8_t)pairs[i][1];
+        at += put_box(one, type, 2 * id_bytes + 2);
+    }
+    at = put_box(out, "iref", at);
+    memmove(out + 4, out, at);
+    memset(out, 0, 4); /* version and flags of meta */
+    return put_box(out, "meta", 4 + at);
+}
+
+/* A picture of HEIC may consist of tiles and have an alpha, but not of itself, in however many steps. */
+TEST(refuses_pictures_of_themselves)
+{
+    static const uint32_t tiles[][2] = {{1, 2}, {1, 3}, {1, 3}, {4, 1}}, itself[][2] = {{7, 7}},
+                          each_other[][2] = {{1, 2}, {2, 1}};
+    uint32_t chain[HEIF_DEPTH_MOST + 1][2], many[HEIF_REFERENCES_MOST + 1][2];
+    for (uint32_t i = 0; i <= HEIF_DEPTH_MOST; i++) {
+        chain[i][0] = i;
+        chain[i][1] = i + 1;
+    }
+    for (uint32_t i = 0; i <= HEIF_REFERENCES_MOST; i++) {
+        many[i][0] = 1;
+        many[i][1] = 2;
+    }
+    const struct {
+        const char *type;
+        const uint32_t (*pairs)[2];
+        uint32_t count;
+        const char *wrong; /* NULL: nothing */
+    } cases[] = {{"dimg", tiles, 4, NULL},
+                 {"auxl", tiles, 4, NULL},
+                 {"thmb", itself, 1, NULL},
+                 {"dimg", itself, 1, "of itself"},
+                 {"auxl", itself, 1, "of itself"},
+                 {"dimg", each_other, 2, "of itself"},
+                 {"dimg", (const uint32_t(*)[2])chain, HEIF_DEPTH_MOST, NULL},
+                 {"dimg", (const uint32_t(*)[2])chain, HEIF_DEPTH_MOST + 1, "of itself"},
+                 {"dimg", (const uint32_t(*)[2])many, HEIF_REFERENCES_MOST, NULL},
+                 {"dimg", (const uint32_t(*)[2])many, HEIF_REFERENCES_MOST + 1, "references"}};
+    uint8_t *bytes = malloc(32 * (HEIF_REFERENCES_MOST + 2));
+    assert_non_null(bytes);
+    for (size_t i = 0; i < 2 * sizeof cases / sizeof cases[0]; i++) {
+        const size_t count =
+            make_references(bytes, cases[i / 2].type, cases[i / 2].pairs, cases[i / 2].count, i % 2 != 0);
+        const char *wrong = heif_references_check(bytes, count);
+        if (cases[i / 2].wrong == NULL ? wrong != NULL : wrong == NULL || strstr(wrong, cases[i / 2].wrong) == NULL) {
+            fail_msg("case %zu: %s", i / 2, wrong);
+        }
+        for (size_t cut = 0; cut < count && count < 1000; cut++) {
+            (void)heif_references_check(bytes, cut);
+        }
+    }
+    free(bytes);
 }
 
 ALL_TESTS_WITH(scratch_setup, scratch_teardown)

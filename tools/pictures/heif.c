@@ -11,6 +11,7 @@
 
 #include "pictures/exif.h"
 #include "pictures/heif_functions.h"
+#include "pictures/heif_references.h"
 
 #define FILE_BYTES_MOST (256L << 20)
 #define BRAND_AT 4u /* "ftyp" and a brand of four letters */
@@ -90,6 +91,10 @@ static int read_exif(const heif_file *h, picture *out)
 
 static int open_picture(heif_file *h, uint32_t most_side, picture *out, char *error, size_t error_bytes)
 {
+    const char *wrong = heif_references_check(h->bytes, h->count);
+    if (wrong != NULL) {
+        return t3r_reason(error, error_bytes, "HEIF: %s", wrong);
+    }
     h->context = h->call->context_alloc();
     if (h->context == NULL) {
         return t3r_reason(error, error_bytes, "out of memory");
