@@ -5,12 +5,20 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/fixed.h"
 #include "host/reason.h"
 
-/* Reorders the values, and returns the one that would stand at count / 2 if they were sorted (Hoare's selection). */
-static double take_median(double *values, uint32_t count)
+/* If a tenth of the Gaussians lies within 1 / SPREAD of the median distance, of the centre or of each other, the rest
+ * is its backdrop, and the tenth decides: what is near a camera in it is still drawn. It makes the typical distance at
+ * most NEARER times less. */
+#define SPREAD 16.0
+#define NEARER 64.0
+#define PAIRS 4096u
+
+/* Reorders the values, and returns the one that would stand at `wanted` if they were sorted (Hoare's selection). */
+static double take_sorted(double *values, uint32_t count, int64_t wanted)
 {
-    int64_t low = 0, high = (int64_t)count - 1, wanted = count / 2;
+    int64_t low = 0, high = (int64_t)count - 1;
     while (low < high) {
         const double pivot = values[low + (high - low) / 2];
         int64_t left = low, right = high;
@@ -96,22 +104,61 @@ bool scene_extent_holds(const scene_extent *extent, const double position[3])
     return distance_of(position, extent->centre) <= reach_of(extent);
 }
 
+/* Moves the values above 0 to the front, in another order. Returns their number. */
+static uint32_t keep_positive(double *values, uint32_t count)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const double value = values[i];
+        if (value > 0) {
+            values[i] = values[kept];
+            values[kept++] = value;
+        }
+    }
+    return kept;
+}
+
+/* Returns the tenth percentile of the distances above 0 between Gaussians, of up to PAIRS from all over the file each
+ * with one from anywhere; INFINITY: there are none. Uses values[] as memory. */
+static double nearness_of(double (*positions)[3], double *values, uint32_t count)
+{
+    const uint32_t pairs = count < PAIRS ? count : PAIRS;
+    for (uint32_t i = 0; i < pairs; i++) {
+        values[i] = distance_of(positions[(uint64_t)i * count / pairs], positions[t3r_mix32(i) % count]);
+    }
+    const uint32_t apart = keep_positive(values, pairs);
+    return apart > 0 ? take_sorted(values, apart, apart / 10) : INFINITY;
+}
+
+/* Returns the typical of the distances from the centre; 0: all are 0. */
+static double typical_of(double *distances, uint32_t count, double nearness)
+{
+    const uint32_t apart = keep_positive(distances, count);
+    if (apart == 0) {
+        return 0;
+    }
+    const double median = take_sorted(distances, apart, apart / 2);
+    const double near = fmin(take_sorted(distances, apart, apart / 10), nearness);
+    return fmax(fmin(median, SPREAD * near), median / NEARER);
+}
+
 /* Fills in place and size. */
 static void measure(double (*positions)[3], double *values, uint32_t count, scene_extent *extent)
 {
+    const double nearness = nearness_of(positions, values, count);
     for (int axis = 0; axis < 3; axis++) {
         for (uint32_t i = 0; i < count; i++) {
             values[i] = positions[i][axis];
         }
-        extent->centre[axis] = take_median(values, count);
+        extent->centre[axis] = take_sorted(values, count, count / 2);
     }
-    double farthest = 0;
     for (uint32_t i = 0; i < count; i++) {
         values[i] = distance_of(positions[i], extent->centre);
-        farthest = fmax(farthest, values[i]);
     }
-    const double median = take_median(values, count);
-    extent->typical = median > 0 ? median : farthest > 0 ? farthest : exp(fmin(fmax(extent->log_scale.most, -30), 30));
+    extent->typical = typical_of(values, count, nearness);
+    if (extent->typical == 0) {
+        extent->typical = exp(fmin(fmax(extent->log_scale.most, -30), 30));
+    }
     for (uint32_t i = 0; i < count; i++) {
         extent->far += values[i] > reach_of(extent);
     }

@@ -9,7 +9,8 @@
 
 typedef struct scene_extent {
     double centre[3]; /* median of each coordinate, in the axes of the rows */
-    double typical;   /* median distance from the centre; if all share one place, the size of the largest; > 0 */
+    double typical;   /* median distance from the centre, without those at it; less if a tenth is much nearer to it,
+                       * or to each other; if all share one place, the size of the largest; > 0 */
     uint32_t far;     /* Gaussians beyond the reach */
     double harmonics; /* the largest coefficient above degree 0, without its sign */
     scene_bounds colour, log_scale; /* of all Gaussians */

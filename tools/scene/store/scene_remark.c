@@ -25,6 +25,6 @@ void scene_remark(const scene_caller *caller, const char *path, const char *form
 void scene_remark_far(const scene_caller *caller, const char *path, uint32_t count, const char *done)
 {
     scene_remark(caller, path,
-                 "%" PRIu32 " Gaussians are about 1,000 times as far away as half of all, or farther: they are %s",
+                 "%" PRIu32 " Gaussians are over 1,000 times as far away as is typical of the scene: they are %s",
                  count, done);
 }
