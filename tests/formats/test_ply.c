@@ -360,6 +360,122 @@ TEST(reads_foreign_layouts)
     scene_file_free(&scene);
 }
 
+/* Returns a .ply of rows at the given places. */
+static uint8_t *rows_at(const double (*places)[3], uint32_t count, size_t *bytes_count)
+{
+    char text[1024], element[32];
+    snprintf(element, sizeof element, "element vertex %u", count);
+    replaced("element vertex 1", element, text, sizeof text);
+    uint8_t *bytes = malloc(strlen(text) + (size_t)count * 4 * ROW_FLOATS);
+    assert_non_null(bytes);
+    size_t at = strlen(text);
+    memcpy(bytes, text, at);
+    for (uint32_t i = 0; i < count; i++) {
+        float row[ROW_FLOATS];
+        memcpy(row, sound_row, sizeof row);
+        for (int axis = 0; axis < 3; axis++) {
+            row[axis] = (float)places[i][axis];
+        }
+        at += put_row(bytes + at, row, ROW_FLOATS);
+    }
+    *bytes_count = at;
+    return bytes;
+}
+
+/* Parses rows at the given places. */
+static scene_file scene_at(const double (*places)[3], uint32_t count)
+{
+    size_t bytes_count;
+    scene_file scene;
+    char error[256] = "";
+    uint8_t *bytes = rows_at(places, count, &bytes_count);
+    if (scene_file_parse("scene.ply", bytes, bytes_count, 0, &scene, error, sizeof error) != 0) {
+        fail_msg("%s", error);
+    }
+    free(bytes);
+    return scene;
+}
+
+/* However far a backdrop of most Gaussians is, what is half a unit from a camera amid the others can be drawn: from
+ * 1/32 scene unit on. */
+TEST(draws_what_is_near_before_a_backdrop)
+{
+    enum { NEAR = 160, ALL = 400 };
+    for (int power = 0, half = 0; power < 11; power += half, half = 1 - half) {
+        double places[ALL][3];
+        for (uint32_t i = 0; i < ALL; i++) {
+            const double turn = i, away = i < NEAR ? 0.2 + 0.8 * i / NEAR : ldexp(1, power);
+            places[i][0] = away * cos(turn);
+            places[i][1] = away * sin(turn);
+            places[i][2] = i < NEAR || half == 0 ? 0.1 * away * (i % 3 - 1.0) : away; /* all around, or on one side */
+        }
+        scene_file scene = scene_at((const double(*)[3])places, ALL);
+        assert_true(ldexp(1, scene.frame.exponent) / 32 <= 0.5);
+        assert_int_equal(scene.remarks.pulled, 0);
+        for (uint32_t i = 0; i < NEAR; i++) {
+            assert_true(fabs(world(&scene.frame, &scene.gaussians[i], 0) - places[i][0]) < 1e-4);
+        }
+        scene_file_free(&scene);
+    }
+}
+
+/* Gaussians that lie in one place do not give the scene the size of its farthest one. */
+TEST(ignores_gaussians_in_one_place)
+{
+    enum { PARKED = 60, ALL = 100 };
+    double places[ALL][3] = {{0}};
+    for (uint32_t i = PARKED; i < ALL; i++) {
+        places[i][0] = 1.5 * cos(i);
+        places[i][1] = 1.5 * sin(i);
+    }
+    places[ALL - 1][0] = 1e6;
+    scene_file scene = scene_at((const double(*)[3])places, ALL);
+    assert_int_equal(scene.frame.exponent, 0);
+    assert_int_equal(scene.remarks.pulled, 1);
+    for (uint32_t i = 0; i < ALL - 1; i++) {
+        assert_true(fabs(world(&scene.frame, &scene.gaussians[i], 0) - places[i][0]) < 1e-6);
+    }
+    scene_file_free(&scene);
+}
+
+/* Whether a .ply of that header, with sound numbers and 0 after them, is read with that remark, as degree 0. */
+static void is_remarked(const char *properties, uint32_t extra_bytes, const char *remark)
+{
+    char text[2048], error[256] = "";
+    uint8_t bytes[4096] = {0};
+    char before_end[1024];
+    snprintf(before_end, sizeof before_end, "%send_header\n", properties);
+    replaced("end_header\n", before_end, text, sizeof text);
+    const size_t count = make_ply(bytes, text, sound_row) + extra_bytes;
+    scene_file scene;
+    if (scene_file_parse("scene.ply", bytes, count, 0, &scene, error, sizeof error) != 0) {
+        fail_msg("%s", error);
+    }
+    assert_string_equal(scene.remarks.text, remark);
+    assert_int_equal(scene.degree, 0);
+    scene_file_free(&scene);
+}
+
+/* Harmonics without one in the middle, or without the first, are those of no degree, and rows that the header does not
+ * state are left out: all with a remark. */
+TEST(remarks_what_is_left_out)
+{
+    static const char none[] = "harmonics whose number fits no degree are left out";
+    char properties[1024] = "";
+    for (int missing = 0; missing < 24; missing += 9) {
+        properties[0] = '\0';
+        for (int i = 0; i < 24; i++) {
+            const size_t length = strlen(properties);
+            snprintf(properties + length, sizeof properties - length, "%s f_rest_%d\n",
+                     i == missing ? "comment" : "property float", i);
+        }
+        is_remarked(properties, 23 * sizeof(float), none);
+    }
+    is_remarked("", 0, "");
+    is_remarked("", 4 * ROW_FLOATS - 1, "");
+    is_remarked("", 4 * ROW_FLOATS, "rows beyond those that the header states are left out");
+}
+
 /* All points at a size of 1 but one far outside: it is moved where it does not fit, and the others keep their places.
  */
 TEST(fits_outliers)

@@ -47,13 +47,24 @@ static int find_wanted(const ply_header *header, const ply_element *vertex, cons
     return 0;
 }
 
+/* Returns the number of properties whose names begin like those of harmonics. */
+static uint32_t count_rest(const ply_header *header, const ply_element *vertex)
+{
+    uint32_t count = 0;
+    for (uint32_t i = vertex->first; i < vertex->second; i++) {
+        count += strncmp(header->properties[i].name, "f_rest_", strlen("f_rest_")) == 0;
+    }
+    return count;
+}
+
 /* Finds f_rest_0, f_rest_1 ...: all of red, then of green, then of blue. Those of degree 4 are skipped; all are, if
- * their number fits no degree. */
+ * their number fits no degree, or one in between is missing. */
 static int find_rest(const ply_header *header, const ply_element *vertex, ply_vertices *out, char *error,
                      size_t error_bytes)
 {
     enum { DEGREES_KNOWN = 4 };
     const ply_property *rest[3 * ((DEGREES_KNOWN + 1) * (DEGREES_KNOWN + 1) - 1) + 1];
+    const uint32_t there = count_rest(header, vertex);
     uint32_t count = 0, known = 0;
     for (; count < sizeof rest / sizeof rest[0]; count++) {
         char name[24];
@@ -66,10 +77,10 @@ static int find_rest(const ply_header *header, const ply_element *vertex, ply_ve
         }
     }
     for (uint32_t degree = 0; degree <= DEGREES_KNOWN; degree++) {
-        known = count == 3 * harmonics_rest(degree) ? degree : known;
+        known = count == there && count == 3 * harmonics_rest(degree) ? degree : known;
     }
     out->degree = known < HARMONICS_DEGREE_MOST ? known : HARMONICS_DEGREE_MOST;
-    out->remark = count != 3 * harmonics_rest(known) ? "harmonics whose number fits no degree are left out"
+    out->remark = there != 3 * harmonics_rest(known) ? "harmonics whose number fits no degree are left out"
                   : known > HARMONICS_DEGREE_MOST    ? SCENE_REMARK_DEGREE_4
                                                      : NULL;
     const uint32_t read = harmonics_rest(out->degree);
@@ -171,6 +182,13 @@ static int read_vertex(void *user, uint32_t index, scene_row *row, char *error, 
     return 0;
 }
 
+/* Whether another row could follow the last element's. */
+static bool has_more(const ply_header *header, const ply_element *vertex, size_t count)
+{
+    const ply_element *last = &header->elements[header->element_count - 1];
+    return last == vertex && count - vertex->at - (uint64_t)vertex->count * vertex->row_bytes >= vertex->row_bytes;
+}
+
 static int parse_vertices(const ply_header *header, const uint8_t *bytes, size_t count, const scene_sink *sink,
                           char *error, size_t error_bytes)
 {
@@ -192,7 +210,10 @@ static int parse_vertices(const ply_header *header, const uint8_t *bytes, size_t
                        .degree = vertices.degree,
                        .mip = header->mip,
                        .up = header->up,
-                       .remark = vertices.remark,
+                       .remark = vertices.remark != NULL ? vertices.remark
+                                 : has_more(header, vertex, count)
+                                     ? "rows beyond those that the header states are left out"
+                                     : NULL,
                        .read = read_vertex,
                        .user = &vertices};
     return sink->take(sink->user, &rows, error, error_bytes);
