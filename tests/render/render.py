@@ -49,6 +49,9 @@ def render():
     check(found["gaussians"] > 0 and found["width"] == 64, "render --json lacks its keys")
     for name in ("view.png", "d.png", "a.png"):
         check(open(name, "rb").read(8) == b"\x89PNG\r\n\x1a\n", f"{name} is no PNG")
+    for unit, warning in (("1e-6", "are farther than 65535 steps of 1e-06, and 0: raise"), ("1000", "are nearer than half a step of 1000, and 0: lower")):
+        expect(0, "render", "scene.ply", recording, "--view", 1, "--depth", "d.png", "--depth-unit", unit, "-o", "view.png", err=warning)
+    expect(0, "render", "scene.ply", "--pose", "pose.json", "-o", "p.png", err="no Gaussian is in front of it, from a distance of 0.")
     small = expect_json("render", "scene.ply", recording, "--view", 1, "--size", "100x50", "-o", "small.png")
     check((small["width"], small["height"]) == (100, 50), "--size does not set the size")
     found = expect_json("render", "scene.ply", "--pose", "pose.json", "-o", "p.png")

@@ -16,6 +16,7 @@
 #include "cli/options/standard_output.h"
 #include "cli/tables/json_output.h"
 #include "core/hash.h"
+#include "kernels/project.h"
 #include "pictures/picture.h"
 #include "pictures/video.h"
 #include "reconstruction/reconstruction_error.h"
@@ -229,18 +230,29 @@ static int write_picture(const char *path, uint32_t index, uint32_t count, const
     return picture_write_png(name, p, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
-/* Converts scene units in Q20 to steps of the depth picture. A depth of more steps than 16 bits hold becomes 0, none.
- * Returns the number of these pixels. */
-static uint32_t convert_depth(const uint32_t *depth_q20, size_t count, double unit, int exponent, uint16_t *out)
+/* Converts scene units in Q20 to steps of the depth picture. A depth of more steps than 16 bits hold, or of less than
+ * half a step, becomes 0, none, with a warning. */
+static void convert_depth(const char *path, const uint32_t *depth_q20, size_t count, double unit, int exponent,
+                          uint16_t *out)
 {
     double steps = ldexp(1.0, exponent - 20) / unit;
-    uint32_t far = 0;
+    uint32_t far = 0, near = 0;
     for (size_t i = 0; i < count; i++) {
-        double value = nearbyint(depth_q20[i] * steps);
-        out[i] = depth_q20[i] == 0 || value > UINT16_MAX ? 0 : value < 1 ? 1 : (uint16_t)value;
+        const double value = nearbyint(depth_q20[i] * steps);
+        out[i] = value > UINT16_MAX ? 0 : (uint16_t)value;
         far += value > UINT16_MAX;
+        near += depth_q20[i] != 0 && value < 1;
     }
-    return far;
+    if (far > 0) {
+        (void)cli_error(CLI_OK,
+                        "warning: %s: %" PRIu32 " pixels are farther than 65535 steps of %g, and 0: raise --depth-unit",
+                        path, far, unit);
+    }
+    if (near > 0) {
+        (void)cli_error(CLI_OK,
+                        "warning: %s: %" PRIu32 " pixels are nearer than half a step of %g, and 0: lower --depth-unit",
+                        path, near, unit);
+    }
 }
 
 static bool shows_nothing(const uint16_t *alpha_q15, size_t count)
@@ -306,20 +318,16 @@ static int render_one(const render_options *o, reconstruction *r, const t3r_came
         return reconstruction_render_error(status, from[named], r->runtime, view, &target);
     }
     if (shows_nothing(p->alpha_q15, pixels)) {
-        (void)cli_error(CLI_OK, "warning: view %" PRIu32 " shows nothing of the scene: no Gaussian is in front of it",
-                        index);
+        (void)cli_error(CLI_OK,
+                        "warning: view %" PRIu32 " shows nothing of the scene: no Gaussian is in front of it, from a "
+                        "distance of %g on",
+                        index, ldexp(T3R_NEAR_Q20, r->scene.frame.exponent - 20));
     }
     *hash = t3r_hash_bytes(*hash, p->rgb, pixels * 3);
     code = write_colour(o, view, index, count, p, film);
     picture grey = {.width = view->width, .height = view->height, .channels = 1, .bits = 16, .samples = p->grey};
     if (code == CLI_OK && o->depth != NULL) {
-        const uint32_t far = convert_depth(p->depth_q20, pixels, o->depth_unit, r->scene.frame.exponent, p->grey);
-        if (far > 0) {
-            (void)cli_error(CLI_OK,
-                            "warning: %s: %" PRIu32 " pixels are farther than 65535 steps of %g, and 0: raise "
-                            "--depth-unit",
-                            o->depth, far, o->depth_unit);
-        }
+        convert_depth(o->depth, p->depth_q20, pixels, o->depth_unit, r->scene.frame.exponent, p->grey);
         code = write_picture(o->depth, index, count, &grey);
     }
     if (code == CLI_OK && o->alpha != NULL) {
