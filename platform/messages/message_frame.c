@@ -156,7 +156,7 @@ static const char *read_distortion(const t3r_ros_camera_info *info, t3r_camera *
     camera->distortion = fisheye ? T3R_DISTORTION_FISHEYE : T3R_DISTORTION_RADTAN;
     if (used > (fisheye ? 4 : 5)) {
         return fisheye ? "D has more than the 4 coefficients of equidistant"
-                       : "D has terms beyond k1 k2 p1 p2 k3, which only trim3r import reads";
+                       : "D has terms beyond k1 k2 p1 p2 k3: trim3r import reads k4 to k6 as well, and no further ones";
     }
     for (uint32_t i = 0; i < used; i++) {
         if (!t3r_fixed_coefficient(info->d_f64[i], camera->distortion, i, &camera->distortion_q24[i])) {

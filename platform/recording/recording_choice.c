@@ -139,7 +139,7 @@ static bool is_seen_by(const t3r_stream *poses, const t3r_stream *colour)
 static uint32_t votes_for_pose(const t3r_recording *recording, size_t i, size_t of)
 {
     const t3r_stream *stream = &recording->streams[i], *colour = &recording->streams[of];
-    if (stream->role != T3R_STREAM_POSE || t3r_topic_is_goal(stream->topic) || is_seen_by(stream, colour)) {
+    if (stream->role != T3R_STREAM_POSE || t3r_topic_is_no_pose(stream->topic) || is_seen_by(stream, colour)) {
         return 0;
     }
     const bool of_camera = stream->child_frame_id.count > 0 && t3r_text_same(stream->child_frame_id, colour->frame_id);
@@ -269,9 +269,9 @@ static const char *why_not(const t3r_recording *recording, const t3r_stream *str
                : other_frame(stream, colour) ? "its frame is not that of the images: --camera-info-topic takes it"
                                              : "several are equally near to colour: --camera-info-topic names one";
     case T3R_STREAM_POSE:
-        return t3r_topic_is_goal(stream->topic) ? "its name is one of goals: --pose-topic takes it"
-               : is_seen_by(stream, colour)     ? "its poses are in the camera's own frame: --pose-topic takes it"
-                                                : "several may be the camera's: --pose-topic names one";
+        return is_seen_by(stream, colour)            ? "its poses are in the camera's own frame: --pose-topic takes it"
+               : t3r_topic_is_no_pose(stream->topic) ? "its name is one of goals or objects: --pose-topic takes it"
+                                                     : "several may be the camera's: --pose-topic names one";
     default:
         return "poses come from another topic";
     }

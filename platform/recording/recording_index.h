@@ -132,8 +132,8 @@ bool t3r_topic_is_no_colour(const char *topic);
 /* Whether it names depth, and whether it names images in depth's encodings that hold no depth: infrared, confidence. */
 bool t3r_topic_is_depth(const char *topic);
 bool t3r_topic_is_no_depth(const char *topic);
-/* Whether it names poses where nothing is yet: goals, commands. */
-bool t3r_topic_is_goal(const char *topic);
+/* Whether it names poses of something else than the camera: goals, commands, objects. */
+bool t3r_topic_is_no_pose(const char *topic);
 
 /* recording_choice.c: chooses the streams. Returns 0, or -1 with a reason if a named topic is missing. */
 int t3r_recording_choose(t3r_recording *recording, const t3r_recording_choice *choice, char *error, size_t error_bytes);

@@ -81,10 +81,11 @@ bool t3r_topic_is_no_depth(const char *topic)
     return last_of(topic, words) > last_of(topic, depth_words);
 }
 
-bool t3r_topic_is_goal(const char *topic)
+bool t3r_topic_is_no_pose(const char *topic)
 {
-    static const char *const words[] = {"clicked",  "cmd",     "command",     "commanded", "desired",   "goal",
-                                        "goals",    "initial", "initialpose", "plan",      "planned",   "reference",
-                                        "setpoint", "target",  "targets",     "waypoint",  "waypoints", NULL};
+    static const char *const words[] = {
+        "apriltag", "aruco",       "clicked",  "cmd",     "command", "commanded", "desired",   "goal",      "goals",
+        "initial",  "initialpose", "marker",   "markers", "object",  "objects",   "obstacle",  "obstacles", "plan",
+        "planned",  "reference",   "setpoint", "target",  "targets", "waypoint",  "waypoints", NULL};
     return last_of(topic, words) > 0;
 }

@@ -95,7 +95,7 @@ def depth_is_chosen_by_name_and_type():
 
 
 def poses_are_not_goals():
-    for topic in ("/goal_pose", "/move_base_simple/goal", "/cmd/target_pose", "/initialpose"):
+    for topic in ("/goal_pose", "/move_base_simple/goal", "/cmd/target_pose", "/initialpose", "/aruco/pose", "/object_tracker/pose"):
         bag = camera(Bag(), count=3, poses=None)
         for i in (0, 2):
             bag.put(topic, ros.POSE, (i + 1) * SECOND, ros.pose((i + 1) * SECOND, "map", (50, 60, 0)))
@@ -114,6 +114,32 @@ def poses_are_not_goals():
     bag = camera(Bag(), poses=None)
     bag.put("/marker", ros.POSE, SECOND, ros.pose(SECOND, "cam", (0, 0, 1)))
     check("own frame" in imported(bag)["why"]["/marker"], "a pose in the camera's frame is of a thing that it sees")
+
+
+def frames_with_two_parents():
+    """The first parent of a frame counts, and the transforms of another are counted and named."""
+    for parents in (("map", "odom"), ("odom", "map")):
+        bag = camera(Bag(), poses=None)
+        for i in range(2):
+            ns = (i + 1) * SECOND
+            bag.put("/tf", ros.TF, ns, ros.transforms(*((ns, parent, "cam", (i + 9 * k, 0, 0), ros.UPRIGHT) for k, parent in enumerate(parents))))
+        report = imported(bag)
+        check(positions(report) == [(0, 0, 0), (1, 0, 0)] and report["transforms_left_out"] == 2, f"{parents}: {report}")
+        out = run("import", "bag.mcap", "-o", "out.mcap", "--force")[1]
+        check(f"2 transforms of frames with another parent, the first of 'cam' in '{parents[1]}', as it is in '{parents[0]}'" in out, out)
+
+
+def depth_of_another_clock():
+    bag = camera(depth(Bag(), "/cam/depth", "16UC1", 1500, kind="<u2"), count=3)
+    check(imported(bag)["depth_unpaired"] == 1, "a frame without depth")
+    bag = camera(Bag(), count=2)
+    for i in range(2):
+        ns = (i + 6) * SECOND
+        bag.put("/cam/depth", ros.IMAGE, ns, ros.image(ns, "cam", "16UC1", ros.steps(1500)))
+    report = imported(bag)
+    check(report["depth_frames"] == 0 and report["depth_unpaired"] == 2, f"another clock: {report}")
+    out = run("import", "bag.mcap", "-o", "out.mcap", "--force")[1]
+    check("depth: 2 of 2 frames have no message of it near in time (--pair)" in out, out)
 
 
 def colour_is_chosen_by_votes():
@@ -585,7 +611,7 @@ def encoding_is_stored(name):
 
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)
-    for case in (depth_is_chosen_by_name_and_type, poses_are_not_goals, colour_is_chosen_by_votes, intrinsics_are_of_the_same_frame,
+    for case in (depth_is_chosen_by_name_and_type, poses_are_not_goals, frames_with_two_parents, depth_of_another_clock, colour_is_chosen_by_votes, intrinsics_are_of_the_same_frame,
                  channels_of_a_topic_are_one_stream, clocks_that_begin_again, bad_poses_are_left_out, bad_images_are_left_out,
                  jpegs_without_their_end, triplets_follow_the_frames, rectified_images_have_the_lens_of_p, depth_of_another_aspect_needs_its_own_lens, encodings, transparent_pixels_are_none, images_that_exif_turns, depth_units, other_files,
                  folders_of_rosbag2, bad_files_of_a_folder, packed_files, lenses_that_no_recording_holds, large_pictures, intrinsics_for_another_size):

@@ -26,7 +26,7 @@ static const struct argp_option options[] = {
      BAG_GROUP},
     {"pose-topic", KEY_POSE, "TOPIC", 0,
      "topic of the poses: PoseStamped, PoseWithCovarianceStamped, TransformStamped, Odometry, or /tf (the only one "
-     "that is no goal, else /tf and /tf_static)",
+     "that is no goal or object, else /tf and /tf_static)",
      BAG_GROUP},
     {"camera-info-topic", KEY_CAMERA_INFO, "TOPIC", 0,
      "topic of colour's intrinsics (the one next to its images, of the same frame)", BAG_GROUP},

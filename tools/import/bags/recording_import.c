@@ -210,6 +210,14 @@ static cJSON *unreadable_json(const t3r_recording *recording)
     return list;
 }
 
+/* Returns the number of frames without a message of the chosen depth near in time. */
+static uint32_t unpaired(const t3r_recording *recording)
+{
+    const t3r_pairing_info pairing = t3r_recording_pairing(recording);
+    return t3r_recording_stream_for(recording, T3R_USE_DEPTH) != T3R_NO_STREAM ? pairing.frames - pairing.with_depth
+                                                                               : 0;
+}
+
 static void print_json(const report *r)
 {
     const t3r_recording *recording = r->recording;
@@ -228,6 +236,8 @@ static void print_json(const report *r)
     cJSON_AddNumberToObject(json, "registered", frames->registered);
     cJSON_AddNumberToObject(json, "unregistered", frames->unregistered);
     cJSON_AddNumberToObject(json, "straightened", frames->straightened);
+    json_add_integer(json, "transforms_left_out", (int64_t)frames->tree.refused);
+    cJSON_AddNumberToObject(json, "depth_unpaired", unpaired(recording));
     json_add_integer(json, "depth_beyond", (int64_t)t3r_recording_depth_beyond(recording));
     cJSON_AddStringToObject(json, "remark", frames->remark);
     picture_border_add_json(r->inner, json);
@@ -287,6 +297,21 @@ static void print_losses(const report *r)
     }
 }
 
+/* Prints the transforms that contradict the tree. */
+static void print_refused(const transform_tree *tree)
+{
+    if (tree->refused > 0) {
+        const transform_frame *frame = &tree->frames[tree->refused_frame];
+        char name[64], parent[64], other[64];
+        t3r_text_copy(name, sizeof name, t3r_text_of(frame->name));
+        t3r_text_copy(parent, sizeof parent, t3r_text_of(tree->frames[frame->parent].name));
+        t3r_text_copy(other, sizeof other, t3r_text_of(tree->frames[tree->refused_parent].name));
+        printf("left out: %" PRIu64 " transforms of frames with another parent, the first of '%s' in '%s', as it is in "
+               "'%s'\n",
+               tree->refused, name, other, parent);
+    }
+}
+
 static void print_text(const char *output, const report *r)
 {
     char lost[300];
@@ -299,6 +324,7 @@ static void print_text(const char *output, const report *r)
         printf("lost: %s\n", lost);
     }
     print_losses(r);
+    print_refused(&frames->tree);
     print_topics(r->recording, frames);
     if (t3r_recording_pairing(r->recording).by_log) {
         printf("stamps: those of the colour images go back, so log times are used\n");
@@ -313,6 +339,10 @@ static void print_text(const char *output, const report *r)
     if (frames->straightened > 0) {
         printf("lens: colour of %u frames redrawn as a pinhole's: no recording holds its coefficients\n",
                frames->straightened);
+    }
+    if (unpaired(r->recording) > 0) {
+        printf("depth: %u of %u frames have no message of it near in time (--pair)\n", unpaired(r->recording),
+               t3r_recording_frame_count(r->recording));
     }
     const uint64_t beyond = t3r_recording_depth_beyond(r->recording);
     if (beyond > 0) {

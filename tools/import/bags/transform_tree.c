@@ -70,6 +70,8 @@ const char *transform_tree_add(transform_tree *tree, t3r_text parent, t3r_text c
     }
     transform_frame *f = &tree->frames[frame];
     if (f->parent != TRANSFORM_NO_FRAME && f->parent != above) {
+        tree->refused_frame = tree->refused == 0 ? frame : tree->refused_frame;
+        tree->refused_parent = tree->refused == 0 ? above : tree->refused_parent;
         tree->refused++;
         return NULL;
     }

@@ -21,8 +21,9 @@ typedef struct transform_tree {
     transform_frame *frames;
     uint32_t count;
     size_t capacity;
-    uint32_t *slots;  /* hash table of the frames' names: index + 1, 0 = free */
-    uint64_t refused; /* transforms of frames that already have another parent */
+    uint32_t *slots;                        /* hash table of the frames' names: index + 1, 0 = free */
+    uint64_t refused;                       /* transforms of frames that already have another parent */
+    uint32_t refused_frame, refused_parent; /* of the first */
 } transform_tree;
 
 /* Returns a frame's name without the leading slash that older writers add. */
