@@ -45,7 +45,7 @@ def test_nerfstudio():
 
     report, got = imported(transforms("unread", change=other))
     same("unread fields", got, depth=False)
-    said = "this field is not read, though its name says depth, pose or mask"
+    said = "this field is not read, though its name says depth, pose, mask or lens"
     check(report["remarks"] == [f"poses_bounds: {said}", f"frames[0]: depth_map: {said}",
                                 "no frame has depth: build and replay need --depth stereo"], f"unread fields: {report}")
     refused(transforms("two_units", integer_depth_scale=0.5, depth_unit_scale_factor=UNIT), "integer_depth_scale")

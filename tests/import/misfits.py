@@ -310,6 +310,12 @@ def test_masks():
         for what in ("image", "depth"):
             check(np.array_equal(got.get(what, []), hidden(what)), f"a mask, {name}: {what}")
         check(not any("mask" in line for line in report["remarks"]), f"a mask that is read: {report}")
+    clear = np.dstack((np.full_like(mask, 255), mask[:, :, 0]))  # white, and black by alpha
+    write(f"{path}/masks/m.png", rgba([row.tobytes() for row in clear], 8, 4))
+    os.remove(f"{path}.mcap")
+    _, got = imported(path)
+    for what in ("image", "depth"):
+        check(np.array_equal(got.get(what, []), hidden(what)), f"a transparent mask: {what}")
     write(f"{path}/masks/m.png", png(mask[:10]))
     refused_again(path, "a mask of 64x10 pixels, but the picture has 64x48")
     path = transforms("mask_gone", change=lambda c: c["frames"][1].update(mask_path="masks/gone.png"))

@@ -144,6 +144,11 @@ def lists_agree():
     write("e.csv", "#timestamp, p_RS_R_x, ...\n" + euroc_line(1, *turned).strip() + ",0.1,0.2,0.3\n")
     faster = json.loads(run(*commands()[1].line, "--json")[1])["hash"]
     check(faster in hashes.values(), "velocities after the pose")
+    for words in ("{0},0 0,1 0,0 0,0 0,0 0,0 0,0 1,0\n", "{0},0 0.1 0 0 0 0 0 1\n"):  # decimal commas are no table of EuRoC
+        write("t.txt", "".join(words.format(i) for i in range(3)))
+        for line in (commands()[0].line, commands()[3].line):
+            code, _, error = run(*line)
+            check(code == 1 and "line 1: more than eight numbers" in error, f"{line[0]}: decimal commas: {error}")
     write("kitti.txt", "1 0 0 0.5 0 1 0 0 0 0 1 0\n" * 3)
     for line in (commands()[0].line, commands()[3].line):
         code, _, error = run(*[{"t.txt": "kitti.txt"}.get(word, word) for word in line])

@@ -120,11 +120,15 @@ int picture_keep_bright(picture *p)
     static const uint8_t black[3] = {0};
     const size_t pixels = (size_t)p->width * p->height;
     const uint8_t *samples = p->samples;
-    if (p->valid == NULL && (p->valid = malloc(pixels)) == NULL) {
-        return -1;
+    if (p->valid == NULL) {
+        p->valid = malloc(pixels);
+        if (p->valid == NULL) {
+            return -1;
+        }
+        memset(p->valid, 1, pixels);
     }
     for (size_t i = 0; i < pixels; i++) {
-        p->valid[i] = memcmp(samples + i * p->channels, black, p->channels) != 0;
+        p->valid[i] = p->valid[i] != 0 && memcmp(samples + i * p->channels, black, p->channels) != 0;
     }
     return 0;
 }

@@ -18,7 +18,7 @@ uint32_t picture_reduction(uint32_t width, uint32_t height);
 /* Keeps the part of a picture. */
 void picture_crop(picture *p, const t3r_crop *part);
 
-/* Marks the black pixels of an 8-bit picture invalid, and all others valid. Returns 0, or -1 when out of memory. */
+/* Marks the black pixels of an 8-bit picture invalid, and keeps those that are. Returns 0, or -1 when out of memory. */
 int picture_keep_bright(picture *p);
 
 /* Sets invalid pixels of an 8-bit picture to 0. Returns whether any is valid. */

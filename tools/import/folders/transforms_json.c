@@ -94,10 +94,11 @@ static size_t number_of(const char *name)
     return found != NULL ? (size_t)(found - known) : KNOWN;
 }
 
-/* Whether an unread field may hold depth, poses or masks, by its name. */
+/* Whether an unread field may hold depth, poses, masks or a lens, by its name. */
 static bool may_matter(const char *name)
 {
-    static const char *const parts[] = {"depth", "disparity", "pose", "transform", "extrinsic", "mask", "confidence"};
+    static const char *const parts[] = {"depth",     "disparity", "pose",       "transform",
+                                        "extrinsic", "mask",      "confidence", "distort"};
     static const char *const harmless[] = {"applied_transform"}; /* the poses already include it */
     for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++) {
         if (strcmp(name, harmless[i]) == 0) {
@@ -122,7 +123,8 @@ static void tell_unread(reader *r, const char *name)
     }
     if (r->remarked_count < REMARKED_MOST) {
         r->remarked[r->remarked_count++] = name;
-        (void)text_list_add(r->remarks, "%s%s%.100s: this field is not read, though its name says depth, pose or mask",
+        (void)text_list_add(r->remarks,
+                            "%s%s%.100s: this field is not read, though its name says depth, pose, mask or lens",
                             r->where, r->where[0] != '\0' ? ": " : "", name);
     }
 }

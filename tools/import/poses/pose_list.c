@@ -47,11 +47,17 @@ static int64_t exact_nanoseconds(const char *p)
     return value;
 }
 
-/* Whether whole nanoseconds and a comma begin the line. */
+/* Whether whole nanoseconds and a comma begin the line, and only commas separate its numbers: a comma may also be the
+ * decimal point of another language. */
 static bool is_euroc(const char *line)
 {
     const size_t digits = strspn(line, DIGITS);
-    return digits > 0 && line[digits] == ',';
+    bool only = digits > 0 && line[digits] == ',';
+    for (const char *p = line; *p != '\0' && only; p++) {
+        const bool blank = *p == ' ' || *p == '\t';
+        only = !blank || p[-1] == ',' || strchr(" \t\r,", p[1]) != NULL; /* strchr() finds the end, too */
+    }
+    return only;
 }
 
 static const char *pose_error(rigid *pose)
