@@ -142,7 +142,7 @@ typedef struct machine {
     const pose_module *poses; /* NULL: no_poses says why */
     char no_poses[512];
     bool heif_there;
-    char heif[512]; /* the library, or why it is not there */
+    char heif[512];            /* the library, or why it is not there */
     uint64_t hash, plain_hash; /* of the self-check; the second where the first is wrong */
 } machine;
 
