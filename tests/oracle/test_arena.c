@@ -48,7 +48,6 @@ static t3r_config random_config(dice *d, uint32_t most_side, uint32_t most_gauss
     c.wavelet = (t3r_wavelet)dice_below(d, T3R_WAVELET_COUNT);
     c.keep_analysis = dice_below(d, 2);
     c.refine = dice_below(d, 3);
-    c.planes = dice_below(d, 2);
     c.fill_radius = dice_below(d, 9);
     c.bridge_radius = dice_below(d, 256);
     c.depth = c.width < T3R_STEREO_LEAST_SIDE || c.height < T3R_STEREO_LEAST_SIDE

@@ -225,7 +225,7 @@ TEST(heads_that_are_not_shipped)
     }
 }
 
-/* head_column_bytes: the result of t3r_head_column_bytes() suffices and is minimal, for any width. */
+/* head_column_bytes: the result of t3r_head_column_bytes() suffices and is minimal, for any width; 0 holds no head. */
 TEST(room_for_the_head)
 {
     size_t bytes;
@@ -238,12 +238,13 @@ TEST(room_for_the_head)
         t3r_config config = t3r_default_config(width, T3R_MIN_SIDE, 1, 10);
         uint32_t least = t3r_head_column_bytes(weights, bytes, width);
         assert_true(least > T3R_HEAD_COLUMN_BYTES && least <= T3R_MAX_HEAD_COLUMN_BYTES);
-        for (uint32_t less = 0; less < 2; less++) {
+        const uint32_t rooms[] = {least, least - 1, 0};
+        for (size_t i = 0; i < sizeof rooms / sizeof rooms[0]; i++) {
             t3r_runtime *rt;
-            config.head_column_bytes = least - less;
+            config.head_column_bytes = rooms[i];
             arena memory = arena_of(&config, ARENA_AT_MINIMUM);
             assert_int_equal(t3r_init(&rt, memory.bytes, memory.count, &config), T3R_OK);
-            assert_int_equal(t3r_bind_head(rt, weights, bytes), less ? T3R_ERR_WEIGHTS : T3R_OK);
+            assert_int_equal(t3r_bind_head(rt, weights, bytes), i > 0 ? T3R_ERR_WEIGHTS : T3R_OK);
             arena_free(&memory);
         }
     }

@@ -508,8 +508,10 @@ TEST(arena_sizes)
         {"small", 3000, 160, 120, 150, 0.5, 4, 1.1, 0.002, 0.02, 5, 0.1, 1},
         {"wide", 500, 160, 120, 150, 0.5, 4, 1.2, 0.1, 1, 5, 0.05, 0.9},
         {"one", 1, 160, 120, 150, 1, 1.1, 0.1, 0.5, 0.6, 1, 0.5, 0.6},
+        /* with full lists, more splats in 64 tiles than one worker draws between two calls of the progress hook */
+        {"all tiles", 1100, 128, 128, 100, 1, 1.1, 0.1, 4, 5, 1, 0.2, 1},
     };
-    static const int several_at_minimum[] = {0, 1, 1};
+    static const int several_at_minimum[] = {0, 1, 1, 1};
     for (size_t i = 0; i < sizeof recipes / sizeof recipes[0]; i++) {
         const recipe *r = &recipes[i];
         t3r_gaussian *gaussians = cook(r, 3000 + i);
@@ -577,10 +579,10 @@ TEST(copied_arena)
 }
 
 /* Smaller targets than the arena was planned for, padded rows, and each output alone: the same pixels. */
-TEST(outputs_apart)
+static void draw_apart(double least_sigma, double opacity)
 {
     enum { W = 53, H = 37, PAD = 12 };
-    static const recipe r = {"apart", 800, W, H, 50, 0.5, 4, 1.1, 0.01, 0.1, 5, 0.1, 1};
+    const recipe r = {"apart", 800, W, H, 50, 0.5, 4, 1.1, least_sigma, 10 * least_sigma, 5, opacity, 1};
     t3r_gaussian *gaussians = cook(&r, 5000);
     t3r_camera camera = plain_camera(r.focal, W, H);
     drawing whole = draw_scene(&plain_frame, gaussians, r.count, &camera, W, H, ARENA_AT_FULL);
@@ -614,6 +616,12 @@ TEST(outputs_apart)
     arena_free(&a);
     drawing_free(&whole);
     free(gaussians);
+}
+
+TEST(outputs_apart)
+{
+    draw_apart(0.01, 0.1);
+    draw_apart(0.2, 0.9); /* tiles that are soon opaque */
 }
 
 static void note_hash(void *user, t3r_stage stage, uint64_t hash)

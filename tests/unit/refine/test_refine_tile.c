@@ -4,7 +4,9 @@
  * and any slices of the scene. */
 #include "unit/unit.h"
 
+#include "raster/raster_list.h"
 #include "refine/refine_tile.h"
+#include "state/state.h"
 
 enum { SIDE_OF_TILE = T3R_TILE_SIDE };
 enum { SIDE = 64, ACROSS = SIDE / T3R_TILE_SIDE, SPLATS = 150, MOMENTS = T3R_REFINE_MOMENTS_4 };
@@ -367,30 +369,62 @@ TEST(unseen_have_no_footprint)
     assert_false(t3r_footprint_rows(&projection, &g, a, b));
 }
 
+/* Makes small splats in the view and around it; faint ones have boxes of one pixel. */
+static void make_small(uint64_t *seed)
+{
+    for (uint32_t i = 0; i < SPLATS;) {
+        const double x = between(seed, -3, SIDE + 3), y = between(seed, -3, SIDE + 3);
+        const bool shows =
+            make_splat(i, x, y, between(seed, 0.1, 1.5), between(seed, 0.1, 1.5), between(seed, 0, 6.3), seed);
+        scene[i].opacity_q15 = i % 2 == 0 ? scene[i].opacity_q15 : 130;
+        i += shows && t3r_project(&projection, &scene[i], &splats[i]);
+    }
+}
+
+/* Returns whether a splat's box on a lattice holds those of its pixels that the box in the view holds; `any`: of them
+ * there is one. */
+static bool is_same_box(const t3r_splat *in_view, const t3r_splat *s, const t3r_lattice *lattice, bool *any)
+{
+    bool same = true;
+    *any = false;
+    for (uint32_t pixel = 0; pixel < SIDE * SIDE / 4; pixel++) {
+        const uint32_t x = pixel % (SIDE / 2), y = pixel / (SIDE / 2), u = 2 * x + lattice->x, v = 2 * y + lattice->y;
+        const bool on = u >= in_view->x0 && u <= in_view->x1 && v >= in_view->y0 && v <= in_view->y1;
+        same = same && (s->z_q20 != 0 && x >= s->x0 && x <= s->x1 && y >= s->y0 && y <= s->y1) == on;
+        *any = *any || on;
+    }
+    return same;
+}
+
 /* A splat's box on a lattice holds those of its pixels that the box in the view holds, and its centre stays. */
 TEST(boxes_on_lattices)
 {
-    enum { MOST = 5 };
-    for (uint32_t box = 0; box < MOST * MOST * MOST * MOST; box++) {
-        const uint16_t x0 = (uint16_t)(box % MOST), y0 = (uint16_t)(box / MOST % MOST);
-        const t3r_splat in_view = {.x0 = x0,
-                                   .y0 = y0,
-                                   .x1 = (uint16_t)(x0 + box / (MOST * MOST) % MOST),
-                                   .y1 = (uint16_t)(y0 + box / (MOST * MOST * MOST)),
-                                   .x_q12 = 3 << 12,
-                                   .y_q12 = 4 << 12,
-                                   .z_q20 = 7};
-        for (uint32_t at = 0; at < 4; at++) {
-            const t3r_lattice lattice = {1, at & 1, at >> 1};
-            t3r_splat s = in_view;
-            t3r_to_lattice(&lattice, &s);
-            assert_true(s.x_q12 == in_view.x_q12 - (int32_t)(lattice.x << 12));
-            assert_true(s.y_q12 == in_view.y_q12 - (int32_t)(lattice.y << 12));
-            for (uint32_t pixel = 0; pixel < MOST * MOST; pixel++) {
-                const uint32_t x = pixel % MOST, y = pixel / MOST, u = 2 * x + lattice.x, v = 2 * y + lattice.y;
-                const bool on = u >= in_view.x0 && u <= in_view.x1 && v >= in_view.y0 && v <= in_view.y1;
-                assert_int_equal(s.z_q20 == 7 && x >= s.x0 && x <= s.x1 && y >= s.y0 && y <= s.y1, on);
-            }
+    static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[1 << 20];
+    static t3r_splat listed[SPLATS];
+    static uint32_t order[T3R_SORT_BYTES / 4 + 4 * SPLATS], table[ACROSS * ACROSS], lists[SPLATS];
+    const t3r_raster_room room = {listed, order, table, lists, SPLATS};
+    const t3r_config config = t3r_default_config(SIDE, SIDE, 0, SPLATS);
+    const t3r_scene_frame frame = {0};
+    t3r_runtime *rt;
+    uint64_t seed = 9;
+    assert_int_equal(t3r_init(&rt, arena, sizeof arena, &config), T3R_OK);
+    for (uint32_t turn = 0; turn < 40; turn++) {
+        const t3r_lattice lattice = {1, turn & 1, turn >> 1 & 1};
+        make_small(&seed);
+        assert_int_equal(t3r_scene_begin(rt, &frame), T3R_OK);
+        for (uint32_t i = 0; i < SPLATS; i++) {
+            assert_int_equal(t3r_scene_append(rt, &scene[i]), T3R_OK);
         }
+        const t3r_binning bin = t3r_raster_list(rt, &projection, &lattice, &room);
+        uint32_t visible = 0;
+        for (uint32_t i = 0; i < SPLATS; i++) {
+            bool any;
+            assert_true(is_same_box(&splats[i], &listed[i], &lattice, &any));
+            assert_int_equal(listed[i].x_q12, splats[i].x_q12 - (int32_t)(lattice.x << 12));
+            assert_int_equal(listed[i].y_q12, splats[i].y_q12 - (int32_t)(lattice.y << 12));
+            visible += any;
+        }
+        assert_int_equal(bin.visible, visible);
+        assert_true(visible < SPLATS);
     }
 }

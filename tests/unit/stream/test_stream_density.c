@@ -128,6 +128,18 @@ TEST(discs_that_reach_the_camera)
     assert_in_range(s.discs[0].farthest, 6124, 6125); /* 2 + 2 x 16 / 8 + 2 / 16 */
 }
 
+/* The disc of a Gaussian at the end of the map's range reaches as far as depths do, and no farther. */
+TEST(discs_at_the_end_of_the_range)
+{
+    static site s;
+    open_site(&s);
+    s.view.depth_unit_q40 = UINT64_C(1) << 36;
+    s.keyframe = t3r_pointmap_of(&s.view, 0);
+    add(&s, (WIDTH - 1) / 2.0, (HEIGHT - 1) / 2.0, 2040, 0);
+    t3r_map_discs_find(&s.map, &s.keyframe, &s.workers, s.discs);
+    assert_int_equal(s.discs[0].farthest, 2048 * 16 - 1);
+}
+
 /* Fills the wall with a regular grid of Gaussians, `step` pixels apart, noted as of another density. Returns a central
  * one. */
 static uint32_t fill_wall(site *s, int step, int noted_q10)

@@ -17,9 +17,9 @@ static uint8_t rgb[PIXELS * 3];
 static uint16_t depth[PIXELS];
 static t3r_camera camera;
 
-static t3r_runtime *begin_with(uint32_t gate, uint32_t align)
+static t3r_runtime *begin_with(uint32_t live, uint32_t gate, uint32_t align)
 {
-    t3r_config config = t3r_default_config(W, H, LIVE, CAP);
+    t3r_config config = t3r_default_config(W, H, live, CAP);
     config.stream = 1;
     config.refine = 1;
     config.fit_passes = 0;
@@ -37,7 +37,7 @@ static t3r_runtime *begin_with(uint32_t gate, uint32_t align)
 
 static t3r_runtime *begin(uint32_t gate)
 {
-    return begin_with(gate, 1);
+    return begin_with(LIVE, gate, 1);
 }
 
 static void look(uint32_t frame)
@@ -60,7 +60,7 @@ static void walk(t3r_runtime *rt, uint32_t first, uint32_t end)
         look(i * STRIDE);
         assert_int_equal(take(rt, &report), T3R_OK);
         assert_int_equal(report.refusal, T3R_REFUSAL_NONE);
-        assert_int_equal(report.moved, 0);
+        assert_int_equal(report.moved + report.realigned, 0);
         assert_int_equal(report.keyframes, rt->keyframes);
     }
 }
@@ -148,9 +148,16 @@ static void nearer(void)
     }
 }
 
+enum { JUMP_MM = 700 };
+
 static void jump(void)
 {
-    camera.position_q32[0] += (int64_t)(0.7 * 4294967296.0);
+    camera.position_q32[0] += ((int64_t)JUMP_MM << 32) / 1000;
+}
+
+static void jump_back(void)
+{
+    camera.position_q32[0] -= ((int64_t)JUMP_MM << 32) / 1000;
 }
 
 static void absurd(void)
@@ -319,7 +326,7 @@ TEST(lasting_troubles_are_taken)
                    {nearer, T3R_REFUSAL_CONTRADICTS, 0, 4},
                    {nearer, T3R_REFUSAL_CONTRADICTS, 1, 4}};
     for (size_t t = 0; t < sizeof lasting / sizeof *lasting; t++) {
-        t3r_runtime *rt = begin_with(1, lasting[t].align);
+        t3r_runtime *rt = begin_with(LIVE, 1, lasting[t].align);
         walk(rt, 0, FIRST);
         for (uint32_t i = 0; i <= lasting[t].refused; i++) {
             t3r_stream_report report;
@@ -491,16 +498,36 @@ TEST(figures_that_agree)
     assert_true(t3r_gate_agrees(&figures, &other));
 }
 
-/* Without alignment a new piece begins: what the new frames cover and do not show leaves the map. */
+/* Without alignment, or another live keyframe to align with, a new piece begins: what the new frames cover and do not
+ * show leaves the map. */
 TEST(a_lasting_jump_begins_a_new_piece)
 {
-    t3r_runtime *rt = begin_with(1, 0);
+    for (uint32_t align = 0; align < 2; align++) {
+        t3r_runtime *rt = begin_with(align ? 1 : LIVE, 1, align);
+        walk(rt, 0, FIRST);
+        t3r_stream_report report;
+        take_contradicting(rt, jump, REFUSED, &report);
+        assert_true(report.moved == 1 && report.realigned == 0);
+        assert_true(report.removed > CAP / 4 && rt->remembered == 0);
+        walk_on(rt, jump);
+    }
+}
+
+/* Poses that jump elsewhere before the map may move, or that come back, move nothing. */
+TEST(jumps_that_do_not_last)
+{
+    t3r_runtime *rt = begin(1);
     walk(rt, 0, FIRST);
-    t3r_stream_report report;
-    take_contradicting(rt, jump, REFUSED, &report);
-    assert_true(report.moved == 1 && report.realigned == 0);
-    assert_true(report.removed > CAP / 4 && rt->remembered == 0);
-    walk_on(rt, jump);
+    for (uint32_t i = 0; i <= 2 * REFUSED_OF_JUMP; i++) {
+        t3r_stream_report report;
+        look(FIRST * STRIDE);
+        (i == REFUSED_OF_JUMP ? jump_back : jump)();
+        memcpy(before, arena, arena_bytes);
+        assert_int_equal(take(rt, &report), T3R_OK);
+        assert_int_equal(report.refusal, T3R_REFUSAL_CONTRADICTS);
+        assert_true(is_as_before(rt));
+    }
+    walk(rt, FIRST, FIRST + LIVE + 2);
 }
 
 /* A room of the same shape that has none of the colours. */
@@ -529,7 +556,7 @@ TEST(wild_poses_are_never_taken)
     for (uint32_t i = 0; i < 12; i++) {
         t3r_stream_report report;
         look(FIRST * STRIDE);
-        camera.position_q32[0] += (i % 2 == 0 ? 1 : -1) * (int64_t)(0.7 * 4294967296.0);
+        (i % 2 == 0 ? jump : jump_back)();
         assert_int_equal(take(rt, &report), T3R_OK);
         assert_int_equal(report.refusal, T3R_REFUSAL_CONTRADICTS);
     }
