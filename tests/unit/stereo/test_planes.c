@@ -186,6 +186,47 @@ TEST(swept)
     }
 }
 
+/* Another view that sees nothing of the surfaces changes nothing: beside them, far beside them, turned away. */
+TEST(swept_in_vain)
+{
+    enum { BESIDE = 8, FAR_BESIDE = 8 * 25, PLACES = 8 }; /* the surfaces are within 1.6 units */
+    shot *other = shoot(0, W), *plain = shoot(40, 60);
+    fill(&plain->view, NULL, NULL, work);
+    for (int place = 0; place <= PLACES; place++) {
+        shot *s = shoot(40, 60);
+        t3r_camera there = camera;
+        if (place < PLACES) {
+            const int64_t away = place / 4 == 0 ? BESIDE : FAR_BESIDE;
+            there.position_q32[place / 2 % 2] = (place % 2 == 0 ? away : -away) * (INT64_C(1) << 32);
+        } else {
+            memcpy(there.rotation_q30, (const int32_t[]){0, 0, 1 << 30, 0}, sizeof there.rotation_q30);
+        }
+        fill(&s->view, &other->view, &there, work);
+        assert_memory_equal(s->depth, plain->depth, sizeof s->depth);
+        free(s);
+    }
+    free(plain);
+    free(other);
+}
+
+/* Planes continue where no path leads: each step between stripes is long. */
+TEST(beyond_all_paths)
+{
+    shot *s = shoot(24, W), *plain = shoot(24, W);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        s->colour[0][i] = s->colour[1][i] = s->colour[2][i] = i % 2 == 0 ? 1 : 255;
+    }
+    memcpy(plain->colour, s->colour, sizeof s->colour);
+    uint8_t *room = aligned_alloc(64, T3R_STEREO_FILL_BYTES(W, H));
+    t3r_stereo_fill(&plain->view, room);
+    assert_int_equal(plain->depth[W - 1], 0);
+    fill(&s->view, NULL, NULL, work);
+    assert_true(off(s) < 0.1);
+    free(room);
+    free(plain);
+    free(s);
+}
+
 /* With twice as many strips as there is room for planes, all room is used; without a match no plane is found. */
 TEST(counted)
 {
