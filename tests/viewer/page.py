@@ -205,6 +205,24 @@ def same_pictures(page, scene, room):
     check(page.value("coarse") == 160 and page.value("document.getElementById('picture').width") == 320, "coarse, then whole")
 
 
+def sketched(page):
+    """A coarse picture of few Gaussians resembles one of the same size that has all of them."""
+    page.value("goTo(0)")
+    page.wait("isStill()")
+    page.value("""globalThis.limit = 0, globalThis.answer = null,
+        drawing = ((request) => (how) => ({ ...request(how), most: limit }))(drawing),
+        done.draw = ((draw) => (a) => { answer = { gaussians: a.gaussians, pixels: a.pixels.slice() }; draw(a); })(done.draw)""")
+    counts, pictures = [], []
+    for limit in (0, 300, 1):
+        drawn(page, lambda: page.value(f"limit = {limit}, draw()"))
+        counts.append(page.value("answer.gaussians"))
+        pictures.append(base64.b64decode(page.value("btoa(String.fromCharCode(...answer.pixels.filter((x, i) => i % 4 < 3)))")))
+    whole, *others = pictures
+    psnr = [10 * math.log10(65025 * len(whole) / sum((a - b) ** 2 for a, b in zip(whole, other))) for other in others]
+    check(counts[0] > 600 and counts[1:] == [300, 1], f"Gaussians of pictures: {counts}")
+    check(psnr[0] > 20 > psnr[1] + 5, f"300 Gaussians resemble the whole by {psnr[0]:.2f} dB, one by {psnr[1]:.2f} dB")
+
+
 def fits(page, looks_as):
     """The picture and the lines below it are in the window, without scrolling."""
     for width, height in ((320, 640), (1280, 800), (2560, 1440), (3840, 2160)):
@@ -425,6 +443,8 @@ with tempfile.TemporaryDirectory() as scratch:
         page.wait("document.body.dataset.hash === ''")
         check(page.value("document.body.dataset.gaussians") == of_file, "from the file, built here, and back")
         same_pictures(page, scene, recording)
+        at_width(page, 64)
+        sketched(page)
         harmonics(page, recording, scratch)
         narrower_than_the_recording(page, scratch)
         opens(page, scene, scratch)

@@ -8,6 +8,7 @@
 #include "core/hash.h"
 #include "module/bundle_read.h"
 #include "module/carried.h"
+#include "module/sketch.h"
 #include "scene/seen_gaussian.h"
 #include "state/state.h"
 #include "state/views.h"
@@ -40,14 +41,21 @@ typedef struct kept_part {
 static const kept_part everything = {.low_q20 = {INT32_MIN, INT32_MIN, INT32_MIN},
                                      .high_q20 = {INT32_MAX, INT32_MAX, INT32_MAX}};
 
-/* The module keeps one bundle and one runtime: a page shows one scene. */
+/* The module keeps one bundle: a page shows one scene. */
 static struct {
     bundle_data bundle;
     t3r_runtime *runtime;
+    struct {
+        t3r_config config;
+        t3r_runtime *runtime; /* NULL: there is no sketch of this scene */
+        sketch sample;
+        uint32_t drawn; /* Gaussians in the runtime */
+    } sketched;
     source_kind source;
     const carried *taken; /* the whole scene, if it was taken */
     kept_part kept;
     t3r_scene scene; /* in the arena: the kept part */
+    uint32_t pictured;
     uint64_t hash[T3R_STAGE_COUNT];
     uint8_t hashed[T3R_STAGE_COUNT];
 } module;
@@ -78,15 +86,23 @@ static void share(void *user, uint32_t count, task *work, void *context)
 static const t3r_hooks building = {.progress = report_progress, .stage_hash = keep_hash, .parallel_for = share};
 static const t3r_hooks drawing = {.parallel_for = share};
 
+/* Returns the bytes of an arena, rounded up to the next arena's alignment; 0 = the configuration is refused. */
+static uint32_t arena_bytes(const t3r_config *config)
+{
+    t3r_plan_info plan;
+    return t3r_plan(config, &plan) == T3R_OK
+               ? ((uint32_t)plan.bytes + T3R_ARENA_ALIGN - 1) / T3R_ARENA_ALIGN * T3R_ARENA_ALIGN
+               : 0;
+}
+
 /* Opens the bundle at this address, aligned to 16, which must stay in the module's memory; targets are at most of this
- * size. builds: 1 = it builds scenes, 0 = it only draws, in a smaller arena. workers: threads that page_parallel_for()
- * has. Returns the bytes of the arena that it needs; 0 = the bundle is damaged or its configuration refused. */
+ * size. builds: 1 = it builds scenes, 0 = it only draws, in smaller arenas. workers: threads that page_parallel_for()
+ * has. Returns the bytes that module_start() needs; 0 = the bundle is damaged or its configuration refused. */
 EXPORT(open)
 uint32_t module_open(const uint8_t *bundle, uint32_t bytes, uint32_t render_width, uint32_t render_height,
                      uint32_t builds, uint32_t workers)
 {
-    t3r_config *config = &module.bundle.config;
-    t3r_plan_info plan;
+    t3r_config *config = &module.bundle.config, *less = &module.sketched.config;
     if (!bundle_read(bundle, bytes, &module.bundle)) {
         return 0;
     }
@@ -97,18 +113,31 @@ uint32_t module_open(const uint8_t *bundle, uint32_t bytes, uint32_t render_widt
     config->workers = workers;
     config->render_width = render_width;
     config->render_height = render_height;
-    return t3r_plan(config, &plan) == T3R_OK ? (uint32_t)plan.bytes : 0;
+    *less = *config;
+    less->max_gaussians = config->views > 0 ? 0 : T3R_MIN(config->max_gaussians, SKETCH_MOST);
+    const uint32_t whole = arena_bytes(config);
+    const size_t sample = sketch_bytes(config->max_gaussians);
+    return less->max_gaussians > 0 && whole > 0 ? whole + arena_bytes(less) + (uint32_t)sample : whole;
 }
 
-/* Initialises the arena at this address, aligned to 64. Returns a t3r_status. */
-EXPORT(start) int32_t module_start(void *arena, uint32_t bytes)
+static t3r_status start_runtime(t3r_runtime **runtime, void *arena, size_t bytes, const t3r_config *config)
 {
-    t3r_status status = t3r_init(&module.runtime, arena, bytes, &module.bundle.config);
-    if (status == T3R_OK) {
-        status = t3r_set_cpu(module.runtime, t3r_cpu_found());
-    }
-    if (status == T3R_OK) {
-        status = t3r_set_hooks(module.runtime, &drawing);
+    t3r_status status = t3r_init(runtime, arena, bytes, config);
+    status = status == T3R_OK ? t3r_set_cpu(*runtime, t3r_cpu_found()) : status;
+    return status == T3R_OK ? t3r_set_hooks(*runtime, &drawing) : status;
+}
+
+/* Initialises the memory at this address, aligned to 64. Returns a t3r_status. */
+EXPORT(start) int32_t module_start(uint8_t *memory)
+{
+    const t3r_config *config = &module.bundle.config, *less = &module.sketched.config;
+    const uint32_t bytes = arena_bytes(config);
+    t3r_status status = start_runtime(&module.runtime, memory, bytes, config);
+    module.sketched.runtime = NULL;
+    if (status == T3R_OK && less->max_gaussians > 0) {
+        const uint32_t less_bytes = arena_bytes(less);
+        status = start_runtime(&module.sketched.runtime, memory + bytes, less_bytes, less);
+        sketch_init(&module.sketched.sample, memory + bytes + less_bytes, config->max_gaussians);
     }
     if (status == T3R_OK && module.bundle.weight_bytes > 0) {
         status = t3r_bind_head(module.runtime, module.bundle.weights, module.bundle.weight_bytes);
@@ -168,22 +197,28 @@ static bool depends_on_view(void)
     return module.source == SCENE_OF_BUNDLE && (traits->degree > 0 || traits->mip);
 }
 
+static const t3r_scene_frame *frame_of_scene(void)
+{
+    return module.source == SCENE_TAKEN ? &module.taken->frame : &module.bundle.scene_frame;
+}
+
+/* Puts a Gaussian of the whole scene into an arena, as a camera sees it; NULL: as it is. */
+static t3r_status append(t3r_runtime *to, uint32_t index, const t3r_gaussian *gaussian, const seen_from *from)
+{
+    t3r_gaussian g = *gaussian;
+    const t3r_status status =
+        from != NULL ? seen_gaussian(&module.bundle.traits, bundle_harmonics(&module.bundle, index), from, &g) : T3R_OK;
+    return status == T3R_OK ? t3r_scene_append(to, &g) : status;
+}
+
 /* Puts the kept Gaussians into the arena, as a camera sees them; NULL: as they are. Returns a t3r_status. */
 static t3r_status append_kept(const seen_from *from)
 {
-    const bundle_data *bundle = &module.bundle;
     const uint32_t count = module_whole();
-    t3r_status status =
-        t3r_scene_begin(module.runtime, module.source == SCENE_TAKEN ? &module.taken->frame : &bundle->scene_frame);
+    t3r_status status = t3r_scene_begin(module.runtime, frame_of_scene());
     for (uint32_t i = 0; i < count && status == T3R_OK; i++) {
-        t3r_gaussian g = whole_gaussian(i);
-        if (!is_kept(&g)) {
-            continue;
-        }
-        if (from != NULL) {
-            status = seen_gaussian(&bundle->traits, bundle_harmonics(bundle, i), from, &g);
-        }
-        status = status == T3R_OK ? t3r_scene_append(module.runtime, &g) : status;
+        const t3r_gaussian g = whole_gaussian(i);
+        status = is_kept(&g) ? append(module.runtime, i, &g, from) : T3R_OK;
     }
     status = status == T3R_OK ? t3r_get_scene(module.runtime, &module.scene) : status;
     if (module.source == SCENE_TAKEN) {
@@ -192,22 +227,28 @@ static t3r_status append_kept(const seen_from *from)
     return status;
 }
 
+/* Puts another part of a scene into the arena. Returns a t3r_status. */
+static t3r_status keep_part(const kept_part *part)
+{
+    module.kept = *part;
+    module.sketched.sample.count = 0;
+    return append_kept(NULL);
+}
+
 /* Keeps the Gaussians of this opacity (Q15) and more whose centres are in this box (Q20 scene units, both ends in it),
  * of a scene that was loaded or taken. Returns a t3r_status. */
 EXPORT(keep)
 int32_t module_keep(uint32_t opacity_least_q15, int32_t low_x, int32_t low_y, int32_t low_z, int32_t high_x,
                     int32_t high_y, int32_t high_z)
 {
-    module.kept = (kept_part){opacity_least_q15, {low_x, low_y, low_z}, {high_x, high_y, high_z}};
-    return append_kept(NULL);
+    return keep_part(&(kept_part){opacity_least_q15, {low_x, low_y, low_z}, {high_x, high_y, high_z}});
 }
 
 /* Puts the bundle's Gaussians into the arena. Returns a t3r_status. */
 EXPORT(load) int32_t module_load(void)
 {
     module.source = SCENE_OF_BUNDLE;
-    module.kept = everything;
-    return append_kept(NULL);
+    return keep_part(&everything);
 }
 
 /* Puts a carried scene into the arena, which stays where it is. Returns a t3r_status. */
@@ -215,8 +256,47 @@ EXPORT(take) int32_t module_take(const carried *in)
 {
     module.source = SCENE_TAKEN;
     module.taken = in;
-    module.kept = everything;
-    return append_kept(NULL);
+    return keep_part(&everything);
+}
+
+/* ---- the sketch -------------------------------------------------------------------------------------------------- */
+
+/* Arranges the kept Gaussians for sketches, unless they are already. */
+EXPORT(arrange) void module_arrange(void)
+{
+    sketch *sample = &module.sketched.sample;
+    if (module.sketched.runtime == NULL || sample->count > 0) {
+        return;
+    }
+    const uint32_t count = module_whole();
+    sketch_begin(sample);
+    for (uint32_t i = 0; i < count; i++) {
+        const t3r_gaussian g = whole_gaussian(i);
+        if (is_kept(&g)) {
+            sketch_weigh(sample, i, &g);
+        }
+    }
+    sketch_arrange(sample, &module.runtime->kernels);
+    module.sketched.drawn = 0;
+}
+
+/* Puts the first Gaussians of the sample into its arena, as a camera sees them; NULL: as they are. Returns a
+ * t3r_status. */
+static t3r_status append_sketch(uint32_t drawn, const seen_from *from)
+{
+    const sketch *sample = &module.sketched.sample;
+    if (from == NULL && module.sketched.drawn == drawn) {
+        return T3R_OK;
+    }
+    t3r_status status = t3r_scene_begin(module.sketched.runtime, frame_of_scene());
+    for (uint32_t rank = 0; rank < drawn && status == T3R_OK; rank++) {
+        const uint32_t index = sketch_index(sample, rank);
+        t3r_gaussian g = whole_gaussian(index);
+        sketch_widen(sample, drawn, &g);
+        status = append(module.sketched.runtime, index, &g, from);
+    }
+    module.sketched.drawn = drawn;
+    return status;
 }
 
 /* ---- building ---------------------------------------------------------------------------------------------------- */
@@ -341,12 +421,15 @@ EXPORT(hash) uint64_t module_hash(uint32_t stage)
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
 
 /* Draws RGB, depth (Q20 scene units) and alpha (Q15), rows without gaps, as a camera of these numbers sees the scene
- * (t3r_camera has their ranges). Returns a t3r_status. */
+ * (t3r_camera has their ranges); NULL leaves a plane out. most: a sketch of at most so many Gaussians is drawn, if the
+ * scene has more and is arranged; 0 = the whole scene. Returns a t3r_status. */
 EXPORT(render)
 int32_t module_render(int32_t fx_q16, int32_t fy_q16, int32_t cx_q16, int32_t cy_q16, int64_t x_q32, int64_t y_q32,
                       int64_t z_q32, int32_t qw_q30, int32_t qx_q30, int32_t qy_q30, int32_t qz_q30, uint32_t width,
-                      uint32_t height, uint8_t *rgb, uint32_t *depth_q20, uint16_t *alpha_q15)
+                      uint32_t height, uint8_t *rgb, uint32_t *depth_q20, uint16_t *alpha_q15, uint32_t most)
 {
+    const uint32_t drawn = T3R_MIN(most, module.sketched.config.max_gaussians);
+    const bool is_sketched = drawn > 0 && drawn < module.sketched.sample.count;
     const t3r_camera camera = {
         .fx_q16 = fx_q16,
         .fy_q16 = fy_q16,
@@ -366,13 +449,19 @@ int32_t module_render(int32_t fx_q16, int32_t fy_q16, int32_t cx_q16, int32_t cy
         .alpha_stride_bytes = width * 2,
     };
     seen_from from;
-    if (depends_on_view() && seen_from_camera(&camera, &module.scene.frame, width, height, &from) == T3R_OK) {
-        const t3r_status status = append_kept(&from);
-        if (status != T3R_OK) {
-            return status;
-        }
-    }
-    return t3r_render(module.runtime, &camera, &target);
+    const seen_from *seen =
+        depends_on_view() && seen_from_camera(&camera, &module.scene.frame, width, height, &from) == T3R_OK ? &from
+                                                                                                            : NULL;
+    const t3r_status status = is_sketched ? append_sketch(drawn, seen) : seen != NULL ? append_kept(seen) : T3R_OK;
+    module.pictured = is_sketched ? drawn : module.scene.count;
+    return status == T3R_OK ? t3r_render(is_sketched ? module.sketched.runtime : module.runtime, &camera, &target)
+                            : status;
+}
+
+/* Returns the Gaussians of the last picture. */
+EXPORT(pictured) uint32_t module_pictured(void)
+{
+    return module.pictured;
 }
 
 /* Returns the hash of a picture's RGB, as `trim3r render --json` prints it. */

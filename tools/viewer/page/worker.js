@@ -102,7 +102,7 @@ async function open({ wasm, bundle, width, height, most, builds, isShared }) {
   const bytes = runtime.open(at, bundle.byteLength, w, h, builds ? 1 : 0, threads);
   if (bytes === 0) throw new Error("the runtime refuses the data of this page");
   const arena = place(bytes);
-  need(runtime.start(arena, bytes), "start");
+  need(runtime.start(arena), "start");
   opened = { width, height, rgb: place(w * h * 3), depth: place(w * h * 4), alpha: place(w * h * 2) };
   carried.in = carried.out = null;
   if (threads > 1) startHelpers(module, memory, threads);
@@ -186,12 +186,13 @@ const score = ({ frames }) => ({ psnr: frames.map(psnr) });
 const fixed = (value, bits) => Math.round(value * 2 ** bits);
 const fixed64 = (value) => BigInt(Math.round(value * 4294967296));
 
-function render(camera, width, height) {
+/* Draws the colours, and the plane of depth or alpha if that is shown. most: about so many Gaussians; 0: all. */
+function render(camera, width, height, show = "picture", most = 0) {
   const start = performance.now();
   const { focal, centre, position, rotation } = camera;
   need(runtime.render(fixed(focal[0], 16), fixed(focal[1], 16), fixed(centre[0], 16), fixed(centre[1], 16),
                       ...position.map(fixed64), ...rotation.map((q) => fixed(q, 30)), width, height, opened.rgb,
-                      opened.depth, opened.alpha), "the picture");
+                      show === "depth" ? opened.depth : 0, show === "alpha" ? opened.alpha : 0, most), "the picture");
   return performance.now() - start;
 }
 
@@ -287,13 +288,13 @@ const painters = {
 };
 const OF_FRAME = ["frame", "error", "mask", "clusters", "texture"];
 
-function draw({ camera, width, height, show, frame, coarse }) {
+function draw({ camera, width, height, show, frame, coarse, most }) {
   const flat = OF_FRAME.includes(show);
   const w = flat ? opened.width : width, h = flat ? opened.height : height;
-  const ms = flat && show !== "error" ? 0 : render(camera, w, h);
+  const ms = flat && show !== "error" ? 0 : render(camera, w, h, show, most);
   const pixels = paint(w * h, painters[show](w * h, frame));
   const hash = ms > 0 && !coarse ? hex(runtime.picture_hash(opened.rgb, w, h)) : null;
-  return { pixels, width: w, height: h, ms, show, coarse, hash };
+  return { pixels, width: w, height: h, ms, show, coarse, hash, gaussians: runtime.pictured() };
 }
 
 const answers = { open, build, load, take, measure, keep, give, score, draw, help };
@@ -302,6 +303,7 @@ onmessage = async ({ data }) => {
     const result = await answers[data.kind](data);
     const moved = [result.pixels, result.scene].filter(Boolean).map((array) => array.buffer);
     postMessage({ ...result, kind: data.kind }, moved);
+    if (data.kind === "draw") runtime.arrange(); /* for the next move; nothing is left to do after the first time */
   } catch (error) {
     postMessage({ kind: "failed", of: data.kind, text: error.message });
   }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The picture. While the camera moves, pictures are as coarse as their pace demands. Once it rests, one is drawn whole. */
+/* The picture. While the camera moves, pictures are as coarse as their pace demands: of fewer pixels, and of fewer
+ * Gaussians. Once it rests, one is drawn whole. */
 const canvas = $("picture"), context = canvas.getContext("2d", { willReadFrequently: true });
 const chosen = (name) => document.querySelector(`input[name=${name}]:checked`).value;
 const motion = () => chosen("motion");
@@ -24,13 +25,18 @@ function shapePicture() {
   ({ width: canvas.width, height: canvas.height } = most);
 }
 
-const PACE_MS = 28, REST_MS = 150, COARSEST = .3;
+const PACE_MS = 28, REST_MS = 150, LEAST_MOVING = 240;
 let coarseness = .5, resting = 0;
+
+const fullWidth = () => Math.min(most.width, canvas.clientWidth * density());
 
 function keepPace(took) {
   const step = Math.max(.75, Math.min(1.15, Math.sqrt(PACE_MS / took)));
-  coarseness = Math.max(COARSEST, Math.min(1, coarseness * step));
+  coarseness = Math.max(Math.min(1, LEAST_MOVING / fullWidth()), Math.min(1, coarseness * step));
 }
+
+/* Returns the Gaussians of a coarse picture: one for two pixels, in steps, so that few pictures need another sample. */
+const gaussiansFor = ({ width, height }) => Math.round(2 ** (Math.round(2 * Math.log2(width * height / 2)) / 2));
 
 const OF_VIEW = ["mask", "clusters", "texture"]; /* planes that only the worker which builds has */
 const isStill = () => resting === 0 && drawer.still && (!builder || builder.still); /* for tests */
@@ -38,10 +44,10 @@ const isStill = () => resting === 0 && drawer.still && (!builder || builder.stil
 function drawing({ coarse }) {
   const show = chosen("show"), frame = camera.frame ?? 0;
   const flat = document.querySelector(`#overlay input[value=${show}]`);
-  const { width, height } = sized(Math.min(most.width, canvas.clientWidth * density()) * (coarse ? coarseness : 1));
+  const size = sized(fullWidth() * (coarse ? coarseness : 1));
   const from = flat ? cameraOf(data.frames[frame], data.width)
-                    : { ...cameraOf(lens(), width), position: camera.position, rotation: quaternionOf(camera.axes) };
-  return { camera: from, width, height, show, frame, coarse };
+                    : { ...cameraOf(lens(), size.width), position: camera.position, rotation: quaternionOf(camera.axes) };
+  return { camera: from, ...size, show, frame, coarse, most: coarse ? gaussiansFor(size) : 0 };
 }
 
 function draw(coarse = false) {
@@ -68,7 +74,7 @@ function moved() {
 
 let pictures = 0;
 const overPicture = []; /* functions that draw lines over a picture from the camera */
-done.draw = ({ pixels, width, height, ms, show, coarse, hash, took }) => {
+done.draw = ({ pixels, width, height, ms, show, coarse, hash, gaussians, took }) => {
   if (coarse) keepPace(took);
   endFailure();
   if (show !== chosen("show")) return; /* it was asked for before another choice */
@@ -78,7 +84,7 @@ done.draw = ({ pixels, width, height, ms, show, coarse, hash, took }) => {
   }
   context.putImageData(new ImageData(pixels, width, height), 0, 0);
   if (!onFrame()) overPicture.forEach((over) => over());
-  if (coarse) $("drawn").textContent = `${width} x ${height} while it moves, ${Math.round(1000 / took)} pictures a second.`;
+  if (coarse) $("drawn").textContent = `${width} x ${height} of ${count(gaussians)} Gaussians while it moves, ${Math.round(1000 / took)} pictures a second.`;
   else $("drawn").textContent = hash ? `${width} x ${height} in ${ms.toFixed(0)} ms, hash ${hash}.` : "";
   if (!coarse) document.body.dataset.drawn = ++pictures; /* for tests: pictures that are whole */
   const of = camera.frame === null ? "from a free viewpoint" : `from ${data.frames[camera.frame].name}`;
