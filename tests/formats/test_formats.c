@@ -209,7 +209,7 @@ static void write_doubles(const char *path, const scene_file *scene)
 static void must_convert(const char *from, const char *to, int flags, scene_conversion *done)
 {
     char error[256] = "";
-    if (scene_file_convert(from, to, flags, done, error, sizeof error) != 0) {
+    if (scene_file_convert(from, to, flags, NULL, done, error, sizeof error) != 0) {
         fail_msg("%s", error);
     }
 }

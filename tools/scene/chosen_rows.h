@@ -19,6 +19,9 @@ int chosen_rows_valid(const scene_rows *all, chosen_rows *out, char *error, size
 /* Chooses the rows within the reach of their extent, likewise. */
 int chosen_rows_near(const scene_rows *all, const scene_extent *extent, chosen_rows *out, char *error,
                      size_t error_bytes);
+/* Chooses the rows that a crop keeps, likewise. */
+int chosen_rows_cropped(const scene_rows *all, const scene_crop *crop, chosen_rows *out, char *error,
+                        size_t error_bytes);
 void chosen_rows_free(chosen_rows *chosen);
 
 #endif

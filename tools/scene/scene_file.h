@@ -62,13 +62,20 @@ int scene_file_parse(const char *name, const uint8_t *bytes, size_t count, int f
 int scene_file_write(const char *path, const t3r_scene *scene, int flags, const char *note, char *error,
                      size_t error_bytes);
 
+/* The part of a scene that is kept: Gaussians with their means in a box of the world, both ends in it, and with an
+ * opacity (0..1) of at least `opacity`. */
+typedef struct scene_crop {
+    double low[3], high[3], opacity;
+} scene_crop;
+
 /* A file in another format, in doubles from end to end: what both formats hold stays as it is. */
 typedef struct scene_conversion {
-    uint32_t count, degree_read, degree; /* Gaussians, degrees of harmonics */
+    uint32_t count_read, count;   /* Gaussians */
+    uint32_t degree_read, degree; /* of harmonics */
 } scene_conversion;
-/* `flags` of both reading and writing. Returns 0, or -1 with the reason in error[]. */
-int scene_file_convert(const char *from, const char *to, int flags, scene_conversion *out, char *error,
-                       size_t error_bytes);
+/* `flags` of both reading and writing; crop: NULL keeps all. Returns 0, or -1 with the reason in error[]. */
+int scene_file_convert(const char *from, const char *to, int flags, const scene_crop *crop, scene_conversion *out,
+                       char *error, size_t error_bytes);
 void scene_file_free(scene_file *scene);
 
 #endif

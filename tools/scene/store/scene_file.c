@@ -41,8 +41,8 @@ int scene_file_write(const char *path, const t3r_scene *scene, int flags, const 
     return scene_store_write(path, &made, flags, note, &command, error, error_bytes);
 }
 
-int scene_file_convert(const char *from, const char *to, int flags, scene_conversion *out, char *error,
-                       size_t error_bytes)
+int scene_file_convert(const char *from, const char *to, int flags, const scene_crop *crop, scene_conversion *out,
+                       char *error, size_t error_bytes)
 {
-    return scene_store_convert(from, to, flags, &command, out, error, error_bytes);
+    return scene_store_convert(from, to, flags, crop, &command, out, error, error_bytes);
 }

@@ -30,8 +30,8 @@ int scene_store_take(const char *path, int flags, const scene_caller *caller, co
                      size_t error_bytes);
 int scene_store_write(const char *path, const scene_file *scene, int flags, const char *note,
                       const scene_caller *caller, char *error, size_t error_bytes);
-int scene_store_convert(const char *from, const char *to, int flags, const scene_caller *caller, scene_conversion *out,
-                        char *error, size_t error_bytes);
+int scene_store_convert(const char *from, const char *to, int flags, const scene_crop *crop, const scene_caller *caller,
+                        scene_conversion *out, char *error, size_t error_bytes);
 
 /* Passes the remarks on a scene that was read to the caller. */
 void scene_store_remark(const scene_caller *caller, const char *path, const scene_remarks *remarks);

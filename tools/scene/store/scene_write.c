@@ -219,27 +219,43 @@ int scene_store_write(const char *path, const scene_file *scene, int flags, cons
 typedef struct conversion {
     const char *from, *to;
     int flags;
+    const scene_crop *crop;
     const scene_caller *caller;
     scene_conversion *out;
 } conversion;
 
-static int take_conversion(void *user, const scene_rows *rows, char *error, size_t error_bytes)
+static int convert_rows(const conversion *c, const scene_rows *rows, char *error, size_t error_bytes)
 {
-    const conversion *c = user;
     const int kept = rows->has_frame ? T3R_SCENE_COMMENTS | (rows->local ? T3R_SCENE_LOCAL : 0) : 0;
     scene_extent extent;
     char reason[256] = "";
     if (scene_extent_of(rows, &extent, reason, sizeof reason) != 0) {
         return t3r_reason(error, error_bytes, "%s: %s", c->from, reason);
     }
-    c->out->degree_read = rows->degree;
     return write_rows(c->to, rows, &extent, c->flags | kept, NULL, c->caller, c->out, error, error_bytes);
 }
 
-int scene_store_convert(const char *from, const char *to, int flags, const scene_caller *caller, scene_conversion *out,
-                        char *error, size_t error_bytes)
+static int take_conversion(void *user, const scene_rows *rows, char *error, size_t error_bytes)
+{
+    const conversion *c = user;
+    c->out->count_read = rows->count;
+    c->out->degree_read = rows->degree;
+    if (c->crop == NULL) {
+        return convert_rows(c, rows, error, error_bytes);
+    }
+    chosen_rows kept;
+    char reason[256] = "";
+    const int result = chosen_rows_cropped(rows, c->crop, &kept, reason, sizeof reason) == 0
+                           ? convert_rows(c, &kept.rows, error, error_bytes)
+                           : t3r_reason(error, error_bytes, "%s: %s", c->from, reason);
+    chosen_rows_free(&kept);
+    return result;
+}
+
+int scene_store_convert(const char *from, const char *to, int flags, const scene_crop *crop, const scene_caller *caller,
+                        scene_conversion *out, char *error, size_t error_bytes)
 {
     *out = (scene_conversion){0};
-    conversion to_do = {.from = from, .to = to, .flags = flags, .caller = caller, .out = out};
+    conversion to_do = {.from = from, .to = to, .flags = flags, .crop = crop, .caller = caller, .out = out};
     return scene_store_take(from, flags, caller, &(scene_sink){take_conversion, &to_do}, error, error_bytes);
 }

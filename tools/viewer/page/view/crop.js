@@ -63,7 +63,23 @@ function showLimits() {
   crop.texts[3].textContent = `from ${faintest.value} %`;
 }
 
+/* Returns the command that cuts the same part out of the file, whose numbers it does not round. A bound lies half a step
+ * beyond the place at which the page cuts, so that places which the page rounds to it are kept as well. */
+function cropCommand() {
+  const step = sceneUnit / 2 ** 20, digits = Math.max(0, Math.ceil(1 - Math.log10(step)));
+  const bound = (axis, end) => {
+    const at = Number(crop.sliders[axis][end].value);
+    return at === end * STEPS ? "" : (inWorld(axis, crop.table[axis][at]) + (end - .5) * step).toFixed(digits);
+  };
+  const box = [0, 1].map((end) => AXES.map((_, axis) => bound(axis, end)).join(",")).join(",");
+  const least = Number(faintest.value) / 100, kept = fileOfScene().replace(/(\.\w+)?$/, "-kept.ply");
+  return `trim3r convert ${quoted(fileOfScene())}${box === ",,,,," ? "" : ` --crop=${box}`}` +
+    `${least > 0 ? ` --min-opacity ${least}` : ""} -o ${quoted(kept)}`;
+}
+
 function showKept(kept, whole) {
+  const isOfFile = data.file && chosen("source") === "file";
+  $("crop-command").textContent = isOfFile && crop.table && isCropped() && kept > 0 ? cropCommand() : "";
   $("kept").textContent = kept === whole ? `All ${count(whole)} Gaussians are kept.` : `${count(kept)} of ${count(whole)} Gaussians are left.`;
   $("save").disabled = kept === 0;
   document.body.dataset.kept = kept;

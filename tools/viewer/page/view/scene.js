@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The scene: from the page's file, or built here within a budget. */
 const count = (n) => n.toLocaleString("en");
+/* Returns the name of the file that the scene came from. */
+const fileOfScene = () => data.title.replace(/ and .*/, "");
+/* Returns a name as a shell takes it. */
+const quoted = (name) => /^[\w.,+-]+$/.test(name) ? name : `'${name.replaceAll("'", "'\\''")}'`;
 let said = "", isUndrawn = false;
 function say(text, bad = false) {
   if (!bad) said = text;
