@@ -31,12 +31,17 @@ def every_command():
 
 
 def tables_fit():
-    """Tables have at most 80 characters, and eval shows more by --wide, or where rows need more to tell them apart."""
+    """Reports have at most 80 columns, and eval shows more by --wide, or where rows need more to tell them apart."""
     room()
     expect(0, "build", "room.mcap", "--keep", 10, "-o", "scene.ply")
     score = ["eval", "room.mcap", "--working", "32x32", "--keep", "20,5"]
     for line in (["--help"], ["info", "room.mcap", "room.mcap"], ["info", "scene.ply", "scene.ply"], score,
-                 ["plan", "--size", "640x480", "--gaussians", "1M"], ["plan", "--size", "96x96", "--arena", "1M"]):
+                 ["plan", "--size", "640x480", "--gaussians", "1M"], ["plan", "--size", "96x96", "--arena", "1M"],
+                 ["build", "room.mcap", "--keep", 10, "-o", "fits.ply"], ["scene", "room.mcap", "-o", "fits.ply"],
+                 ["render", "scene.ply", "room.mcap", "--view", 1, "-o", "fits.png"],
+                 ["render", "scene.ply", "--orbit", 3, "--size", "64x64", "-o", "fits.png"],
+                 ["convert", "scene.ply", "--min-opacity", 0.5, "-o", "fits.spz"], ["diff", "scene.ply", "scene.ply"],
+                 ["room", "--size", "64x64", "-o", "fits.mcap"]):
         text = expect(0, *line)
         check(max(map(len, text.splitlines())) <= 80, f"{line}: wider than 80: {text}")
     narrow, wide = expect(0, *score).splitlines()[0].split(), expect(0, *score, "--wide").splitlines()[0].split()

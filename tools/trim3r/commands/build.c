@@ -316,7 +316,7 @@ static void print_text(const build_options *o, const reconstruction_account *acc
         poses_print(account->context, account->context_count, f->estimated);
     }
     aligned_poses_print(account, f->aligned);
-    printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes; %s\n",
+    printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points, arena %zu bytes\n%s\n",
            o->output != NULL ? o->output : o->colmap, r->scene.count, account->valid_points, account->arena_bytes,
            work_times_text(times, text));
     if (refines(o) && o->settings.config.fit_passes) {

@@ -415,7 +415,7 @@ static int render_all(const render_options *o, scene_file *scene, const viewpoin
         json_print(root);
     } else if (code == CLI_OK) {
         char text[WORK_TIMES_BYTES];
-        printf("%s: %" PRIu32 " view%s of %" PRIu32 " Gaussians, %" PRIu32 " pass%s; %s%s\n", o->output, views->count,
+        printf("%s: %" PRIu32 " view%s of %" PRIu32 " Gaussians, %" PRIu32 " pass%s\n%s%s\n", o->output, views->count,
                views->count == 1 ? "" : "s", r.scene.count, t3r_render_passes(r.runtime),
                t3r_render_passes(r.runtime) == 1 ? "" : "es", work_times_text(times, text),
                views->count == 1 ? "" : " a view");

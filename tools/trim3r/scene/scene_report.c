@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/tables/json_output.h"
+#include "cli/text/wrapped.h"
 #include "import/estimation/poses_output.h"
 
 #define EMPTY_MOST 0.1     /* of a picture, that goes without saying */
@@ -85,36 +86,50 @@ static const char *trouble_of(const drawn_picture *p, char text[256])
 
 /* ---- lines ------------------------------------------------------------------------------------------------------ */
 
-static void print_input(const scene_report *r)
+typedef void line_text(FILE *out, const scene_report *r);
+
+/* Prints a label and a text in lines that fit. */
+static void print_line(const scene_report *r, const char *label, line_text *write)
 {
-    printf("%s: %s, %" PRIu32 " frames of %" PRIu32 "x%" PRIu32, r->input, r->source.kind, r->source.frames,
-           r->source.width, r->source.height);
-    if (r->left_out > 0) {
-        printf(", of which %" PRIu32 " cannot be used", r->left_out);
+    char *text = NULL;
+    size_t bytes;
+    FILE *out = open_memstream(&text, &bytes);
+    if (out != NULL) {
+        write(out, r);
+        fclose(out);
     }
-    printf("; worked on at %" PRIu32 "x%" PRIu32, r->width, r->height);
-    printf("%s%s\n", r->focal[0] != '\0' ? "; focal length " : "", r->focal);
+    wrapped_print(stdout, 2, label, text != NULL ? text : "out of memory");
+    free(text);
 }
 
-static void print_poses(const scene_report *r)
+static void write_input(FILE *out, const scene_report *r)
+{
+    fprintf(out, "%s, %" PRIu32 " frames of %" PRIu32 "x%" PRIu32, r->source.kind, r->source.frames, r->source.width,
+            r->source.height);
+    if (r->left_out > 0) {
+        fprintf(out, ", of which %" PRIu32 " cannot be used", r->left_out);
+    }
+    fprintf(out, "; worked on at %" PRIu32 "x%" PRIu32, r->width, r->height);
+    fprintf(out, "%s%s", r->focal[0] != '\0' ? "; focal length " : "", r->focal);
+}
+
+static void write_poses(FILE *out, const scene_report *r)
 {
     picture_name name, other;
-    printf("poses: %s, of %" PRIu32 " of %" PRIu32 " frames", r->estimated ? "estimated" : "given", r->posed,
-           r->frames);
+    fprintf(out, "%s, of %" PRIu32 " of %" PRIu32 " frames", r->estimated ? "estimated" : "given", r->posed, r->frames);
     uint32_t named = 0;
     for (uint32_t i = 0; i < r->name_count && r->accounts != NULL; i++) {
         const pose_account *a = &r->accounts[i];
         if (a->why[0] != '\0' && named++ < NAMED_MOST) {
-            printf("; not %s: %s", name_of(r, i, name), a->why);
+            fprintf(out, "; not %s: %s", name_of(r, i, name), a->why);
         } else if (is_unsure(a) && named++ < NAMED_MOST) {
-            printf("; %s is weakly joined to %s (%" PRIu32 " features agree, direction +-%.0f degrees)",
-                   name_of(r, i, name), name_of(r, a->from, other), a->matches, a->direction_degrees);
+            fprintf(out, "; %s is weakly joined to %s (%" PRIu32 " features agree, direction +-%.0f degrees)",
+                    name_of(r, i, name), name_of(r, a->from, other), a->matches, a->direction_degrees);
         }
     }
     if (named > NAMED_MOST) {
-        printf("; and %" PRIu32 " more such frames", named - NAMED_MOST);
+        fprintf(out, "; and %" PRIu32 " more such frames", named - NAMED_MOST);
     }
-    putchar('\n');
 }
 
 static uint32_t used_count(const scene_report *r)
@@ -126,8 +141,8 @@ static uint32_t used_count(const scene_report *r)
     return used;
 }
 
-/* Prints "a.jpg 27.1, b.jpg 20.4 (blurred)" for the used pictures, or for the others. */
-static void print_drawn(const scene_report *r, bool used)
+/* Writes "a.jpg 27.1, b.jpg 20.4 (blurred)" for the used pictures, or for the others. */
+static void write_some(FILE *out, const scene_report *r, bool used)
 {
     const char *between = "";
     for (uint32_t i = 0; i < r->drawn_count; i++) {
@@ -136,26 +151,33 @@ static void print_drawn(const scene_report *r, bool used)
             char trouble[256];
             picture_name name;
             trouble_of(p, trouble);
-            printf("%s%s %.1f%s%s%s", between, name_of(r, p->frame, name), p->psnr, trouble[0] != '\0' ? " (" : "",
-                   trouble[0] != '\0' ? trouble + 2 : "", trouble[0] != '\0' ? ")" : "");
+            fprintf(out, "%s%s %.1f%s%s%s", between, name_of(r, p->frame, name), p->psnr,
+                    trouble[0] != '\0' ? " (" : "", trouble[0] != '\0' ? trouble + 2 : "",
+                    trouble[0] != '\0' ? ")" : "");
             between = ", ";
         }
     }
 }
 
+static void write_drawn(FILE *out, const scene_report *r)
+{
+    write_some(out, r, true);
+    if (used_count(r) < r->drawn_count) {
+        fputs("; not chosen: ", out);
+        write_some(out, r, false);
+    }
+}
+
 void scene_report_print(const scene_report *r)
 {
-    print_input(r);
-    print_poses(r);
+    char input[256];
+    snprintf(input, sizeof input, "%s: ", r->input);
+    print_line(r, input, write_input);
+    print_line(r, "poses: ", write_poses);
     printf("frames: %" PRIu32 " of %" PRIu32 " chosen; depth by %s\n", used_count(r), r->frames, r->depth);
-    printf("drawn, dB: ");
-    print_drawn(r, true);
-    if (used_count(r) < r->drawn_count) {
-        printf("; not chosen: ");
-        print_drawn(r, false);
-    }
-    printf("\n%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points; %.1f s\n", r->output, r->gaussians,
-           r->valid_points, r->seconds);
+    print_line(r, "drawn, dB: ", write_drawn);
+    printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points; %.1f s\n", r->output, r->gaussians, r->valid_points,
+           r->seconds);
 }
 
 /* ---- JSON ------------------------------------------------------------------------------------------------------- */
