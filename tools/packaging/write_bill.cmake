@@ -54,6 +54,17 @@ foreach(head ${HEADS})
   t3r_relation(Package CONTAINS SPDXRef-head-${name})
 endforeach()
 
+# What the page of `trim3r view` holds
+if(COMPONENT STREQUAL "program")
+  file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/../viewer/page/fzstd/fzstd.js first LIMIT_COUNT 1)
+  string(REGEX MATCH "[0-9]+[.][0-9]+[.][0-9]+" version "${first}")
+  t3r_package(fzstd fzstd ${version} "\"licenseConcluded\": \"MIT\"" "\"licenseDeclared\": \"MIT\""
+    "\"copyrightText\": \"Copyright (c) 2020 Arjun Barrett\""
+    "\"externalRefs\": [{\"referenceCategory\": \"PACKAGE-MANAGER\", \"referenceType\": \"purl\",\
+ \"referenceLocator\": \"pkg:npm/fzstd@${version}\"}]")
+  t3r_relation(Package CONTAINS SPDXRef-fzstd)
+endif()
+
 # Libraries that the files load
 set(loaded)
 foreach(file ${FILES})

@@ -86,7 +86,7 @@ string(REPLACE ";" "|" script "${scripts}")
 set(names viewer_html viewer_css viewer_js viewer_follow_js viewer_worker_js viewer_files_js viewer_wasm
           viewer_threads_wasm viewer_files_wasm)
 set(files ${viewer}/page/view.html ${viewer}/page/view.css ${script} ${viewer}/page/follow.js ${viewer}/page/worker.js
-          ${viewer}/page/files_worker.js)
+          "${viewer}/page/fzstd/fzstd.js|${viewer}/page/files_worker.js")
 foreach(name viewer viewer_threads viewer_files)
   list(APPEND files ${CMAKE_CURRENT_BINARY_DIR}/${name}.wasm)
 endforeach()

@@ -22,6 +22,14 @@ int spz_check_old(const spz_layout *layout, char *error, size_t error_bytes);
 size_t spz_whole_bytes(const spz_layout *layout);
 /* Finds the attributes of versions 1 to 3 in the bytes after the header. */
 void spz_find_streams(spz_file *file, const uint8_t *bytes);
+/* A stream of version 4 as it lies in the file. */
+typedef struct spz_stream {
+    size_t at, bytes;
+} spz_stream;
+/* Finds the streams that are needed, and the axes, in the whole bytes of version 4. Returns the number of streams; -1
+ * with the reason in error[]. */
+int spz_find_packed(const uint8_t *bytes, size_t count, spz_file *file, spz_stream streams[SPZ_STREAMS], char *error,
+                    size_t error_bytes);
 /* Hands the rows to the sink, and returns what it returns. */
 int spz_take_rows(spz_file *file, const scene_sink *sink, char *error, size_t error_bytes);
 /* Parses the attributes of an opened file of versions 1 to 3, which lie bare in it. */

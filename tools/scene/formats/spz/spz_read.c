@@ -177,3 +177,50 @@ int spz_parse_bare(const uint8_t *bytes, size_t count, spz_file *file, const sce
     spz_find_streams(file, bytes + SPZ_OLD_HEADER_BYTES);
     return spz_take_rows(file, sink, error, error_bytes);
 }
+
+/* Reads the extensions between the header and the table: of those known, the axes change what is read. */
+static int read_extensions(const uint8_t *bytes, uint64_t end, spz_file *file, char *error, size_t error_bytes)
+{
+    uint64_t at = SPZ_HEADER_BYTES;
+    while ((file->layout.flags & SPZ_FLAG_EXTENSIONS) != 0 && at < end) {
+        const uint64_t size = end - at < SPZ_EXTENSION_BYTES ? UINT32_MAX : t3r_load_le32(bytes + at + 4);
+        if (size > end - at - SPZ_EXTENSION_BYTES) {
+            return t3r_reason(error, error_bytes, "byte %" PRIu64 ": an extension reaches beyond the others", at);
+        }
+        if (t3r_load_le32(bytes + at) == SPZ_EXTENSION_AXES && size >= 4) {
+            const uint32_t axes = t3r_load_le32(bytes + at + SPZ_EXTENSION_BYTES);
+            if (axes > SCENE_AXES_LAST) {
+                return t3r_reason(error, error_bytes, "byte %" PRIu64 ": axes %" PRIu32 "; 1 to %d are known", at, axes,
+                                  SCENE_AXES_LAST);
+            }
+            file->axes = axes > 0 ? (scene_axes)axes : SCENE_AXES_RUB;
+        }
+        at += SPZ_EXTENSION_BYTES + size;
+    }
+    return 0;
+}
+
+int spz_find_packed(const uint8_t *bytes, size_t count, spz_file *file, spz_stream streams[SPZ_STREAMS], char *error,
+                    size_t error_bytes)
+{
+    const uint64_t table = t3r_load_le32(bytes + SPZ_TABLE_AT);
+    const uint32_t listed = bytes[SPZ_STREAMS_AT];
+    const uint32_t needed = file->layout.degree > 0 ? SPZ_STREAMS : SPZ_HARMONICS;
+    uint64_t at = table + (uint64_t)listed * SPZ_ENTRY_BYTES;
+    if (listed < needed || table < SPZ_HEADER_BYTES || at > count) {
+        return t3r_reason(error, error_bytes, "byte %d: %" PRIu32 " streams, their table at byte %" PRIu64,
+                          SPZ_STREAMS_AT, listed, table);
+    }
+    if (read_extensions(bytes, table, file, error, error_bytes) != 0) {
+        return -1;
+    }
+    for (uint32_t i = 0; i < needed; i++) {
+        const uint64_t packed = t3r_load_le64(bytes + table + i * SPZ_ENTRY_BYTES);
+        if (packed > count - at) {
+            return t3r_reason(error, error_bytes, "byte %zu: cut off in stream %" PRIu32, count, i);
+        }
+        streams[i] = (spz_stream){(size_t)at, (size_t)packed};
+        at += packed;
+    }
+    return (int)needed;
+}

@@ -10,59 +10,23 @@
 #include "host/reason.h"
 #include "scene/formats/spz/spz_file.h"
 
-/* Reads the extensions between the header and the table: of those known, the axes change what is read. */
-static int read_extensions(const uint8_t *bytes, uint64_t end, spz_file *file, char *error, size_t error_bytes)
-{
-    uint64_t at = SPZ_HEADER_BYTES;
-    while ((file->layout.flags & SPZ_FLAG_EXTENSIONS) != 0 && at < end) {
-        const uint64_t size = end - at < SPZ_EXTENSION_BYTES ? UINT32_MAX : t3r_load_le32(bytes + at + 4);
-        if (size > end - at - SPZ_EXTENSION_BYTES) {
-            return t3r_reason(error, error_bytes, "byte %" PRIu64 ": an extension reaches beyond the others", at);
-        }
-        if (t3r_load_le32(bytes + at) == SPZ_EXTENSION_AXES && size >= 4) {
-            const uint32_t axes = t3r_load_le32(bytes + at + SPZ_EXTENSION_BYTES);
-            if (axes > SCENE_AXES_LAST) {
-                return t3r_reason(error, error_bytes, "byte %" PRIu64 ": axes %" PRIu32 "; 1 to %d are known", at, axes,
-                                  SCENE_AXES_LAST);
-            }
-            file->axes = axes > 0 ? (scene_axes)axes : SCENE_AXES_RUB;
-        }
-        at += SPZ_EXTENSION_BYTES + size;
-    }
-    return 0;
-}
-
 /* Decompresses the streams one after the other. */
 static int unpack_streams(const uint8_t *bytes, size_t count, spz_file *file, uint8_t *whole, char *error,
                           size_t error_bytes)
 {
-    const uint64_t table = t3r_load_le32(bytes + SPZ_TABLE_AT);
-    const uint32_t streams = bytes[SPZ_STREAMS_AT];
-    const uint32_t needed = file->layout.degree > 0 ? SPZ_STREAMS : SPZ_HARMONICS;
-    uint64_t at = table + (uint64_t)streams * SPZ_ENTRY_BYTES;
-    if (streams < needed || table < SPZ_HEADER_BYTES || at > count) {
-        return t3r_reason(error, error_bytes, "byte %d: %" PRIu32 " streams, their table at byte %" PRIu64,
-                          SPZ_STREAMS_AT, streams, table);
-    }
-    if (read_extensions(bytes, table, file, error, error_bytes) != 0) {
-        return -1;
-    }
-    for (uint32_t i = 0; i < needed; i++) {
-        const uint64_t packed = t3r_load_le64(bytes + table + i * SPZ_ENTRY_BYTES);
-        const size_t size = (size_t)file->layout.count * spz_stream_bytes(&file->layout, (int)i);
-        if (packed > count - at) {
-            return t3r_reason(error, error_bytes, "byte %zu: cut off in stream %" PRIu32, count, i);
-        }
-        const size_t made = ZSTD_decompress(whole, size, bytes + at, (size_t)packed);
+    spz_stream streams[SPZ_STREAMS];
+    const int needed = spz_find_packed(bytes, count, file, streams, error, error_bytes);
+    for (int i = 0; i < needed; i++) {
+        const size_t size = (size_t)file->layout.count * spz_stream_bytes(&file->layout, i);
+        const size_t made = ZSTD_decompress(whole, size, bytes + streams[i].at, streams[i].bytes);
         if (ZSTD_isError(made) || made != size) {
-            return t3r_reason(error, error_bytes, "byte %" PRIu64 ": stream %" PRIu32 " does not unpack to %zu bytes",
-                              at, i, size);
+            return t3r_reason(error, error_bytes, "byte %zu: stream %d does not unpack to %zu bytes", streams[i].at, i,
+                              size);
         }
         file->streams[i] = whole;
         whole += size;
-        at += packed;
     }
-    return 0;
+    return needed < 0 ? -1 : 0;
 }
 
 int spz_parse(const uint8_t *bytes, size_t count, const scene_sink *sink, char *error, size_t error_bytes)

@@ -16,9 +16,8 @@ function withFile(request) {
 
 /* Returns the command that makes a file which the page reads or shows; "" where there is none. */
 function remedyFor(name) {
-  const quoted = /^[\w.,+-]+$/.test(name) ? name : `'${name.replaceAll("'", "'\\''")}'`, stem = quoted.replace(/\.[^.]*$/, "");
-  if (/\.mcap$/i.test(name)) return ` A recording is shown by: trim3r view ${quoted}`;
-  return /\.(sog|glb|spz)$/i.test(name) ? ` Convert it: trim3r convert ${quoted} -o ${stem}.ply${quoted.endsWith("'") ? "'" : ""}` : "";
+  if (/\.mcap$/i.test(name)) return ` A recording is shown by: trim3r view ${quoted(name)}`;
+  return /\.(sog|glb)$/i.test(name) ? ` Convert it: trim3r convert ${quoted(name)} -o ${quoted(name.replace(/\.[^.]*$/, ".ply"))}` : "";
 }
 
 async function openFile(file) {
@@ -64,7 +63,7 @@ addEventListener("drop", (event) => {
 
 $("save").onclick = () => drawer.ask("give");
 done.give = async ({ scene }) => {
-  const name = `${data.title.replace(/ and .*/, "").replace(/\.\w+$/, "")}-kept.ply`;
+  const name = fileOfScene().replace(/(\.\w+)?$/, "-kept.ply");
   try {
     const { bytes, text } = await withFile({ kind: "write", name, scene });
     const link = document.createElement("a");
