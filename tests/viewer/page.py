@@ -346,12 +346,17 @@ def opens(page, scene, folder):
     """Files of other programs are read by the program's own readers; others are refused with the command that converts
     them."""
     native = json.loads(run(TRIM3R, "view", scene, "-o", f"{folder}/native.html", "--json").stdout)
-    packed, splat, spz = (f"{folder}/{name}" for name in ("packed.compressed.ply", "s.splat", "s.spz"))
-    for path in (packed, splat, spz):
+    packed, splat, spz, glb = (f"{folder}/{name}" for name in ("packed.compressed.ply", "s.splat", "s.spz", "s.glb"))
+    for path in (packed, splat, spz, glb):
         run(TRIM3R, "convert", scene, "-o", path)
-    for name in ("s.sog", "s.glb"):
-        with open(f"{folder}/{name}", "wb") as file:
-            file.write(b"?")
+    with open(f"{folder}/s.sog", "wb") as file:
+        file.write(b"?")
+    with open(glb, "rb") as file:
+        text = file.read()
+    with open(f"{folder}/odd.glb", "wb") as file:
+        file.write(text.replace(b'"meshes":[', b'"meshes":{', 1))
+    with open(f"{folder}/none.glb", "wb") as file:
+        file.write(text.replace(b"KHR_gaussian_splatting", b"KHR_gaussian_splattin_"))
     with open(f"{folder}/old.spz", "wb") as file:
         file.write(gzip.compress(old_spz(50)))
     with open(f"{folder}/cut.ply", "wb") as out, open(scene, "rb") as whole:
@@ -359,7 +364,8 @@ def opens(page, scene, folder):
     with open(f"{folder}/bomb.spz", "wb") as file:
         file.write(gzip.compress(bytes(160 << 20)))
     gaussians = native["gaussians"]
-    for path, wanted in ((scene, gaussians), (packed, gaussians), (splat, gaussians), (spz, gaussians), (f"{folder}/old.spz", 50)):
+    for path, wanted in ((scene, gaussians), (packed, gaussians), (splat, gaussians), (spz, gaussians), (glb, gaussians),
+                         (f"{folder}/old.spz", 50)):
         choose(page, path)
         name = os.path.basename(path)
         page.wait(f"document.title.startsWith({json.dumps(name)}) && document.body.dataset.gaussians === '{wanted}' && isStill()")
@@ -371,7 +377,8 @@ def opens(page, scene, folder):
             file.write(change)
     for path, words in ((f"{folder}/torn.spz", "cut off in stream 4"), (f"{folder}/lost.spz", "their table at byte 1073741824"),
                         (f"{folder}/broken.spz", "invalid zstd data"), (f"{folder}/vast.spz", "unpacks to more than"),
-                        (f"{folder}/s.sog", "trim3r convert s.sog -o s.ply"), (f"{folder}/s.glb", "trim3r convert s.glb -o s.ply"),
+                        (f"{folder}/s.sog", "trim3r convert s.sog -o s.ply"), (f"{folder}/odd.glb", "not JSON"),
+                        (f"{folder}/none.glb", "no primitive with"),
                         (f"{folder}/room.mcap", "trim3r view room.mcap"), (f"{folder}/cut.ply", "byte "),
                         (f"{folder}/bomb.spz", "unpacks to more than")):
         choose(page, path)

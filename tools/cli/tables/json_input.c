@@ -142,14 +142,3 @@ cJSON *json_parse_python(const char *text, size_t bytes, char *error, size_t err
     free(copy);
     return root;
 }
-
-int json_array(const cJSON *object, const char *name, const cJSON **array, char *error, size_t error_bytes)
-{
-    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
-    *array = NULL;
-    if (item != NULL && !cJSON_IsArray(item)) {
-        return t3r_reason(error, error_bytes, "%s: not an array", name);
-    }
-    *array = item;
-    return 0;
-}

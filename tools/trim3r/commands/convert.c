@@ -117,7 +117,7 @@ static const struct argp argp = {
            "Examples:\n"
            "  trim3r convert scene.ply -o scene.spz\n"
            "  trim3r convert theirs.compressed.ply -o theirs.ply\n"
-           "  trim3r convert theirs.ply --crop -1,,-1,1,0.5,3 --min-opacity 0.1 -o part.ply\n"
+           "  trim3r convert theirs.ply --crop=-1,,0,1,,2.5 -o part.ply\n"
            "  trim3r convert scene.ply --up z -o scene.splat",
     .children = children,
 };

@@ -86,7 +86,7 @@ function write({ name, scene }) {
 const answers = { read, write };
 onmessage = async ({ data }) => {
   try {
-    files = (await WebAssembly.instantiate(data.wasm, { wasi_snapshot_preview1: system })).instance.exports;
+    files = (await WebAssembly.instantiate(data.wasm, { wasi_snapshot_preview1: system, page: { json: placeJson } })).instance.exports;
     files._initialize();
     postMessage(await answers[data.kind](data));
   } catch (error) {
