@@ -179,7 +179,9 @@ def scene_of_photos():
             page = file.read()
         check('"my photos"' in page and "trim3r-scene-" not in page, "the page is not named after the photos")
     text = expect(0, "scene", "my photos", "--recording", "kept.mcap", "--size", "96x72", "--keep", "5%", "-o", "small.spz")
-    check(len(text.splitlines()) == 5 and "photo 3.png" in text, f"not five lines: {text}")
+    lines = text.splitlines()
+    check(sum(not line.startswith("  ") for line in lines) == 5 and max(map(len, lines)) <= 80 and "photo 3.png" in text,
+          f"not five lines: {text}")
     check(read("kept.mcap")["image"][0].shape == (72, 96, 3), "--size")
 
 
@@ -197,6 +199,40 @@ def bag_of_the_room(path, k, kind):
     bag.write(path)
 
 
+def posed(folder, pictures, **lens):
+    """Writes a folder of the room's pictures, or of others of the same cameras, with their poses."""
+    os.makedirs(folder)
+    frames = []
+    for i, rgb in enumerate(pictures):
+        with open(f"{folder}/{i}.png", "wb") as file:
+            file.write(picture(rgb))
+        frames.append({"file_path": f"{i}.png", "transform_matrix": (ROOM["pose"][i] @ np.diag([1, -1, -1, 1])).tolist()})
+    k = ROOM["camera_info"][0]
+    with open(f"{folder}/transforms.json", "w", encoding="utf-8") as file:
+        json.dump({"frames": frames, "fl_x": k[0, 0], "cx": k[0, 2] + 0.5, "cy": k[1, 2] + 0.5, **lens}, file)
+
+
+def bent(rgb, k1):
+    """Returns the picture that a lens with distortion takes of the same view, by nearest pixels."""
+    k = ROOM["camera_info"][0]
+    y, x = np.mgrid[:HEIGHT, :WIDTH]
+    seen = np.stack([(x - k[0, 2]) / k[0, 0], (y - k[1, 2]) / k[1, 1]])
+    far, straight = np.hypot(*seen), np.hypot(*seen)
+    for _ in range(30):
+        straight = far / (1 + k1 * straight ** 2)
+    x, y = (seen * (straight / np.maximum(far, 1e-9))) * k[[0, 1], [0, 1]][:, None, None] + k[:2, 2][:, None, None]
+    return rgb[np.rint(y).astype(int), np.rint(x).astype(int)]
+
+
+def scene_by_a_lens():
+    """A lens with distortion leaves pixels at the border without a picture: they do not count where a scene is compared."""
+    k1 = 0.3
+    posed("bent", [bent(rgb, k1) for rgb in ROOM["image"]], k1=k1)
+    scores = {name: [p["psnr"] for p in expect_json("scene", name, "-o", f"{name}.ply")["pictures"] if p["chosen"]]
+              for name in ("posed", "bent")}
+    check(min(scores["bent"]) > min(scores["posed"]) - 4, f"drawn: {scores}")
+
+
 def scene_of_others():
     # a recording with poses and depth is not imported
     lines = pasted("room.mcap", "-o", "sensed.ply")
@@ -205,21 +241,13 @@ def scene_of_others():
     check(report["depth"] == "sensor" and not report["estimated"] and
           all(p["psnr"] > 25 for p in report["pictures"] if p["chosen"]), f"a recording: {report}")
     # a folder of a known kind
-    os.makedirs("posed")
-    frames = []
-    for i, rgb in enumerate(ROOM["image"]):
-        with open(f"posed/{i}.png", "wb") as file:
-            file.write(picture(rgb))
-        frames.append({"file_path": f"{i}.png", "transform_matrix": (ROOM["pose"][i] @ np.diag([1, -1, -1, 1])).tolist()})
-    k = ROOM["camera_info"][0]
-    with open("posed/transforms.json", "w", encoding="utf-8") as file:
-        json.dump({"frames": frames, "fl_x": k[0, 0], "cx": k[0, 2] + 0.5, "cy": k[1, 2] + 0.5}, file)
+    posed("posed", ROOM["image"])
     report = expect_json("scene", "posed", "-o", "posed.ply")
     check(report["kind"] == "transforms.json" and report["depth"] == "stereo" and not report["estimated"], f"a folder: {report}")
     check("--poses" not in expect(0, "scene", "posed", "--dry-run", "-o", "posed.ply"), "given poses are estimated")
     # bags: poses of the camera, or of a body by transforms, and transforms that say nothing of where the camera is
     for name, kind in (("posed bag", ros.POSE), ("robot", ros.TF), ("still", None)):
-        bag_of_the_room(f"{name}.mcap", k, kind)
+        bag_of_the_room(f"{name}.mcap", ROOM["camera_info"][0], kind)
         lines = expect(0, "scene", f"{name}.mcap", "--dry-run", "-o", "bag.ply")
         check(("--poses estimate" in lines) == (kind is None), f"{name}: {lines}")
     report = expect_json("scene", "robot.mcap", "-o", "bag.ply")
@@ -248,5 +276,6 @@ with tempfile.TemporaryDirectory(prefix="trim3r-photos-") as folder:
     heic()
     scene_of_photos()
     scene_of_others()
+    scene_by_a_lens()
     os.chdir("/")
 done()

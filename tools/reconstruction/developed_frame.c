@@ -3,6 +3,7 @@
 
 #include <inttypes.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
@@ -38,4 +39,43 @@ int developed_frame(const t3r_recording *recording, const char *path, uint32_t i
     t3r_capture_frame frame;
     int code = recorded_frame_read(recording, path, index, &frame);
     return code == CLI_OK ? developed_capture(&frame, path, index, width, height, rgb, depth, camera) : code;
+}
+
+/* Develops a white picture with the frame's lens: what stays black is beyond it. */
+static int develop_white(const t3r_capture_frame *frame, const char *path, uint32_t index, uint32_t width,
+                         uint32_t height, uint8_t *shown)
+{
+    const size_t row = (size_t)frame->frame.width * 3, bytes = row * frame->frame.height;
+    uint8_t *white = malloc(bytes), *rgb = malloc((size_t)width * height * 3);
+    int code = CLI_OK;
+    if (white == NULL || rgb == NULL) {
+        code = cli_error(CLI_BAD_INPUT, "out of memory");
+    } else {
+        t3r_camera camera;
+        t3r_capture_frame blank = {.camera = frame->camera};
+        blank.frame = (t3r_frame){.format = T3R_PIXEL_RGB24,
+                                  .width = frame->frame.width,
+                                  .height = frame->frame.height,
+                                  .planes = {memset(white, 255, bytes)},
+                                  .stride_bytes = {(uint32_t)row}};
+        code = developed_capture(&blank, path, index, width, height, rgb, NULL, &camera);
+    }
+    for (size_t i = 0; code == CLI_OK && i < (size_t)width * height; i++) {
+        shown[i] = rgb[3 * i] != 0 ? 255 : 0;
+    }
+    free(rgb);
+    free(white);
+    return code;
+}
+
+int developed_shown(const t3r_recording *recording, const char *path, uint32_t index, uint32_t width, uint32_t height,
+                    uint8_t *shown)
+{
+    t3r_capture_frame frame;
+    int code = recorded_frame_read(recording, path, index, &frame);
+    if (code == CLI_OK && frame.camera.distortion == T3R_DISTORTION_NONE) {
+        memset(shown, 255, (size_t)width * height);
+        return CLI_OK;
+    }
+    return code == CLI_OK ? develop_white(&frame, path, index, width, height, shown) : code;
 }

@@ -17,7 +17,7 @@ typedef struct drawing {
     const t3r_recording *recording;
     const char *path;
     reconstruction *r;
-    uint8_t *rgb, *drawn;
+    uint8_t *rgb, *drawn, *shown;
     uint16_t *alpha;
 } drawing;
 
@@ -33,7 +33,8 @@ static int draw(const drawing *d, const t3r_camera *camera, drawn_picture *out)
                                .alpha_q15 = d->alpha,
                                .alpha_stride_bytes = width * 2};
     t3r_camera recorded;
-    const int code = developed_frame(d->recording, d->path, out->frame, width, height, d->rgb, NULL, &recorded);
+    int code = developed_frame(d->recording, d->path, out->frame, width, height, d->rgb, NULL, &recorded);
+    code = code == CLI_OK ? developed_shown(d->recording, d->path, out->frame, width, height, d->shown) : code;
     if (code != CLI_OK) {
         return code;
     }
@@ -41,12 +42,13 @@ static int draw(const drawing *d, const t3r_camera *camera, drawn_picture *out)
     if (status != T3R_OK) {
         return reconstruction_error(status, d->path, &d->r->config, d->r->arena_bytes);
     }
-    uint32_t empty = 0;
+    uint32_t empty = 0, shown = 0;
     for (size_t i = 0; i < pixels; i++) {
-        empty += d->alpha[i] < ALPHA_HALF;
+        shown += d->shown[i] != 0;
+        empty += d->shown[i] != 0 && d->alpha[i] < ALPHA_HALF;
     }
-    out->psnr = metric_psnr(d->rgb, d->drawn, NULL, width, height);
-    out->empty = (double)empty / (double)pixels;
+    out->psnr = metric_psnr(d->rgb, d->drawn, d->shown, width, height);
+    out->empty = (double)empty / (double)shown;
     return CLI_OK;
 }
 
@@ -113,12 +115,13 @@ int drawn_pictures(const t3r_recording *recording, const char *path, reconstruct
                    const reconstruction_account *account, drawn_picture pictures[DRAWN_MOST], uint32_t *count)
 {
     const size_t pixels = (size_t)r->config.width * r->config.height;
-    drawing d = {recording, path, r, malloc(3 * pixels), malloc(3 * pixels), malloc(2 * pixels)};
+    drawing d = {recording, path, r, malloc(3 * pixels), malloc(3 * pixels), malloc(pixels), malloc(2 * pixels)};
     const bool counted = r->uncounted;
     *count = 0;
     r->uncounted = true;
-    int code = d.rgb != NULL && d.drawn != NULL && d.alpha != NULL ? draw_context(&d, account, pictures, count)
-                                                                   : cli_error(CLI_BAD_INPUT, "out of memory");
+    int code = d.rgb != NULL && d.drawn != NULL && d.shown != NULL && d.alpha != NULL
+                   ? draw_context(&d, account, pictures, count)
+                   : cli_error(CLI_BAD_INPUT, "out of memory");
     if (code == CLI_OK) {
         draw_others(&d, pictures, count);
         mark_blurred(&d, pictures, *count);
@@ -126,6 +129,7 @@ int drawn_pictures(const t3r_recording *recording, const char *path, reconstruct
     r->uncounted = counted;
     cli_progress_end();
     free(d.alpha);
+    free(d.shown);
     free(d.drawn);
     free(d.rgb);
     return code;
