@@ -295,7 +295,7 @@ static t3r_status append_sketch(uint32_t drawn, const seen_from *from)
         sketch_widen(sample, drawn, &g);
         status = append(module.sketched.runtime, index, &g, from);
     }
-    module.sketched.drawn = drawn;
+    module.sketched.drawn = status == T3R_OK ? drawn : 0;
     return status;
 }
 
