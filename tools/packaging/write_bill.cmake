@@ -56,7 +56,7 @@ endforeach()
 
 # What the page of `trim3r view` holds
 if(COMPONENT STREQUAL "program")
-  file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/../viewer/page/fzstd/fzstd.js first LIMIT_COUNT 1)
+  file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/../viewer/page/fzstd/fzstd.js first REGEX "fzstd [0-9]" LIMIT_COUNT 1)
   string(REGEX MATCH "[0-9]+[.][0-9]+[.][0-9]+" version "${first}")
   t3r_package(fzstd fzstd ${version} "\"licenseConcluded\": \"MIT\"" "\"licenseDeclared\": \"MIT\""
     "\"copyrightText\": \"Copyright (c) 2020 Arjun Barrett\""

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* fzstd 0.1.1 of npm: umd/index.js, unchanged but for this comment. It unpacks Zstandard.
  *
  * MIT License
