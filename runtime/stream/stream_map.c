@@ -202,21 +202,28 @@ t3r_map_cut t3r_map_compete(const t3r_map *map, const t3r_view *view, const t3r_
     return (t3r_map_cut){upper << 8 | lower, ties, more_points, points + more_points, gaussians + ties};
 }
 
-/* Multiplies the width by 2^by. */
-static void scale_width(t3r_gaussian *g, int32_t by_q10)
+/* Multiplies the width by the scale, below 2^32. */
+static void scale_width(t3r_gaussian *g, int64_t scale_q24)
 {
-    const int64_t scale_q16 = t3r_exp2_q16(t3r_clamp32(by_q10, -SCALE_MOST_Q10, SCALE_MOST_Q10) * 64);
     int64_t entry[9];
     for (int i = 0; i < 9; i++) {
-        entry[i] = g->factor[i] * scale_q16;
+        entry[i] = g->factor[i] * scale_q24;
     }
-    t3r_pack_factor(entry, 16 - g->factor_exponent, g);
+    t3r_pack_factor(entry, 24 - g->factor_exponent, g);
+}
+
+/* Returns the spacing of a density in pixels, Q16: below 2^21. */
+static uint32_t spacing_q16(int32_t density_q10)
+{
+    return t3r_exp2_q16(-t3r_clamp32(density_q10, T3R_LEAST_DENSITY_Q10, 0) * 32);
 }
 
 void t3r_map_set_density(t3r_gaussian *g, t3r_map_record *record, int32_t density_q10)
 {
     density_q10 = t3r_clamp32(density_q10, T3R_LEAST_DENSITY_Q10, 0);
-    scale_width(g, (record->density_q10 - density_q10) / 2);
+    /* by a quotient of spacings, so that the width returns when the density does */
+    const uint32_t before_q16 = spacing_q16(record->density_q10), now_q16 = spacing_q16(density_q10);
+    scale_width(g, (((int64_t)now_q16 << 24) + before_q16 / 2) / before_q16);
     record->density_q10 = (int16_t)density_q10;
 }
 
@@ -237,7 +244,8 @@ void t3r_map_hold_width(t3r_gaussian *g, const t3r_map_record *record)
     const int32_t width_q10 = log_width_q10(g, record);
     const int32_t held_q10 = t3r_clamp32(width_q10, -WIDTH_MOST_Q10, WIDTH_MOST_Q10);
     if (held_q10 != width_q10) {
-        scale_width(g, held_q10 - width_q10);
+        const int32_t by_q10 = t3r_clamp32(held_q10 - width_q10, -SCALE_MOST_Q10, SCALE_MOST_Q10);
+        scale_width(g, (int64_t)t3r_exp2_q16(by_q10 * 64) << 8);
     }
 }
 

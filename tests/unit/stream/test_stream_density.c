@@ -182,6 +182,35 @@ TEST(widths_follow_the_density)
     }
 }
 
+/* Widths depend on the noted density alone, whatever comes between. After 10,000 cycles of densities a Gaussian is as
+ * it was, but for the rounding of mantissas. */
+TEST(widths_return_with_the_density)
+{
+    uint64_t seed = 11;
+    for (int trial = 0; trial < 50; trial++) {
+        t3r_map_record record = {.density_q10 = (int16_t)unit_between(&seed, T3R_LEAST_DENSITY_Q10, 0)};
+        t3r_gaussian g = {.factor_exponent = -17};
+        for (int k = 0; k < 9; k++) {
+            g.factor[k] = (int16_t)(k == 0 ? 16384 : unit_between(&seed, -16384, 16384));
+        }
+        const t3r_gaussian before = g;
+        const int here_q10 = record.density_q10;
+        const int other_q10[3] = {(int)unit_between(&seed, T3R_LEAST_DENSITY_Q10, 0),
+                                  T3R_MAX(here_q10 - (int)unit_between(&seed, 1, 255), T3R_LEAST_DENSITY_Q10),
+                                  T3R_MIN(here_q10 + (int)unit_between(&seed, 1, 255), 0)};
+        for (int n = 0; n < 10000; n++) {
+            for (int k = 0; k < 3; k++) {
+                t3r_map_set_density(&g, &record, other_q10[k]);
+            }
+            t3r_map_set_density(&g, &record, here_q10);
+        }
+        for (int k = 0; k < 9; k++) {
+            const double now = g.factor[k] * exp2(g.factor_exponent - before.factor_exponent);
+            assert_true(fabs(now - before.factor[k]) <= 32);
+        }
+    }
+}
+
 /* Widths stay within a quarter of the spacing and four times it; those that refinement leaves alone do not change. */
 TEST(widths_are_bounded)
 {
