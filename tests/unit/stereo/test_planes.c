@@ -217,8 +217,8 @@ TEST(beyond_all_paths)
         s->colour[0][i] = s->colour[1][i] = s->colour[2][i] = i % 2 == 0 ? 1 : 255;
     }
     memcpy(plain->colour, s->colour, sizeof s->colour);
-    uint8_t *room = aligned_alloc(64, T3R_STEREO_FILL_BYTES(W, H));
-    t3r_stereo_fill(&plain->view, room);
+    uint8_t *room = aligned_alloc(64, T3R_SURROUNDINGS_BYTES_(W, H));
+    t3r_fill_surroundings(&plain->view, T3R_FILLED, room);
     assert_int_equal(plain->depth[W - 1], 0);
     fill(&s->view, NULL, NULL, work);
     assert_true(off(s) < 0.1);
