@@ -187,8 +187,10 @@ static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
         return T3R_OK;
     }
     rt->analysed &= rt->config.keep_analysis; /* otherwise refinement overwrites labels and clusters */
-    rt->passes = rt->config.fit_passes ? t3r_fitted_passes(rt, views, rt->build.refine) : rt->build.refine;
-    t3r_status status = t3r_refine(rt, views, rt->passes);
+    const t3r_passes passes =
+        rt->config.fit_passes ? t3r_fitted_passes(rt, views, rt->build.refine) : (t3r_passes){rt->build.refine, 0};
+    rt->passes = passes.count;
+    t3r_status status = t3r_refine(rt, views, passes);
     if (status == T3R_OK) {
         t3r_hash_scene(rt, T3R_STAGE_REFINE);
     }

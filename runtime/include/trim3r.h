@@ -737,8 +737,8 @@ t3r_status t3r_render(t3r_runtime *rt, const t3r_camera *camera, const t3r_targe
  */
 uint32_t t3r_render_passes(const t3r_runtime *rt);
 
-/* Returns the number of refinement passes that the last build took, 0..`refine`. 0 without a runtime, before a build,
- * and with a stream. */
+/* Returns the number of refinement passes that the last build took: at most `refine`, or 5/4 of it where passes
+ * compare a part of the pixels. 0 without a runtime, before a build, and with a stream. */
 uint32_t t3r_refinement_passes(const t3r_runtime *rt);
 
 /* Returns the camera of context view `view`, at the working size and without distortion, as the last analysis placed

@@ -58,10 +58,13 @@
       "working memory of a learned head in bytes a column of the view; 0 = none, for builds by other heads")           \
     X(refine, number, 0, T3R_MAX_REFINE, T3R_DEFAULT_REFINE, REFINEMENT, 1, BUILD, "refine",                           \
       "passes of refinement on the context views, at most where they are fitted")                                      \
-    /* 1 = `refine` is an upper bound, and t3r_refinement_passes() returns the number taken. A stream takes at most    \
-     * T3R_STREAM_REFINE a keyframe. 0 = every build and keyframe takes all of them. */                                \
+    /* 1 = `refine` is an upper bound, and t3r_refinement_passes() returns the number taken. Where neighbouring pixels \
+     * share what views disagree about, as in most recordings, and without `structural`, 5/4 as many passes replace    \
+     * them; all but the last compare one pixel in 2 x 2. A stream takes at most T3R_STREAM_REFINE a keyframe. 0 =     \
+     * every build and keyframe takes all of them. */                                                                  \
     X(fit_passes, toggle, 0, 1, T3R_FEATURE_LOSS, LOSS, 1, BUILD, "fit-passes",                                        \
-      "fit the number of passes to the budget and the agreement of the views, at most --refine")                       \
+      "fit the passes to the budget and the agreement of the views: --refine at most, or 5/4 as many of one pixel in " \
+      "2 x 2")                                                                                                         \
     /* 1 = widths of splats fit the retained points of all views together: narrower where several views cover a        \
      * surface, wider where one does or where points are few. 0 = they fit the points of their own view, which         \
      * always holds for T3R_HEAD_LEARNED, a stream, a build with refinement and a head without adaptation. */          \

@@ -61,7 +61,7 @@ static uint32_t disagreement_as_given(t3r_runtime *rt, t3r_view *views)
     if (aligned) {
         stand(rt, views, true);
     }
-    const uint32_t found_q8 = t3r_disagreement_q8(views, rt->views, rt->frame.exponent, rt->gain_q14, 1, &pairs);
+    const uint32_t found_q8 = t3r_disagreement_q8(views, rt->views, rt->frame.exponent, rt->gain_q14, 1, &pairs, NULL);
     if (aligned) {
         stand(rt, views, false);
     }

@@ -4,11 +4,11 @@
 
 #if !T3R_FEATURE_LOSS
 
-uint32_t t3r_fitted_passes(t3r_runtime *rt, const t3r_view *views, uint32_t most)
+t3r_passes t3r_fitted_passes(t3r_runtime *rt, const t3r_view *views, uint32_t most)
 {
     (void)rt;
     (void)views;
-    return most;
+    return (t3r_passes){most, 0};
 }
 
 #endif

@@ -237,6 +237,7 @@ typedef struct slice_job {
     uint32_t idle_most;
     bool remembers;                 /* a stream that remembers keyframes */
     const t3r_structure *structure; /* one for each view, or NULL */
+    bool in_parts;                  /* the pass compares a part of the pixels */
 } slice_job;
 
 static void begin_chunk(void *context, uint32_t index, uint32_t worker)
@@ -310,11 +311,11 @@ typedef struct shown_view {
     t3r_lattice lattice;            /* pixels that are compared */
 } shown_view;
 
-/* Returns the pixels that a pass compares: with a stride of 2 each of the four lattices in turn. */
-static t3r_lattice lattice_of(const t3r_runtime *rt, uint32_t turn)
+/* Returns the pixels that a pass compares: in parts each of the four lattices in turn. */
+static t3r_lattice lattice_of(const slice_job *slice, uint32_t turn)
 {
     static const t3r_lattice quarters[] = {{1, 0, 0}, {1, 1, 1}, {1, 1, 0}, {1, 0, 1}};
-    return rt->config.refine_stride > 1 ? quarters[turn % 4] : t3r_all_pixels;
+    return slice->in_parts ? quarters[turn % 4] : t3r_all_pixels;
 }
 
 /* Draws the view and adds to the sums of the slice. */
@@ -361,8 +362,8 @@ static t3r_status accumulate_remembered(const t3r_runtime *rt, slice_job *slice,
     const uint32_t most = t3r_remembered_a_pass(rt);
     for (uint32_t i = 0; i < most; i++, ++*done) {
         t3r_remembered *keyframe = t3r_remembered_at(rt, (turn * T3R_REMEMBERED_A_PASS + i) % rt->remembered);
-        const shown_view shown = {size, &keyframe->camera,       keyframe->gain_q14, t3r_remembered_pixels(keyframe),
-                                  NULL, lattice_of(rt, turn + i)};
+        const shown_view shown = {size, &keyframe->camera,          keyframe->gain_q14, t3r_remembered_pixels(keyframe),
+                                  NULL, lattice_of(slice, turn + i)};
         t3r_pose pose;
         if (!t3r_progress(rt, T3R_STAGE_REFINE, *done, total)) {
             return T3R_ERR_CANCELLED;
@@ -393,7 +394,7 @@ static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, cons
                                   rt->gain_q14[v],
                                   NULL,
                                   T3R_FEATURE_LOSS && slice->structure != NULL ? &slice->structure[v] : NULL,
-                                  lattice_of(rt, turn + v)};
+                                  lattice_of(slice, turn + v)};
         t3r_status status = accumulate(rt, slice, &shown, *done, total);
         if (status != T3R_OK) {
             return status;
@@ -436,7 +437,7 @@ static t3r_status find_structure(const t3r_runtime *rt, const t3r_refine_layout 
     return rt->views > 1 && pass < T3R_LEVELLED_PASSES ? measure_levels(rt, w, views, done, total, structure) : T3R_OK;
 }
 
-t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t passes, const t3r_map_record *records)
+t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes passes, const t3r_map_record *records)
 {
     const t3r_refine_layout w = t3r_refine_layout_of(rt);
     const t3r_workers workers = t3r_workers_of(rt);
@@ -448,11 +449,12 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t pas
                      .idle_most = rt->config.views,
                      .remembers = rt->config.remember > 0};
     const uint32_t slices = (rt->gaussians + w.slice - 1) / w.slice;
-    uint32_t total = passes * slices * (rt->views + t3r_remembered_a_pass(rt)), done = 0;
+    uint32_t total = passes.count * slices * (rt->views + t3r_remembered_a_pass(rt)), done = 0;
     t3r_structure structure[T3R_MAX_VIEWS] = {0};
     job.structure = T3R_FEATURE_LOSS && rt->config.structural && records == NULL ? structure : NULL;
     memset(w.corrections, 0, (size_t)rt->gaussians * sizeof *w.corrections);
-    for (uint32_t pass = 0; pass < passes; pass++) {
+    for (uint32_t pass = 0; pass < passes.count; pass++) {
+        job.in_parts = pass < passes.parts;
         if (T3R_FEATURE_LOSS && job.structure != NULL) {
             t3r_status status = find_structure(rt, &w, views, pass, done, total, structure);
             if (status != T3R_OK) {
@@ -462,7 +464,7 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t pas
         for (uint32_t first = 0; first < rt->gaussians; first += w.slice) {
             job.slice.first = first;
             job.slice.count = T3R_MIN(w.slice, rt->gaussians - first);
-            t3r_status status = accumulate_views(rt, &job, views, rt->keyframes * passes + pass, &done, total);
+            t3r_status status = accumulate_views(rt, &job, views, rt->keyframes * passes.count + pass, &done, total);
             if (status != T3R_OK) {
                 return status;
             }
@@ -475,7 +477,7 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t pas
     return T3R_OK;
 }
 
-t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, uint32_t passes)
+t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, t3r_passes passes)
 {
     return t3r_refine_scene(rt, views, passes, NULL);
 }

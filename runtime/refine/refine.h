@@ -13,12 +13,18 @@
 /* Applies a correction to a Gaussian. */
 void t3r_refine_apply(const t3r_correction *correction, t3r_gaussian *gaussian);
 
-/* Runs `passes` passes over the scene in the arena. T3R_ERR_CANCELLED leaves the scene after the last whole pass. */
-t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, uint32_t passes);
+/* The passes of a refinement. The first `parts` of `count` compare one pixel in 2 x 2, another one in each pass and
+ * view; the others compare every pixel. parts <= count. */
+typedef struct t3r_passes {
+    uint32_t count, parts;
+} t3r_passes;
+
+/* Refines the scene in the arena. T3R_ERR_CANCELLED leaves the scene after the last pass that was done. */
+t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, t3r_passes passes);
 
 /* Refines a map. A Gaussian changes only if a retained keyframe sees it as finely as its own keyframe did. records:
  * one per Gaussian; NULL: all change. */
-t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t passes, const t3r_map_record *records);
+t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes passes, const t3r_map_record *records);
 
 /* Computes the distance of the scene in the arena from the context views: mean squared residual per channel, levels^2
  * Q8, at most 2^24, over the pixels that refinement counts. Works where t3r_refine() does: needs refine above 0. */

@@ -4,17 +4,17 @@
 
 #if !T3R_FEATURE_REFINEMENT
 
-t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, uint32_t passes)
+t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, t3r_passes passes)
 {
     return t3r_refine_scene(rt, views, passes, NULL);
 }
 
-t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, uint32_t passes, const t3r_map_record *records)
+t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes passes, const t3r_map_record *records)
 {
     (void)rt;
     (void)views;
     (void)records;
-    return passes == 0 ? T3R_OK : T3R_ERR_UNSUPPORTED;
+    return passes.count == 0 ? T3R_OK : T3R_ERR_UNSUPPORTED;
 }
 
 #endif

@@ -228,7 +228,8 @@ static __attribute__((noinline)) t3r_status refine_map(t3r_runtime *rt)
     t3r_view all[T3R_MAX_VIEWS];
     t3r_views_of(rt, all);
     const uint32_t passes = t3r_keyframe_passes_of(&rt->config, rt->config.warm && rt->keyframes > 1);
-    const t3r_status status = t3r_refine_scene(rt, all, passes, t3r_map_of(rt).records);
+    const uint32_t parts = rt->config.refine_stride > 1 ? passes : 0;
+    const t3r_status status = t3r_refine_scene(rt, all, (t3r_passes){passes, parts}, t3r_map_of(rt).records);
     if (status == T3R_OK) {
         t3r_hash_scene(rt, T3R_STAGE_REFINE);
     }

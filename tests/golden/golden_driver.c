@@ -38,35 +38,38 @@ typedef struct configuration {
     t3r_depth depth;
     bool unadapted; /* splats as small as pixels */
     bool displaced; /* all views but the first have wrong poses, which alignment corrects */
+    bool squares;   /* all views but the first are brighter and darker in squares, so that passes compare a part */
 } configuration;
 
 static const configuration configurations[] = {
     {"default", 128, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 0, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, 1843, false, 0, T3R_DEPTH_SENSOR, false, false},
+     T3R_HEAD_ANALYTIC, 1843, false, 0, T3R_DEPTH_SENSOR, false, false, false},
     {"small", 128, 96, 61, 45, T3R_PIXEL_GREY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 3, 17, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, 700, true, 0, T3R_DEPTH_SENSOR, false, false},
+     T3R_HEAD_ANALYTIC, 700, true, 0, T3R_DEPTH_SENSOR, false, false, false},
     {"haar_paper", 128, 96, 64, 48, T3R_PIXEL_YUYV, T3R_DISTORTION_NONE, T3R_WAVELET_HAAR, 1, 32, T3R_ALLOCATE_PAPER,
-     T3R_HEAD_ANALYTIC, 3000, true, 0, T3R_DEPTH_SENSOR, false, false},
+     T3R_HEAD_ANALYTIC, 3000, true, 0, T3R_DEPTH_SENSOR, false, false, false},
     {"cdf53_pixel", 128, 96, 64, 48, T3R_PIXEL_NV12, T3R_DISTORTION_RADTAN, T3R_WAVELET_CDF53, 4, 300,
-     T3R_ALLOCATE_PIXEL, T3R_HEAD_ANALYTIC, 600, true, 0, T3R_DEPTH_SENSOR, false, false},
+     T3R_ALLOCATE_PIXEL, T3R_HEAD_ANALYTIC, 600, true, 0, T3R_DEPTH_SENSOR, false, false, false},
     {"uniform", 128, 96, 64, 48, T3R_PIXEL_BGR24, T3R_DISTORTION_FISHEYE, T3R_WAVELET_DB2, 2, 0, T3R_ALLOCATE_UNIFORM,
-     T3R_HEAD_ANALYTIC, 600, true, 0, T3R_DEPTH_SENSOR, false, false},
+     T3R_HEAD_ANALYTIC, 600, true, 0, T3R_DEPTH_SENSOR, false, false, false},
     {"random", 128, 96, 64, 48, T3R_PIXEL_UYVY, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 0, T3R_ALLOCATE_RANDOM,
-     T3R_HEAD_ANALYTIC, 600, false, 0, T3R_DEPTH_SENSOR, true, false},
+     T3R_HEAD_ANALYTIC, 600, false, 0, T3R_DEPTH_SENSOR, true, false, false},
     {"everything", 96, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, CONTEXT_VIEWS * 96 * 96, false, 0, T3R_DEPTH_SENSOR, false, false},
+     T3R_HEAD_ANALYTIC, CONTEXT_VIEWS * 96 * 96, false, 0, T3R_DEPTH_SENSOR, false, false, false},
     {"learned", 128, 96, 61, 45, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR, false, false},
+     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR, false, false, false},
     {"learned_wide", 128, 96, 64, 48, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64,
-     T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 600, true, 16, T3R_DEPTH_SENSOR, false, false},
+     T3R_ALLOCATE_DENSITY, T3R_HEAD_LEARNED, 600, true, 16, T3R_DEPTH_SENSOR, false, false, false},
     {"shipped", 128, 96, 91, 77, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_LEARNED, 1400, true, 0, T3R_DEPTH_SENSOR, false, false},
+     T3R_HEAD_LEARNED, 1400, true, 0, T3R_DEPTH_SENSOR, false, false, false},
     {"given", 128, 96, 61, 45, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_GIVEN,
-     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR, false, false},
+     T3R_HEAD_LEARNED, 700, true, 8, T3R_DEPTH_SENSOR, false, false, false},
     {"stereo", 128, 96, 96, 83, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 0, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_LEARNED, 1400, false, 0, T3R_DEPTH_STEREO, false, false},
+     T3R_HEAD_LEARNED, 1400, false, 0, T3R_DEPTH_STEREO, false, false, false},
     {"aligned", 128, 96, 91, 77, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
-     T3R_HEAD_ANALYTIC, 1400, true, 0, T3R_DEPTH_SENSOR, false, true},
+     T3R_HEAD_ANALYTIC, 1400, true, 0, T3R_DEPTH_SENSOR, false, true, false},
+    {"parts", 128, 96, 96, 96, T3R_PIXEL_RGB24, T3R_DISTORTION_NONE, T3R_WAVELET_DB2, 2, 64, T3R_ALLOCATE_DENSITY,
+     T3R_HEAD_ANALYTIC, 300, false, 0, T3R_DEPTH_SENSOR, false, false, true},
 };
 
 typedef enum arena_size { ARENA_MIN, ARENA_FULL, ARENA_TEN } arena_size;
@@ -288,11 +291,23 @@ static t3r_status begin_run(run *r, bool stream)
     return status == T3R_OK ? t3r_set_ablation(r->rt, &(t3r_ablation){.unadapted = c->unadapted}) : status;
 }
 
+/* Makes the room's colours brighter and darker in turn, in squares of 16 pixels. */
+static void paint_squares(uint32_t width, uint32_t height)
+{
+    for (uint32_t i = 0; i < 3 * width * height; i++) {
+        const uint32_t pixel = i / 3, square = pixel % width / 16 + pixel / width / 16;
+        rgb[i] = (uint8_t)level(rgb[i] + (square % 2 == 0 ? 40 : -40));
+    }
+}
+
 /* Makes frame `index` of the room as the configuration's camera captures it. */
 static void capture(const configuration *c, uint32_t index, t3r_frame *frame, t3r_camera *camera)
 {
     *frame = (t3r_frame){.format = c->format, .width = c->frame_width, .height = c->frame_height};
     room_frame(index, frame->width, frame->height, 1, rgb, depth_mm);
+    if (c->squares && index > 0) {
+        paint_squares(frame->width, frame->height);
+    }
     room_camera(index, frame->width, frame->height, camera);
     camera->position_q32[0] += c->displaced && index > 0 ? INT64_C(1) << 27 : 0; /* 1/32 m */
     encode(frame);

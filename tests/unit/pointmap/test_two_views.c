@@ -553,23 +553,55 @@ TEST(colours_that_differ)
     uint32_t pairs;
     paint_sure(s, 0, 0, same);
     paint_sure(s, 1, 8, same);
-    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs), 0);
+    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs, NULL), 0);
     assert_int_equal(pairs, 2 * (W - 8) * H);
-    assert_int_equal(t3r_disagreement_q8(s->view, 1, 0, gain_q14, 1, &pairs), 0);
+    assert_int_equal(t3r_disagreement_q8(s->view, 1, 0, gain_q14, 1, &pairs, NULL), 0);
     assert_int_equal(pairs, 0);
     for (int i = 0; i < PIXELS; i++) {
         s->colour[1][0][i] = (uint8_t)(s->colour[1][0][i] + 9);
     }
-    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs), 27 * 256);
-    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 2, &pairs), 27 * 256);
+    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs, NULL), 27 * 256);
+    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 2, &pairs, NULL), 27 * 256);
     assert_int_equal(pairs, 2 * ((W - 8) / 2) * (H / 2));
 
     block(s, 1, 0, 0, W, H / 2, 1.9);
     memset(s->validity[1] + PIXELS / 2, T3R_MEASURED | T3R_MARK_DOUBTFUL, 4 * W);
     memset(s->validity[1] + PIXELS / 2 + 4 * W, T3R_FILLED, 3 * W);
     memset(s->validity[1] + PIXELS / 2 + 7 * W, T3R_MEASURED | T3R_MARK_COVERED, 3 * W); /* measured all the same */
-    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs), 27 * 256);
+    assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs, NULL), 27 * 256);
     assert_int_equal(pairs, 2 * (W - 8) * (H / 2 - 7));
+    free(s);
+}
+
+/* Colours that differ alike from pixel to pixel are shared by neighbours, those that differ the other way are not, and
+ * noise is hardly. A pair whose right neighbour is none does not count. */
+TEST(differences_that_neighbours_share)
+{
+    rig *s = pair_new();
+    const double same[3] = {1, 1, 1};
+    uint16_t gain_q14[VIEWS][3] = {{T3R_GAIN_ONE_Q14, T3R_GAIN_ONE_Q14, T3R_GAIN_ONE_Q14},
+                                   {T3R_GAIN_ONE_Q14, T3R_GAIN_ONE_Q14, T3R_GAIN_ONE_Q14}};
+    enum { ALIKE, IN_TURN, NOISE, ALONE };
+    for (int kind = ALIKE; kind <= ALONE; kind++) {
+        paint_sure(s, 0, 0, same);
+        paint_sure(s, 1, 8, same);
+        for (int i = 0; i < PIXELS; i++) {
+            const bool less = (kind == IN_TURN && i % 2 != 0) || (kind == NOISE && t3r_mix32((uint32_t)i) % 2 != 0);
+            s->colour[1][0][i] = (uint8_t)(s->colour[1][0][i] + (less ? -9 : 9));
+            s->validity[1][i] = kind == ALONE && i % 2 != 0 ? T3R_FILLED : T3R_MEASURED;
+        }
+        for (uint32_t step = 1; step <= 2; step++) {
+            uint32_t pairs;
+            int32_t shared_q8;
+            assert_int_equal(t3r_disagreement_q8(s->view, 2, 0, gain_q14, step, &pairs, &shared_q8), 27 * 256);
+            assert_in_range(pairs, 64, PIXELS * 2);
+            if (kind == NOISE) {
+                assert_true(abs(shared_q8) < 4 * 256);
+            } else {
+                assert_int_equal(shared_q8, kind == ALIKE ? 27 * 256 : kind == IN_TURN ? -27 * 256 : 0);
+            }
+        }
+    }
     free(s);
 }
 
@@ -582,11 +614,11 @@ TEST(levelled_before_they_are_compared)
     uint16_t gain_q14[VIEWS][3];
     t3r_exposure_gains(s->view, 2, 0, gain_q14, &alone);
     uint32_t pairs;
-    assert_true(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs) < 2 * 256);
+    assert_true(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs, NULL) < 2 * 256);
     for (int c = 0; c < 3; c++) {
         gain_q14[0][c] = gain_q14[1][c] = T3R_GAIN_ONE_Q14;
     }
-    assert_true(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs) > 50 * 256);
+    assert_true(t3r_disagreement_q8(s->view, 2, 0, gain_q14, 1, &pairs, NULL) > 50 * 256);
     free(s);
 }
 
@@ -604,7 +636,7 @@ TEST(around_the_ring)
         }
     }
     uint32_t pairs;
-    assert_int_equal(t3r_disagreement_q8(s->view, 3, 0, gain_q14, 1, &pairs), 0);
+    assert_int_equal(t3r_disagreement_q8(s->view, 3, 0, gain_q14, 1, &pairs, NULL), 0);
     assert_int_equal(pairs, 2 * H * ((W - 8) + (W - 8) + (W - 16)));
     free(s);
 }

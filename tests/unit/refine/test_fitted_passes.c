@@ -42,6 +42,31 @@ TEST(fewer_where_less_is_shared)
     assert_int_equal(by_views, 2);
 }
 
+/* From three on, passes over a part of the pixels are a quarter more, and the last one is whole. */
+TEST(in_parts)
+{
+    for (uint32_t whole = 1; whole <= T3R_MAX_REFINE; whole++) {
+        const t3r_passes passes = t3r_passes_in_parts(whole);
+        assert_int_equal(passes.count, whole < 3 ? whole : whole + (whole + 1) / 4);
+        assert_int_equal(passes.parts, whole < 3 ? 0 : passes.count - 1);
+    }
+}
+
+/* A part of the pixels is enough where views disagree by 80 levels^2 at 256 x 256 or more, and neighbours share 3/8. */
+TEST(a_part_suffices_where_neighbours_share)
+{
+    const uint32_t pixels = 256 * 256, least_q8 = 80 * 256;
+    assert_true(t3r_parts_suffice(pixels, least_q8, 30 * 256));
+    assert_false(t3r_parts_suffice(pixels, least_q8, 30 * 256 - 1));
+    assert_false(t3r_parts_suffice(pixels, least_q8 - 1, 80 * 256));
+    assert_false(t3r_parts_suffice(pixels / 4, least_q8, 80 * 256));
+    assert_true(t3r_parts_suffice(pixels / 4, 4 * least_q8, 120 * 256));
+    assert_false(t3r_parts_suffice(pixels, least_q8, -80 * 256));
+    assert_false(t3r_parts_suffice(1 << 24, 0, 0));
+    assert_true(t3r_parts_suffice(1 << 24, 1 << 24, 1 << 24));
+    assert_false(t3r_parts_suffice(1 << 24, 1 << 24, -(1 << 24)));
+}
+
 TEST(extremes)
 {
     const uint32_t most_points = 1u << 28, worst = 1u << 24;

@@ -481,6 +481,50 @@ TEST(fits_its_passes)
     free(memory);
 }
 
+/* Makes the second view brighter and darker in turn, in squares of 16 pixels. */
+static void paint_squares(int levels)
+{
+    for (int i = 0; i < SIDE * SIDE * 3; i++) {
+        const int x = i / 3 % SIDE / 16, y = i / 3 / SIDE / 16;
+        rgb[1][i] = (uint8_t)t3r_clamp32(rgb[1][i] + ((x + y) % 2 == 0 ? levels : -levels), 0, 255);
+    }
+}
+
+/* Builds with fitted passes, or with exactly `given` whole ones. Returns the scene's hash, the passes and the PSNR of
+ * its context views. */
+static uint64_t fitted(uint32_t given, uint32_t arena, uint32_t *passes, double *psnr)
+{
+    t3r_config config = settings(given > 0 ? given : T3R_MAX_REFINE);
+    config.gaussians = config.max_gaussians = BUDGET / 10;
+    config.fit_passes = given == 0;
+    t3r_runtime *rt = open_arena(&config, arena);
+    t3r_scene scene;
+    assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
+    const uint64_t hash = hash_of(&scene);
+    *passes = t3r_refinement_passes(rt);
+    *psnr = context_psnr(rt);
+    free(memory);
+    return hash;
+}
+
+/* Where neighbours share what the views disagree about, all fitted passes but the last compare a part of the pixels:
+ * they are better than half as many whole ones, and the same in any arena. */
+TEST(fits_passes_in_parts)
+{
+    paint_squares(40);
+    uint32_t passes, again;
+    double in_parts, whole;
+    const uint64_t hash = fitted(0, 16, &passes, &in_parts);
+    assert_true(fitted(0, 0, &again, &in_parts) == hash);
+    assert_int_equal(again, passes);
+    assert_true(fitted(passes, 16, &again, &whole) != hash);
+    assert_int_equal(again, passes);
+    (void)fitted(passes / 2, 16, &again, &whole);
+    print_message("%u passes in parts: %.2f dB, %u whole ones: %.2f\n", passes, in_parts, again, whole);
+    assert_true(passes >= 4 && in_parts > whole);
+    assert_int_equal(draw_room(NULL), 0);
+}
+
 static uint64_t hash_with(uint32_t views, uint32_t passes, uint32_t structural)
 {
     t3r_config config = settings(passes);

@@ -320,8 +320,8 @@ static void print_text(const build_options *o, const reconstruction_account *acc
            o->output != NULL ? o->output : o->colmap, r->scene.count, account->valid_points, account->arena_bytes,
            work_times_text(times, text));
     if (refines(o) && o->settings.config.fit_passes) {
-        printf("refined in %" PRIu32 " of at most %" PRIu32 " passes\n", t3r_refinement_passes(r->runtime),
-               o->settings.config.refine);
+        const uint32_t passes = t3r_refinement_passes(r->runtime);
+        printf("refined in %" PRIu32 " pass%s\n", passes, passes == 1 ? "" : "es");
     }
     print_least(&o->settings, &r->least);
     for (uint32_t v = 0; v < account->context_count; v++) {
