@@ -584,12 +584,12 @@ static void blame(const drawn_case *c, way goes, const trace *expected, trace *s
     fprintf(stderr,
             "settings: %ux%u, %u views, %u of %u Gaussians, wavelet %s of %u levels, %u clusters in %u batches, %s, "
             "head %s, "
-            "refine %u%s%s%s, depth by %s%s%s%s%s%s\n",
+            "refine %u%s%s%s, depth by %s%s%s%s%s\n",
             k.width, k.height, k.views, k.gaussians, k.max_gaussians, t3r_wavelet_name(k.wavelet), k.levels, k.clusters,
             k.cluster_batches, t3r_allocation_name(k.allocate), t3r_head_name(k.head), k.refine,
             k.fit_passes ? " at most" : "", k.structural ? " (structural)" : "", k.fit_widths ? ", widths fitted" : "",
-            t3r_depth_name(k.depth), k.planes ? " and planes" : "", k.align ? ", aligned" : "",
-            k.keep_analysis ? ", analysis kept" : "", k.warm ? ", warm" : "", k.stream ? ", a stream" : "");
+            t3r_depth_name(k.depth), k.align ? ", aligned" : "", k.keep_analysis ? ", analysis kept" : "",
+            k.warm ? ", warm" : "", k.stream ? ", a stream" : "");
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
