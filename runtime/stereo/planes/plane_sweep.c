@@ -70,17 +70,28 @@ static int64_t place_q16(int64_t x_q24, int64_t z_q24, int32_t f_q16, int32_t c_
     return t3r_round_shift64(f_q16 * t3r_round_div64(x_q24 * ONE_Q24, z_q24), 24) + c_q16;
 }
 
-/* Returns the pixel of the other view that shows a point of a ray, or that there is none, -1. */
-static int64_t seen_at(const sweep *s, const int64_t ray_q24[3], int64_t inverse_q8)
+/* Computes the ray of a pixel, turned to the other view's frame, Q24. */
+static void turned_ray(const sweep *s, uint32_t u, uint32_t v, int64_t turned_q24[3])
+{
+    const int64_t most = RAY_MOST * ONE_Q24;
+    const int64_t x = t3r_round_div64(((int64_t)u * 65536 - s->camera->cx_q16) * ONE_Q24, s->camera->fx_q16);
+    const int64_t y = t3r_round_div64(((int64_t)v * 65536 - s->camera->cy_q16) * ONE_Q24, s->camera->fy_q16);
+    const int64_t ray_q24[3] = {t3r_clamp64(x, -most, most), t3r_clamp64(y, -most, most), ONE_Q24};
+    for (int i = 0; i < 3; i++) {
+        const int64_t *row = &s->turn_q30[3 * i];
+        turned_q24[i] = t3r_round_shift64(row[0] * ray_q24[0] + row[1] * ray_q24[1] + row[2] * ray_q24[2], 30);
+    }
+}
+
+/* Returns the pixel of the other view that shows a point of a turned ray, or that there is none, -1. */
+static int64_t seen_at(const sweep *s, const int64_t turned_q24[3], int64_t inverse_q8)
 {
     const t3r_view *view = s->labels->view;
     int64_t point[3];
     for (int i = 0; i < 3; i++) {
-        const int64_t *row = &s->turn_q30[3 * i];
-        const int64_t turned = t3r_round_shift64(row[0] * ray_q24[0] + row[1] * ray_q24[1] + row[2] * ray_q24[2], 30);
         /* Q12 and Q28; below 2^34 and 2^26 */
         const int64_t moved = t3r_round_shift64(s->offset_q12[i] * t3r_round_shift64(inverse_q8, 10), 16);
-        point[i] = turned + t3r_clamp64(moved, -OFFSET_MOST, OFFSET_MOST);
+        point[i] = turned_q24[i] + t3r_clamp64(moved, -OFFSET_MOST, OFFSET_MOST);
     }
     if (point[2] < LEAST_Z || t3r_abs64(point[0]) > RAY_MOST * point[2] || t3r_abs64(point[1]) > RAY_MOST * point[2]) {
         return -1;
@@ -105,33 +116,38 @@ static int32_t ones(uint32_t bits)
     return (int32_t)(bits * 0x010101u >> 16 & 0xffu);
 }
 
-/* Returns the mean number of comparisons that differ in a cell, Q4. */
-static int32_t differing(const sweep *s, uint32_t cell, uint32_t label)
+/* Computes the mean number of comparisons that differ in a cell, Q4, of each label, and returns the least. */
+static int32_t compare(const sweep *s, uint32_t cell, int32_t *differ_q4)
 {
     const t3r_plane_labels *labels = s->labels;
     const uint32_t width = labels->view->width, height = labels->view->height;
     const uint32_t left = cell % labels->columns * labels->cell, top = cell / labels->columns * labels->cell;
     const uint32_t samples = T3R_MIN(SAMPLES, labels->cell);
-    int32_t seen = 0, differ = 0;
+    int32_t seen[T3R_LABELS_MOST] = {0}, differ[T3R_LABELS_MOST] = {0}, least = UNSEEN;
     for (uint32_t k = 0; k < samples * samples; k++) {
         const uint32_t u = left + (2 * (k % samples) + 1) * labels->cell / (2 * samples);
         const uint32_t v = top + (2 * (k / samples) + 1) * labels->cell / (2 * samples);
         if (u >= width || v >= height) {
             continue;
         }
-        const int64_t most = RAY_MOST * ONE_Q24;
-        const int64_t x = t3r_round_div64(((int64_t)u * 65536 - s->camera->cx_q16) * ONE_Q24, s->camera->fx_q16);
-        const int64_t y = t3r_round_div64(((int64_t)v * 65536 - s->camera->cy_q16) * ONE_Q24, s->camera->fy_q16);
-        const int64_t ray[3] = {t3r_clamp64(x, -most, most), t3r_clamp64(y, -most, most), ONE_Q24};
-        const int64_t inverse_q8 = T3R_MIN(t3r_label_at_q8(labels, label, u, v), labels->most_q8);
-        const int64_t at = inverse_q8 > 0 ? seen_at(s, ray, inverse_q8) : -1;
-        if (at >= 0 && s->luma_other[at] != 0) {
-            seen++;
-            differ +=
-                ones(bits_of(s->census, width, (size_t)v * width + u) ^ bits_of(s->census_other, width, (size_t)at));
+        int64_t turned[3];
+        turned_ray(s, u, v, turned);
+        const uint32_t own = bits_of(s->census, width, (size_t)v * width + u);
+        for (uint32_t l = 0; l < labels->count; l++) {
+            const int64_t inverse_q8 = T3R_MIN(t3r_label_at_q8(labels, l, u, v), labels->most_q8);
+            const int64_t at = inverse_q8 > 0 ? seen_at(s, turned, inverse_q8) : -1;
+            if (at >= 0 && s->luma_other[at] != 0) {
+                seen[l]++;
+                differ[l] += ones(own ^ bits_of(s->census_other, width, (size_t)at));
+            }
         }
     }
-    return 5 * seen >= SEEN * (int32_t)(samples * samples) ? t3r_round_div32(16 * differ, seen) : UNSEEN;
+    for (uint32_t l = 0; l < labels->count; l++) {
+        const bool judged = 5 * seen[l] >= SEEN * (int32_t)(samples * samples);
+        differ_q4[l] = judged ? t3r_round_div32(16 * differ[l], seen[l]) : UNSEEN;
+        least = T3R_MIN(least, differ_q4[l]);
+    }
+    return least;
 }
 
 /* Computes the census of a view, a row after the other; luma: of the view, set here. */
@@ -164,11 +180,8 @@ void t3r_plane_sweep(const t3r_plane_labels *labels, const t3r_kernels *kernels,
                .luma_other = luma};
     relate(&s);
     for (uint32_t cell = 0; cell < labels->columns * labels->rows; cell++) {
-        int32_t differ[T3R_LABELS_MOST], least = UNSEEN;
-        for (uint32_t l = 0; l < labels->count; l++) {
-            differ[l] = differing(&s, cell, l);
-            least = T3R_MIN(least, differ[l]);
-        }
+        int32_t differ[T3R_LABELS_MOST];
+        const int32_t least = compare(&s, cell, differ);
         const int32_t weight_q16 = 65536 - MATCHED_Q8 * labels->share_q8[cell];
         for (uint32_t l = 0; l < labels->count; l++) {
             const int32_t more = differ[l] == UNSEEN ? 0 : T3R_MIN(differ[l] - least, DIFFERS_MOST);
