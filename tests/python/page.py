@@ -28,7 +28,7 @@ def said(source, names):
 
 def main():
     blocks = [block.body for block in blocks_of((ROOT / "docs" / "python.md").read_text()) if block.language == "python"]
-    check(len(blocks) == 10, f"{len(blocks)} blocks of Python")
+    check(len(blocks) == 11, f"{len(blocks)} blocks of Python")
     names, before = {}, os.getcwd()
     os.environ["PATH"] = os.pathsep.join([str(pathlib.Path(sys.argv[2]).resolve().parent), os.environ["PATH"]])
     with tempfile.TemporaryDirectory(prefix="trim3r-python-") as folder:
@@ -48,9 +48,10 @@ def main():
         check(len(trim3r.Scene.read("map.ply")) == 5000, "the map")
         hurried = [line.split() for line in said(blocks[7], names).splitlines()]
         check([line[0] for line in hurried] == ["1", "2", "3"] and hurried[0][1] == "1000", f"a hurried stream: {hurried}")
-        drawn = said(blocks[8], names)
+        check(re.findall(r"(\d+) keyframes", said(blocks[8], names)) == ["2", "4"], "a stream in two runs")
+        drawn = said(blocks[9], names)
         check("256x256" in drawn and drawn.split()[-4:] == ["(256,", "256,", "3)", "True"], f"a picture: {drawn}")
-        rows = said(blocks[9], names).splitlines()
+        rows = said(blocks[10], names).splitlines()
         check([row.split()[1] for row in rows] == ["13107", "2621"], f"rows: {rows}")
         shown = re.search(r"::\n\n(.*?)\n\n[A-Z]", trim3r.__doc__, re.S)[1]
         check(25 < float(said(textwrap.dedent(shown), {})) < 35, "the docstring's")
