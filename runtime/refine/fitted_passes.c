@@ -15,7 +15,7 @@
  * disagreement times pixels is at least that of 80 levels^2 at 256 x 256. In the built-in room neighbours share at most
  * 2.5 eighths, in recorded training scenes mostly 3.5 and more. Other rendered views disagree less. */
 #define SHARED_LEAST_Q3 3
-#define PARTS_FROM_Q8 ((80ull << 16) << 8)
+#define PARTS_FROM_Q8 ((UINT64_C(80) << 16) << 8)
 #define PARTS_LEAST 3u /* so few whole passes at least: with fewer, the last one has to do too much */
 
 uint32_t t3r_predict_passes(uint32_t points, uint32_t gaussians, uint32_t disagreement_q8, uint32_t most)
