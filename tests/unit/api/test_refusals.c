@@ -136,6 +136,7 @@ TEST(missing_pointers)
     assert_int_equal(t3r_refinement_passes(NULL), 0);
     assert_int_equal(t3r_render_passes(NULL), 0);
     t3r_runtime *rt = opened(&config);
+    assert_int_equal(t3r_get_config(rt)->gaussians, config.gaussians);
     t3r_camera undistorted;
     const t3r_frame frame = some_frame();
     const t3r_camera camera = some_camera();

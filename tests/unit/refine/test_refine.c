@@ -492,9 +492,10 @@ static void paint_squares(int levels)
 
 /* Builds with fitted passes, or with exactly `given` whole ones. Returns the scene's hash, the passes and the PSNR of
  * its context views. */
-static uint64_t fitted(uint32_t given, uint32_t arena, uint32_t *passes, double *psnr)
+static uint64_t fitted(uint32_t given, uint32_t structural, uint32_t arena, uint32_t *passes, double *psnr)
 {
     t3r_config config = settings(given > 0 ? given : T3R_MAX_REFINE);
+    config.structural = structural;
     config.gaussians = config.max_gaussians = BUDGET / 10;
     config.fit_passes = given == 0;
     t3r_runtime *rt = open_arena(&config, arena);
@@ -514,14 +515,18 @@ TEST(fits_passes_in_parts)
     paint_squares(40);
     uint32_t passes, again;
     double in_parts, whole;
-    const uint64_t hash = fitted(0, 16, &passes, &in_parts);
-    assert_true(fitted(0, 0, &again, &in_parts) == hash);
+    const uint64_t hash = fitted(0, 0, 16, &passes, &in_parts);
+    assert_true(fitted(0, 0, 0, &again, &in_parts) == hash);
     assert_int_equal(again, passes);
-    assert_true(fitted(passes, 16, &again, &whole) != hash);
+    assert_true(fitted(passes, 0, 16, &again, &whole) != hash);
     assert_int_equal(again, passes);
-    (void)fitted(passes / 2, 16, &again, &whole);
+    (void)fitted(passes / 2, 0, 16, &again, &whole);
     print_message("%u passes in parts: %.2f dB, %u whole ones: %.2f\n", passes, in_parts, again, whole);
     assert_true(passes >= 4 && in_parts > whole);
+    uint32_t structural; /* this loss compares whole tiles */
+    const uint64_t fitted_structural = fitted(0, 1, 16, &structural, &whole);
+    assert_true(structural < passes);
+    assert_true(fitted(structural, 1, 16, &again, &whole) == fitted_structural);
     assert_int_equal(draw_room(NULL), 0);
 }
 
