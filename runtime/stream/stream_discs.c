@@ -5,18 +5,7 @@
 #include "pointmap/reproject.h"
 
 #define RADIUS_SPACINGS_Q4 32 /* radius of a Gaussian's disc: two spacings, */
-#define RADIUS_MOST T3R_DISC_RADIUS_MOST
-
-/* Returns the view with a margin as wide as a disc. */
-static t3r_pinhole widened(const t3r_view *view)
-{
-    t3r_pinhole wide = t3r_pinhole_of(view);
-    wide.width += 2 * RADIUS_MOST;
-    wide.height += 2 * RADIUS_MOST;
-    wide.cx_q16 += RADIUS_MOST << 16;
-    wide.cy_q16 += RADIUS_MOST << 16;
-    return wide;
-}
+#define RADIUS_MOST T3R_MAP_MARGIN
 
 /* Returns the disc around a pixel of the wide picture at depth z, without its surface. */
 static t3r_map_disc disc_at(const t3r_pointmap *keyframe, const t3r_map_record *record, uint32_t u, uint32_t v,
@@ -79,7 +68,7 @@ static void find_some(void *context, uint32_t begin, uint32_t end, uint32_t work
 {
     (void)worker;
     const discs_job *job = context;
-    const t3r_pinhole wide = widened(job->keyframe->view);
+    const t3r_pinhole wide = t3r_map_wide_picture(job->keyframe->view);
     for (uint32_t i = begin; i < end; i++) {
         int32_t z_q20;
         const uint32_t pixel = t3r_locate_point(&wide, job->map->gaussians[i].position_q20, &z_q20);

@@ -10,11 +10,9 @@
 #include "core/workers.h"
 #include "stream_map.h"
 
-#define T3R_DISC_RADIUS_MOST 16 /* pixels */
-
 /* The pixels around a Gaussian's centre, and the depth steps of its surface. */
 typedef struct t3r_map_disc {
-    int16_t u, v; /* pixel of the centre, at most T3R_DISC_RADIUS_MOST outside the picture */
+    int16_t u, v; /* pixel of the centre, at most T3R_MAP_MARGIN outside the picture */
     uint16_t radius_q4;
     uint16_t surface;           /* pixels that show it, with all that lie outside the picture; 0: none in the picture */
     uint16_t nearest, farthest; /* depth steps, at least 1 */
@@ -29,7 +27,7 @@ typedef struct t3r_disc_row {
 
 /* Half the width of each row of a disc, by the row's distance from the centre. */
 typedef struct t3r_disc_shape {
-    uint8_t half[T3R_DISC_RADIUS_MOST + 1];
+    uint8_t half[T3R_MAP_MARGIN + 1];
     int32_t radius;
 } t3r_disc_shape;
 

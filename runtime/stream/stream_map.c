@@ -6,11 +6,12 @@
 #include "core/memory.h"
 #include "head/head.h"
 #include "pointmap/contradiction.h"
+#include "pointmap/reproject.h"
 #include "state/state.h"
 
 #define FINER_Q8 256        /* log2: a keyframe with pixels this much narrower on the surface replaces the Gaussian */
 #define ALIKE_Q7 (72 << 7)  /* levels, of the three channels together */
-#define LOST_Q10 4096       /* log2: a Gaussian that has faded so far and is hidden leaves */
+#define LOST_HALF_LIVES 4   /* a Gaussian that no keyframe has seen for so long leaves if it is hidden */
 #define WIDEN_STEP_Q10 64   /* log2 of density: smaller changes wait until they add up */
 #define SCALE_MOST_Q10 4096 /* log2: bound of one step of the width */
 #define WIDTH_MOST_Q10 2048 /* log2: widths are within a quarter of the spacing and four times it */
@@ -36,14 +37,32 @@ bool t3r_map_is_alike(const t3r_gaussian *g, const t3r_view *view, size_t pixel)
     return off_q7 <= ALIKE_Q7;
 }
 
-typedef enum look { UNSEEN, HIDDEN, SEEN_AFAR, SEEN, CONTRADICTED, COARSE } look;
+t3r_pinhole t3r_map_wide_picture(const t3r_view *view)
+{
+    t3r_pinhole wide = t3r_pinhole_of(view);
+    wide.width += 2 * T3R_MAP_MARGIN;
+    wide.height += 2 * T3R_MAP_MARGIN;
+    wide.cx_q16 += T3R_MAP_MARGIN << 16;
+    wide.cy_q16 += T3R_MAP_MARGIN << 16;
+    return wide;
+}
+
+typedef enum look { AWAY, UNSEEN, HIDDEN, SEEN_AFAR, SEEN, CONTRADICTED, COARSE } look;
+
+/* Returns how a Gaussian outside the picture is seen. */
+static look look_beside(const t3r_gaussian *g, const t3r_view *view)
+{
+    const t3r_pinhole wide = t3r_map_wide_picture(view);
+    int32_t z_q20;
+    return t3r_locate_point(&wide, g->position_q20, &z_q20) != T3R_NO_PIXEL ? UNSEEN : AWAY;
+}
 
 static look look_at(const t3r_gaussian *g, const t3r_map_record *record, const t3r_pointmap *keyframe)
 {
     const t3r_view *view = keyframe->view;
     t3r_projected_pixel projected;
     if (!t3r_project_to_pixel(view, g->position_q20, &projected)) {
-        return UNSEEN;
+        return look_beside(g, view);
     }
     /* a Gaussian of an earlier piece has no place that can be trusted: it may be neither hidden nor unseen, and where
      * it is on the surface it must have the surface's colour */
@@ -105,15 +124,19 @@ uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyfra
     for (uint32_t i = 0; i < map->count; i++) {
         t3r_map_record *record = &map->records[i];
         const look seen = (look)looks[i];
-        if (seen == CONTRADICTED || seen == COARSE || (seen == HIDDEN && record->faded_q10 >= LOST_Q10)) {
+        const bool lost = seen == HIDDEN && half_life > 0 && record->idle >= LOST_HALF_LIVES * half_life;
+        if (seen == CONTRADICTED || seen == COARSE || lost) {
             continue;
         }
         record->idle = seen == SEEN ? 0 : (uint8_t)T3R_MIN(record->idle + 1, UINT8_MAX);
         if (seen == SEEN) {
             record->fitted = (uint8_t)T3R_MIN(record->fitted + 1, T3R_FITTED_MOST);
         }
-        record->faded_q10 =
-            seen == SEEN || seen == SEEN_AFAR ? 0 : (uint16_t)T3R_MIN(record->faded_q10 + fade, (uint32_t)UINT16_MAX);
+        if (seen == SEEN || seen == SEEN_AFAR) {
+            record->faded_q10 = 0;
+        } else if (seen == AWAY) { /* its surroundings thin out with it, and its width follows */
+            record->faded_q10 = (uint16_t)T3R_MIN(record->faded_q10 + fade, (uint32_t)UINT16_MAX);
+        }
         move_to(map, i, kept++);
     }
     uint32_t left = map->count - kept;

@@ -9,6 +9,7 @@
 #include "budget/budget.h"
 #include "core/map_record.h"
 #include "core/workers.h"
+#include "kernels/points.h"
 #include "pointmap/pointmap.h"
 #include "state/views.h"
 #include "trim3r.h"
@@ -18,6 +19,9 @@
 
 /* Lower bound of keys in the map, 20 octaves: sure points of a keyframe outlast others only by a bounded time. */
 #define T3R_MAP_KEY_LEAST (T3R_KEY_ZERO - (20 << 10))
+
+/* The surroundings of a Gaussian reach so many pixels far, at most. */
+#define T3R_MAP_MARGIN 16
 
 /* Key of a Gaussian that leaves. Others' keys are at most T3R_KEY_ZERO. */
 #define T3R_MAP_KEY_LEAVES UINT16_MAX
@@ -36,9 +40,12 @@ int32_t t3r_grain_q8(const t3r_view *view, int32_t z_q20);
 /* Whether a Gaussian has the colour of the pixel, within 24 levels a channel in the mean. */
 bool t3r_map_is_alike(const t3r_gaussian *g, const t3r_view *view, size_t pixel);
 
-/* Updates every Gaussian from a keyframe: removes those that it sees through or sees far finer, and fades those that
- * it does not see to half the density in `half_life` keyframes (0: never, else up to 1,024). `keyframes`: number of
- * earlier ones. looks: work, a byte for each Gaussian. Returns the number removed. */
+/* Returns the picture with T3R_MAP_MARGIN more pixels on each side. */
+t3r_pinhole t3r_map_wide_picture(const t3r_view *view);
+
+/* Updates every Gaussian from a keyframe: removes those that it sees through or sees far finer, and fades those whose
+ * surroundings it does not see to half the density in `half_life` keyframes (0: never, else up to 1,024). `keyframes`:
+ * number of earlier ones. looks: work, a byte for each Gaussian. Returns the number removed. */
 uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyframes, uint32_t half_life,
                      const t3r_workers *workers, uint8_t *looks);
 

@@ -216,6 +216,81 @@ TEST(counts_are_held)
     }
 }
 
+/* Lets the keyframe look along z from the origin, so that pixel u shows x = (u - 10) / 15 at a depth of 2. */
+static void look_ahead(t3r_view *view)
+{
+    view->fx_q16 = view->fy_q16 = 30 << 16;
+    view->cx_q16 = view->cy_q16 = 10 << 16;
+    view->depth_unit_q40 = UINT64_C(1) << 30;
+    for (int i = 0; i < 3; i++) {
+        view->pose.rotation_q30[4 * i] = 1 << 30;
+    }
+}
+
+/* What falls into the picture, or up to 16 pixels beside it, keeps its fading, whether it is measured there or hidden.
+ * Elsewhere it fades. */
+TEST(fades_where_no_camera_looks)
+{
+    static site s;
+    uint64_t seed = 19;
+    uint16_t depth[PIXELS];
+    for (int i = 0; i < PIXELS; i++) {
+        depth[i] = 1024; /* 1, so that all are hidden */
+    }
+    const struct {
+        int32_t u, v, z;
+        bool fades;
+    } places[] = {{12, 10, 2, false},          {-15, 10, 2, false}, {WIDTH + 14, 10, 2, false}, {10, -15, 2, false},
+                  {10, HEIGHT + 14, 2, false}, {-18, 10, 2, true},  {WIDTH + 17, 10, 2, true},  {10, -18, 2, true},
+                  {10, HEIGHT + 17, 2, true},  {12, 10, -2, true}};
+    for (int measured = 0; measured < 2; measured++) {
+        fill(&s, &seed, 100);
+        memset(s.validity, measured ? T3R_MEASURED : T3R_NO_DEPTH, sizeof s.validity);
+        s.view.depth = depth;
+        look_ahead(&s.view);
+        s.map.count = sizeof places / sizeof *places;
+        for (uint32_t i = 0; i < s.map.count; i++) {
+            const int32_t z_q20 = places[i].z * (1 << 20);
+            s.gaussians[i] = (t3r_gaussian){
+                .position_q20 = {(places[i].u - 10) * (z_q20 / 30), (places[i].v - 10) * (z_q20 / 30), z_q20}};
+            s.records[i].faded_q10 = 100;
+        }
+        const t3r_pointmap keyframe = t3r_pointmap_of(&s.view, 0);
+        assert_int_equal(see(&s, &keyframe, 0, 4), 0);
+        for (uint32_t i = 0; i < s.map.count; i++) {
+            assert_int_equal(s.records[i].faded_q10, places[i].fades ? 356 : 100);
+            assert_int_equal(s.records[i].idle, 1);
+        }
+    }
+}
+
+/* A hidden Gaussian leaves after four half-lives in which no keyframe saw it, and never without a half-life. */
+TEST(hidden_ones_leave)
+{
+    static site s;
+    uint64_t seed = 21;
+    uint16_t depth[PIXELS];
+    for (int i = 0; i < PIXELS; i++) {
+        depth[i] = 1024;
+    }
+    const uint32_t half_lives[] = {0, 1, 32, 64};
+    for (size_t h = 0; h < sizeof half_lives / sizeof *half_lives; h++) {
+        fill(&s, &seed, 100);
+        memset(s.validity, T3R_MEASURED, sizeof s.validity);
+        s.view.depth = depth;
+        look_ahead(&s.view);
+        s.map.count = 1;
+        s.gaussians[0] = (t3r_gaussian){.position_q20 = {0, 0, 2 << 20}};
+        s.records[0].idle = 0;
+        const t3r_pointmap keyframe = t3r_pointmap_of(&s.view, 0);
+        uint32_t stayed = 0;
+        while (stayed < 600 && see(&s, &keyframe, stayed, half_lives[h]) == 0) {
+            stayed++;
+        }
+        assert_int_equal(stayed, half_lives[h] == 0 || half_lives[h] > 63 ? 600 : 4 * half_lives[h]);
+    }
+}
+
 /* A keyframe without a depth there leaves a Gaussian in the map, but not one of an earlier piece. */
 TEST(earlier_pieces_are_not_trusted)
 {
@@ -228,12 +303,7 @@ TEST(earlier_pieces_are_not_trusted)
         s.gaussians[i] = (t3r_gaussian){.position_q20 = {0, 0, 2 << 20}};
     }
     s.records[1].fitted = T3R_EARLIER_PIECE;
-    s.view.fx_q16 = s.view.fy_q16 = 30 << 16;
-    s.view.cx_q16 = s.view.cy_q16 = 10 << 16;
-    s.view.depth_unit_q40 = UINT64_C(1) << 30;
-    for (int i = 0; i < 3; i++) {
-        s.view.pose.rotation_q30[4 * i] = 1 << 30;
-    }
+    look_ahead(&s.view);
     const t3r_pointmap keyframe = t3r_pointmap_of(&s.view, 0);
     assert_int_equal(see(&s, &keyframe, 0, 0), 1);
     assert_true(s.map.count == 1 && s.records[0].fitted != T3R_EARLIER_PIECE);
