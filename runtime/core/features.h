@@ -27,6 +27,9 @@ static inline uint32_t t3r_feature_of_head(t3r_head head)
     return T3R_NEED(head, head);
 }
 
+/* Whether passes may compare a part of the pixels: those of streams, and those of config.fit_passes. */
+#define T3R_FEATURE_PARTS (T3R_FEATURE_STREAMS || T3R_FEATURE_LOSS)
+
 /* Whether builds follow one another; a constant false in builds without the feature. */
 static inline bool t3r_is_warm(const t3r_config *config)
 {
@@ -43,6 +46,12 @@ static inline bool t3r_is_by_stereo(const t3r_config *config)
 static inline bool t3r_is_stream(const t3r_config *config)
 {
     return T3R_FEATURE_STREAMS && config->stream != 0;
+}
+
+/* Whether surfaces that two views see are marked; a constant false in builds without comparison. */
+static inline bool t3r_marks_covered(const t3r_config *config)
+{
+    return T3R_FEATURE_COMPARISON && config->redundancy != 0;
 }
 
 /* Whether depth that is missing after bridging is guessed; a constant false in builds without comparison. */

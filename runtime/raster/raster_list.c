@@ -22,14 +22,13 @@ static void project_chunk(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
     const project_job *job = context;
+    const t3r_lattice lattice = t3r_lattice_in_use(job->lattice);
     uint32_t first = index * PROJECT_CHUNK, end = T3R_MIN(first + PROJECT_CHUNK, job->count);
     job->kernels->project(job->projection, job->gaussians + first, end - first, job->splats + first);
-    for (uint32_t i = first; i < end && job->lattice->spread > 0; i++) {
-        if (job->splats[i].z_q20 != 0) {
-            t3r_to_lattice(job->lattice, &job->splats[i]);
-        }
-    }
     for (uint32_t i = first; i < end; i++) {
+        if (lattice.spread > 0 && job->splats[i].z_q20 != 0) {
+            t3r_to_lattice(&lattice, &job->splats[i]);
+        }
         if (T3R_FEATURE_BACKDROP && job->gaussians[i].view == T3R_NO_VIEW && job->splats[i].z_q20 != 0) {
             job->splats[i].z_q20 = T3R_BACKDROP_Z_Q20;
         }
@@ -43,8 +42,9 @@ const t3r_lattice t3r_all_pixels = {0, 0, 0};
 t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *projection, const t3r_lattice *lattice,
                             const t3r_raster_room *room)
 {
-    const uint32_t width = t3r_lattice_side(projection->width, lattice->x, lattice->spread);
-    const uint32_t height = t3r_lattice_side(projection->height, lattice->y, lattice->spread);
+    const t3r_lattice in_use = t3r_lattice_in_use(lattice);
+    const uint32_t width = t3r_lattice_side(projection->width, in_use.x, in_use.spread);
+    const uint32_t height = t3r_lattice_side(projection->height, in_use.y, in_use.spread);
     uint32_t count = rt->gaussians, most = rt->config.max_gaussians;
     uint32_t *histogram = room->order;
     uint32_t *keys[2] = {histogram + T3R_SORT_BYTES / 4, histogram + T3R_SORT_BYTES / 4 + most};

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "core/features.h"
 #include "core/fixed.h"
 #include "kernels/kernels.h"
 #include "trim3r.h"
@@ -18,6 +19,12 @@
 typedef struct t3r_lattice {
     uint32_t spread, x, y;
 } t3r_lattice;
+
+/* Returns the lattice; a constant, every pixel, in builds whose passes compare all of them. */
+static inline t3r_lattice t3r_lattice_in_use(const t3r_lattice *lattice)
+{
+    return T3R_FEATURE_PARTS ? *lattice : (t3r_lattice){0, 0, 0};
+}
 
 /* Returns the length of a side of that picture: of the width from x on, of the height from y on. */
 static inline uint32_t t3r_lattice_side(uint32_t side, uint32_t first, uint32_t spread)

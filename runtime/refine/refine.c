@@ -315,7 +315,7 @@ typedef struct shown_view {
 static t3r_lattice lattice_of(const slice_job *slice, uint32_t turn)
 {
     static const t3r_lattice quarters[] = {{1, 0, 0}, {1, 1, 1}, {1, 1, 0}, {1, 0, 1}};
-    return slice->in_parts ? quarters[turn % 4] : t3r_all_pixels;
+    return T3R_FEATURE_PARTS && slice->in_parts ? quarters[turn % 4] : t3r_all_pixels;
 }
 
 /* Draws the view and adds to the sums of the slice. */

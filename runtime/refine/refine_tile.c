@@ -29,17 +29,17 @@ static uint32_t shown_q7(const t3r_refine_view *job, size_t at, int channel)
 static void compare(const t3r_refine_view *job, const t3r_tile_place *tile, t3r_wanted *want)
 {
     const t3r_view *view = job->view;
-    const t3r_lattice *lattice = &job->lattice;
-    const uint32_t width = t3r_lattice_side(view->width, lattice->x, lattice->spread);
-    const uint32_t height = t3r_lattice_side(view->height, lattice->y, lattice->spread);
+    const t3r_lattice lattice = t3r_lattice_in_use(&job->lattice);
+    const uint32_t width = t3r_lattice_side(view->width, lattice.x, lattice.spread);
+    const uint32_t height = t3r_lattice_side(view->height, lattice.y, lattice.spread);
     const uint32_t columns = T3R_MIN(width - tile->left, (uint32_t)T3R_TILE_SIDE);
     const uint32_t rows = T3R_MIN(height - tile->top, (uint32_t)T3R_TILE_SIDE);
     memset(want->residual_q4, 0, sizeof want->residual_q4);
     memset(want->counts, 0, sizeof want->counts);
     for (uint32_t j = 0; j < rows; j++) {
-        size_t at = (size_t)(((tile->top + j) << lattice->spread) + lattice->y) * view->width +
-                    (tile->left << lattice->spread) + lattice->x;
-        for (uint32_t i = 0; i < columns; i++, at += (size_t)1 << lattice->spread) {
+        size_t at = (size_t)(((tile->top + j) << lattice.spread) + lattice.y) * view->width +
+                    (tile->left << lattice.spread) + lattice.x;
+        for (uint32_t i = 0; i < columns; i++, at += (size_t)1 << lattice.spread) {
             want->counts[j][i] = is_wanted(job, at) ? UINT16_MAX : 0;
             for (int c = 0; c < 3; c++) {
                 int32_t drawn_q7 = T3R_MIN((int32_t)want->pixels.colour_q7[c][j][i], 32640);
@@ -138,6 +138,7 @@ static void ask_for_sums(const t3r_refine_slice *slice, uint32_t index)
 static void take_off(const t3r_refine_view *job, const uint32_t *list, const kept_splats *kept, uint32_t first,
                      const t3r_tile_place *tile)
 {
+    const uint32_t spread = t3r_lattice_in_use(&job->lattice).spread;
     uint32_t rows = kept->rows;
     for (uint32_t i = kept->count; i-- > 0 && job->kept[i] >> SCALE_BITS >= first;) {
         const uint32_t index = list[job->kept[i] >> SCALE_BITS];
@@ -151,10 +152,10 @@ static void take_off(const t3r_refine_view *job, const uint32_t *list, const kep
             .span = &span, .rows = rows_at(job, rows), .scale = job->kept[i] & ((1 << SCALE_BITS) - 1)};
         rows -= t3r_rows_of(&span);
         t3r_refine_sums *sums = NULL;
-        const bool faint = job->lattice.spread > 0 && splat.scale >= FAINT_SCALE;
+        const bool faint = spread > 0 && splat.scale >= FAINT_SCALE;
         if (!faint && is_in(&job->slice, index)) {
             sums = t3r_refine_sums_in(job->bands, job->band, job->borders, &job->slice, s, index, job->across);
-            place(sums, s, tile->left + span.column, tile->top + span.first, tile->spread, &splat);
+            place(sums, s, tile->left + span.column, tile->top + span.first, spread, &splat);
             splat.pixels = (span.x1 - span.x0 + 1u) * (span.last - span.first + 1u);
         }
         job->kernels->scatter(job->wanted, &splat, sums);
@@ -171,7 +172,7 @@ static __attribute__((noinline)) kept_splats draw_again(const t3r_refine_view *j
 
 static t3r_tile_place place_of(const t3r_refine_view *job, uint32_t tile_x, uint32_t tile_y)
 {
-    return t3r_tile_place_of(tile_x * T3R_TILE_SIDE, tile_y * T3R_TILE_SIDE, job->lattice.spread);
+    return t3r_tile_place_of(tile_x * T3R_TILE_SIDE, tile_y * T3R_TILE_SIDE, t3r_lattice_in_use(&job->lattice).spread);
 }
 
 /* Returns the list entry of the first splat in the slice, or `count` when there is none. Earlier entries don't

@@ -3,10 +3,8 @@
 
 #include <stdbool.h>
 
+#include "core/features.h"
 #include "core/fixed.h"
-
-/* Whether pictures have a part of the pixels at all: passes of refinement in streams, and fitted ones. */
-#define PARTS (T3R_FEATURE_STREAMS || T3R_FEATURE_LOSS)
 
 /* A quadratic that is nowhere below this draws nothing: 255 exp(-6) < 1. */
 #define LEVEL_MOST 6
@@ -117,7 +115,7 @@ static inline __attribute__((always_inline)) void place_at(const t3r_splat *s, c
 
 void t3r_place(const t3r_splat *s, const t3r_tile_place *tile, t3r_tile_splat *out)
 {
-    if (!PARTS || tile->spread == 0) {
+    if (!T3R_FEATURE_PARTS || tile->spread == 0) {
         place_at(s, tile, 0, out);
     } else {
         place_at(s, tile, 1, out);
