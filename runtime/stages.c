@@ -24,7 +24,7 @@ static t3r_status fill_views(const t3r_runtime *rt, const t3r_view *views, t3r_v
             return T3R_ERR_CANCELLED;
         }
         if (!t3r_is_reused(rt, v)) {
-            (void)t3r_depth_fill(&views[v], rt->config.fill_radius, &workers);
+            t3r_depth_fill(&views[v], rt->config.fill_radius, &workers);
         }
     }
     return T3R_OK;
@@ -87,7 +87,7 @@ t3r_status t3r_bridge_holes(t3r_runtime *rt, t3r_view *views, t3r_view_span span
         return T3R_OK;
     }
     const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
-    for (uint32_t v = span.first; v < span.end; v++) {
+    for (uint32_t v = span.first; v < span.end && T3R_FEATURE_COMPARISON; v++) {
         if (!t3r_pointmap_step(rt, span, T3R_PART_LEND, v - span.first)) {
             return T3R_ERR_CANCELLED;
         }
@@ -106,7 +106,7 @@ t3r_status t3r_bridge_holes(t3r_runtime *rt, t3r_view *views, t3r_view_span span
             }
         }
     }
-    for (uint32_t v = span.first; v < span.end; v++) {
+    for (uint32_t v = span.first; v < span.end && T3R_FEATURE_COMPARISON; v++) {
         if (!t3r_pointmap_step(rt, span, T3R_PART_SETTLE, v - span.first)) {
             return T3R_ERR_CANCELLED;
         }
@@ -183,7 +183,7 @@ t3r_status t3r_find_texture(t3r_runtime *rt, t3r_view *views, t3r_view_span span
 /* Whether covered points are deferred: in a small budget of a build, and in a stream, whose map already shows them. */
 static bool passes_over_covered(const t3r_runtime *rt, const t3r_view *views, uint32_t gaussians)
 {
-    return t3r_is_stream(&rt->config) || (rt->config.redundancy && rt->build.allocate != T3R_ALLOCATE_GIVEN &&
+    return t3r_is_stream(&rt->config) || (t3r_marks_covered(&rt->config) && rt->build.allocate != T3R_ALLOCATE_GIVEN &&
                                           t3r_is_sparse(views, rt->views, gaussians));
 }
 

@@ -2,6 +2,7 @@
 #include "bridge.h"
 
 #include "core/fixed.h"
+#include "core/memory.h"
 
 /* Axes on which a hole is bracketed: its row, and three that lead to the rows above and below. */
 #define AXES 4
@@ -22,12 +23,6 @@ typedef struct bridge_job {
     reach *reaches; /* one per pixel */
     uint32_t radius;
 } bridge_job;
-
-/* The ends of a hole on one axis, on both sides of a pixel. */
-typedef struct bracket {
-    uint32_t before, after;      /* steps from the pixel; 0: no end */
-    uint16_t depth, other_depth; /* of the ends */
-} bracket;
 
 /* Whether the pixel ends a hole. Planes of a restored arena may hold anything, so known pixels count only with a
  * depth. */
@@ -82,14 +77,10 @@ static void find_steps(const bridge_job *job, uint32_t x, uint32_t y, int32_t dy
 {
     for (uint32_t k = 0; k < SLANTED; k++) {
         const int32_t dx = -dy * upwards[k];
-        steps[k] = begins ? walk(job, x, y, dx, dy) : step_from(job, k, x + (uint32_t)dx, y + (uint32_t)dy);
+        steps[k] = !begins              ? step_from(job, k, x + (uint32_t)dx, y + (uint32_t)dy)
+                   : T3R_FEATURE_EXTRAS ? walk(job, x, y, dx, dy)
+                                        : 0; /* one worker's task has all rows: nothing is beyond */
     }
-}
-
-static uint16_t depth_at(const t3r_view *view, size_t pixel, int32_t dx, int32_t dy, uint32_t steps)
-{
-    const ptrdiff_t step = (ptrdiff_t)dy * (ptrdiff_t)view->width + dx;
-    return view->depth[(ptrdiff_t)pixel + step * (ptrdiff_t)steps];
 }
 
 /* Depth is interpolated as 1 / depth, which is linear on planes. */
@@ -98,22 +89,25 @@ static int64_t inverse_q36(uint16_t depth)
     return t3r_round_div64((int64_t)1 << 36, depth);
 }
 
-/* Returns the depth of a pixel from its brackets, 0 without any. */
-static uint16_t depth_across(const bracket brackets[AXES])
+/* Returns the depth of a pixel from the ends of its hole, 0 without any: on each axis `before` and `after` steps away,
+ * 0 = no end. */
+static uint16_t depth_across(const uint16_t *pixel, ptrdiff_t width, const uint8_t before[AXES],
+                             const uint8_t after[AXES])
 {
+    const ptrdiff_t step[AXES] = {-1, -width, -width - 1, -width + 1}; /* to the ends before the pixel */
     int64_t sum = 0, weights = 0; /* a weight is at most 2^22, an inverse 2^36: together below 2^60 */
     uint32_t narrowest = UINT32_MAX;
     uint16_t farther = 0;
     for (uint32_t k = 0; k < AXES; k++) {
-        const bracket *at = &brackets[k];
-        if (at->before == 0 || at->after == 0) {
+        if (before[k] == 0 || after[k] == 0) {
             continue;
         }
-        const uint32_t gap = at->before + at->after, square = gap * gap * (k < 2 ? 1 : 2); /* squared length: 4..2^20 */
-        const uint16_t a = at->depth, b = at->other_depth, near = T3R_MIN(a, b), deep = T3R_MAX(a, b);
+        const uint32_t gap = before[k] + after[k], square = gap * gap * (k < 2 ? 1 : 2); /* squared length: 4..2^20 */
+        const uint16_t a = pixel[step[k] * before[k]], b = pixel[-step[k] * after[k]];
+        const uint16_t near = T3R_MIN(a, b), deep = T3R_MAX(a, b);
         if (8 * (deep - near) <= near) {
             const int64_t weight = t3r_round_div32(1 << 24, (int32_t)square);
-            sum += weight * t3r_round_div64(inverse_q36(a) * at->after + inverse_q36(b) * at->before, gap);
+            sum += weight * t3r_round_div64(inverse_q36(a) * after[k] + inverse_q36(b) * before[k], gap);
             weights += weight;
         }
         if (square < narrowest) {
@@ -125,22 +119,10 @@ static uint16_t depth_across(const bracket brackets[AXES])
     return weights == 0 ? farther : (uint16_t)t3r_round_div64(weights * ((int64_t)1 << 36), sum);
 }
 
-/* Bridges a pixel between its ends in the row, which are `left` and `right` steps away, and those above and below. */
-static void bridge_pixel(const t3r_view *view, size_t pixel, uint32_t left, uint32_t right,
-                         const uint8_t above[SLANTED], const uint8_t below[SLANTED])
+/* Returns the steps, or 0 if they are more than the radius. */
+static uint8_t within(const bridge_job *job, uint32_t steps)
 {
-    bracket brackets[AXES] = {
-        {left, right, depth_at(view, pixel, -1, 0, left), depth_at(view, pixel, 1, 0, right)},
-    };
-    for (uint32_t k = 0; k < SLANTED; k++) {
-        brackets[k + 1] = (bracket){above[k], below[k], depth_at(view, pixel, upwards[k], -1, above[k]),
-                                    depth_at(view, pixel, -upwards[k], 1, below[k])};
-    }
-    const uint16_t depth = depth_across(brackets);
-    if (depth != 0) {
-        view->depth[pixel] = depth;
-        view->validity[pixel] = T3R_BRIDGED;
-    }
+    return (uint8_t)(steps <= job->radius ? steps : 0);
 }
 
 /* Goes along a row whose reaches still lead upwards, and turns them downwards. last: the next row is another task's. */
@@ -158,15 +140,17 @@ static void bridge_row(const bridge_job *job, uint32_t y, bool last)
         while (next < view->width && (next < x || job->reaches[row + next].ends == 0)) {
             next++;
         }
-        uint8_t below[SLANTED];
-        find_steps(job, x, y, 1, last, below);
+        const uint32_t right = next < view->width ? next - x : 0;
+        uint8_t before[AXES] = {within(job, left)}, after[AXES] = {within(job, right)};
+        memcpy(before + 1, here->steps, sizeof here->steps);
+        find_steps(job, x, y, 1, last, after + 1);
+        memcpy(here->steps, after + 1, sizeof here->steps);
         if (!t3r_has_depth(view->validity[row + x])) {
-            const uint32_t right = next < view->width ? next - x : 0;
-            bridge_pixel(view, row + x, left <= job->radius ? left : 0, right <= job->radius ? right : 0, here->steps,
-                         below);
-        }
-        for (uint32_t k = 0; k < SLANTED; k++) {
-            here->steps[k] = below[k];
+            const uint16_t depth = depth_across(&view->depth[row + x], (ptrdiff_t)view->width, before, after);
+            if (depth != 0) {
+                view->depth[row + x] = depth;
+                view->validity[row + x] = T3R_BRIDGED;
+            }
         }
         left += left > 0;
     }
