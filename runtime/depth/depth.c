@@ -82,7 +82,6 @@ static uint16_t depth_between(const t3r_view *view, size_t at, const bracket *be
 typedef struct fill_job {
     const t3r_view *view;
     uint32_t radius;
-    uint32_t filled[T3R_MAX_WORKERS]; /* one per worker */
 } fill_job;
 
 /* Gives depths to the pixels of rows that have none, 0 where nothing brackets them. Validity follows later, because
@@ -110,26 +109,20 @@ static void fill_rows(void *context, uint32_t begin, uint32_t end, uint32_t work
 
 static void mark_filled(void *context, uint32_t begin, uint32_t end, uint32_t worker)
 {
-    fill_job *job = context;
+    (void)worker;
+    const fill_job *job = context;
     const t3r_view *view = job->view;
     for (size_t i = (size_t)begin * view->width; i < (size_t)end * view->width; i++) {
         const bool filled = !t3r_has_depth(view->validity[i]) && view->depth[i] != 0;
         view->validity[i] = filled ? T3R_FILLED : view->validity[i];
-        job->filled[worker] += filled;
     }
 }
 
-uint32_t t3r_depth_fill(const t3r_view *view, uint32_t radius, const t3r_workers *workers)
+void t3r_depth_fill(const t3r_view *view, uint32_t radius, const t3r_workers *workers)
 {
-    fill_job job = {.view = view, .radius = radius};
-    if (radius == 0) {
-        return 0;
+    fill_job job = {view, radius};
+    if (radius > 0) {
+        t3r_run_rows(workers, view->height, fill_rows, &job);
+        t3r_run_rows(workers, view->height, mark_filled, &job);
     }
-    t3r_run_rows(workers, view->height, fill_rows, &job);
-    t3r_run_rows(workers, view->height, mark_filled, &job);
-    uint32_t filled = 0;
-    for (uint32_t w = 0; w < workers->count; w++) {
-        filled += job.filled[w];
-    }
-    return filled;
 }

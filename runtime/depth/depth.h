@@ -20,9 +20,9 @@ static inline bool t3r_same_surface(uint16_t a, uint16_t b)
 void t3r_depth_validity(t3r_view *view);
 
 /* Fills pixels without depth that have measured ones within `radius` (0..8; 0 fills nothing) on both sides, in their
- * row or their column. Filled pixels become T3R_FILLED and are never a source for others. Returns their number.
- * Interpolates if both sides agree; across an edge takes the side of the more similar colour. Reads view->colour,
- * depth and validity. At most 4 x radius steps a pixel. */
-uint32_t t3r_depth_fill(const t3r_view *view, uint32_t radius, const t3r_workers *workers);
+ * row or their column. Filled pixels become T3R_FILLED and are never a source for others. Interpolates if both sides
+ * agree; across an edge takes the side of the more similar colour. Reads view->colour, depth and validity. At most
+ * 4 x radius steps a pixel. */
+void t3r_depth_fill(const t3r_view *view, uint32_t radius, const t3r_workers *workers);
 
 #endif

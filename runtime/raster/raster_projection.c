@@ -9,9 +9,9 @@
  * pixel beyond the centres of the first and the last pixel. side: pixels, at most T3R_MAX_SIDE. */
 static int32_t limit_q24(uint32_t side, int32_t centre_q16, int32_t f_q16)
 {
-    const int64_t before_q16 = (int64_t)centre_q16 + 0x8000, after_q16 = ((int64_t)side << 16) - before_q16;
-    /* |c| < 2^30 and side <= 2^12, so the distance is below 2^31 and the numerator below 2^59 */
-    const int64_t limit = 13 * T3R_MAX(before_q16, after_q16) * (1 << 24) / (10 * (int64_t)f_q16);
+    /* |c| < 2^30 and side <= 2^12, so the distances are below 2^31 and the numerator below 2^59 */
+    const int32_t before_q16 = centre_q16 + 0x8000, after_q16 = (int32_t)(side << 16) - before_q16;
+    const int64_t limit = (int64_t)T3R_MAX(before_q16, after_q16) * (13 << 24) / (10 * (int64_t)f_q16);
     return (int32_t)T3R_MIN(limit, (int64_t)T3R_ASIDE << 24);
 }
 
