@@ -83,7 +83,7 @@ static t3r_status exposure(t3r_runtime *rt, t3r_view *views)
             rt->gain_q14[v][c] = T3R_GAIN_ONE_Q14;
         }
     }
-    if (rt->config.exposure != 0) {
+    if (T3R_FEATURE_COMPARISON && rt->config.exposure != 0) {
         if (!t3r_pointmap_step(rt, all_of(rt), T3R_PART_EXPOSURE, 0)) {
             return T3R_ERR_CANCELLED;
         }
@@ -97,7 +97,7 @@ static t3r_status exposure(t3r_runtime *rt, t3r_view *views)
 static t3r_status redundancy(t3r_runtime *rt, t3r_view *views)
 {
     const t3r_pointmap_work work = t3r_pointmap_work_of(rt);
-    for (uint32_t v = rt->views; v-- > 0 && rt->config.redundancy;) {
+    for (uint32_t v = rt->views; v-- > 0 && t3r_marks_covered(&rt->config);) {
         if (!t3r_pointmap_step(rt, all_of(rt), T3R_PART_REDUNDANCY, rt->views - 1 - v)) {
             return T3R_ERR_CANCELLED;
         }
@@ -118,7 +118,7 @@ static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
     t3r_hash_superclusters(rt, views, 0, rt->views);
     t3r_cluster *clusters = t3r_buffer_at(rt, T3R_BUFFER_CLUSTERS);
     t3r_cluster_texture(views, rt->views, clusters, rt->config.clusters);
-    if (rt->ablation.shuffle != 0) {
+    if (t3r_shuffles(&rt->ablation)) {
         t3r_shuffle_texture(clusters, rt->config.clusters, rt->config.seed);
     }
     t3r_rank_clusters(clusters, rt->config.clusters);
@@ -187,8 +187,8 @@ static t3r_status refine(t3r_runtime *rt, const t3r_view *views)
         return T3R_OK;
     }
     rt->analysed &= rt->config.keep_analysis; /* otherwise refinement overwrites labels and clusters */
-    const t3r_passes passes =
-        rt->config.fit_passes ? t3r_fitted_passes(rt, views, rt->build.refine) : (t3r_passes){rt->build.refine, 0};
+    const t3r_passes passes = T3R_FEATURE_LOSS && rt->config.fit_passes ? t3r_fitted_passes(rt, views, rt->build.refine)
+                                                                        : (t3r_passes){rt->build.refine, 0};
     rt->passes = passes.count;
     t3r_status status = t3r_refine(rt, views, passes);
     if (status == T3R_OK) {

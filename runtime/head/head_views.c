@@ -46,7 +46,7 @@ static void *work_of(const t3r_runtime *rt, uint32_t worker)
 t3r_head_input t3r_head_input_of(const t3r_runtime *rt, const t3r_view *views, uint32_t view_index,
                                  const t3r_budget_settings *settings)
 {
-    const bool unadapted = rt->ablation.unadapted != 0;
+    const bool unadapted = t3r_is_unadapted(&rt->ablation);
     return (t3r_head_input){
         .kernels = &rt->kernels,
         .map = t3r_pointmap_of(&views[view_index], rt->frame.exponent),
@@ -82,7 +82,7 @@ static bool goes_on(void *context)
 static bool fits_widths(const t3r_runtime *rt)
 {
     return T3R_FEATURE_COMPARISON && rt->config.fit_widths != 0 && rt->build.refine == 0 &&
-           !t3r_is_stream(&rt->config) && rt->ablation.unadapted == 0;
+           !t3r_is_stream(&rt->config) && !t3r_is_unadapted(&rt->ablation);
 }
 
 static void make_band(void *context, uint32_t index, uint32_t worker)
