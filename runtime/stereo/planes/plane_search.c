@@ -25,10 +25,11 @@ typedef struct search {
     int32_t middle_x, middle_y;
     uint32_t cell, columns, rows; /* side of a cell; their numbers */
     int32_t spread_q4;
-    uint32_t samples, hypotheses;
+    uint32_t step, samples; /* distance of the samples; their number, with unmatched ones */
+    uint32_t hypotheses;
     t3r_surface_sums *sums;
     t3r_plane_hypothesis *hypothesis;
-    t3r_plane_sample *sample;
+    t3r_plane_square *square;
 } search;
 
 /* Returns one over the depth of a matched pixel, 0 for others. */
@@ -90,18 +91,49 @@ static void sum_cells(const search *s)
     }
 }
 
-/* Samples the middle of every square of the sampling grid. */
-static void take_samples(search *s)
+static void clear(t3r_plane_square *square)
+{
+    square->least = INT32_MAX;
+    square->most = 0;
+    square->count = 0;
+}
+
+static void keep(t3r_plane_square *square, t3r_plane_sample sample)
+{
+    square->sample[square->count++] = sample;
+    square->least = T3R_MIN(square->least, sample.inverse);
+    square->most = T3R_MAX(square->most, sample.inverse);
+}
+
+/* Takes the samples of a square, whose first one is at a pixel. */
+static void take_square(search *s, uint32_t left, uint32_t top, t3r_plane_square *square)
 {
     const t3r_view *view = s->view;
-    const uint32_t step = (T3R_MAX(view->width, view->height) + T3R_PLANE_SAMPLES - 1) / T3R_PLANE_SAMPLES;
-    s->samples = 0;
-    for (uint32_t v = step / 2; v < view->height; v += step) {
-        for (uint32_t u = step / 2; u < view->width; u += step) {
-            s->sample[s->samples++] =
-                (t3r_plane_sample){(int16_t)((int32_t)u - s->middle_x), (int16_t)((int32_t)v - s->middle_y),
-                                   matched_inverse(view, (size_t)v * view->width + u)};
+    square->x = (int32_t)left - s->middle_x;
+    square->y = (int32_t)top - s->middle_y;
+    clear(square);
+    for (uint32_t k = 0; k < T3R_PLANE_SQUARE * T3R_PLANE_SQUARE; k++) {
+        const uint32_t x = k % T3R_PLANE_SQUARE * s->step, y = k / T3R_PLANE_SQUARE * s->step;
+        if (left + x >= view->width || top + y >= view->height) {
+            continue;
         }
+        const int32_t inverse = matched_inverse(view, (size_t)(top + y) * view->width + left + x);
+        s->samples++;
+        if (inverse != 0) {
+            keep(square,
+                 (t3r_plane_sample){(int16_t)(square->x + (int32_t)x), (int16_t)(square->y + (int32_t)y), inverse});
+        }
+    }
+}
+
+/* Samples the pixels of a grid. */
+static void take_samples(search *s)
+{
+    const uint32_t across = T3R_PLANE_SAMPLES / T3R_PLANE_SQUARE;
+    s->step = (T3R_MAX(s->view->width, s->view->height) + T3R_PLANE_SAMPLES - 1) / T3R_PLANE_SAMPLES;
+    for (uint32_t q = 0; q < T3R_PLANE_SQUARES; q++) {
+        take_square(s, q % across * T3R_PLANE_SQUARE * s->step + s->step / 2,
+                    q / across * T3R_PLANE_SQUARE * s->step + s->step / 2, &s->square[q]);
     }
 }
 
@@ -148,7 +180,7 @@ static int64_t suppose(search *s, uint32_t *deviations)
                     continue;
                 }
                 const t3r_plane plane = plane_through(&sums, s->spread_q4);
-                s->hypothesis[s->hypotheses++] = (t3r_plane_hypothesis){plane, 0};
+                s->hypothesis[s->hypotheses++] = (t3r_plane_hypothesis){plane, 0, 0};
                 if (side == 1) {
                     insert(deviations, cells++, deviation_q8(s, column, row, sums.n, &plane));
                 }
@@ -169,34 +201,57 @@ static int64_t width_of(const search *s, int64_t deviation)
     return T3R_MAX(DEVIATIONS * deviation, n > 0 ? t3r_round_div64(sum, n) * 256 / LEAST_WITHIN : 0);
 }
 
-/* Counts the samples on a hypothesis. */
+static bool is_on(const t3r_plane *plane, const t3r_plane_sample *at, int64_t within_q8)
+{
+    const int64_t off = (int64_t)at->inverse * 256 - t3r_plane_at_q8(plane, at->x, at->y);
+    return (uint64_t)(off + within_q8) <= 2 * (uint64_t)within_q8;
+}
+
 static uint32_t count_on(const search *s, const t3r_plane *plane, int64_t within_q8)
 {
+    /* bounds of one over depth in a square, from the plane at the first sample */
+    const int64_t last = (T3R_PLANE_SQUARE - 1) * (int64_t)s->step, x = last * plane->x_q8, y = last * plane->y_q8;
+    const int64_t down = T3R_MIN(x, 0) + T3R_MIN(y, 0) - within_q8, up = T3R_MAX(x, 0) + T3R_MAX(y, 0) + within_q8;
     uint32_t count = 0;
-    for (uint32_t k = 0; k < s->samples; k++) {
-        const t3r_plane_sample *at = &s->sample[k];
-        count += at->inverse != 0 && t3r_plane_holds(plane, at->x, at->y, (int64_t)at->inverse * 256, within_q8);
+    for (const t3r_plane_square *q = s->square; q < s->square + T3R_PLANE_SQUARES; q++) {
+        const int64_t first = t3r_plane_at_q8(plane, q->x, q->y);
+        if ((int64_t)q->least * 256 - first > up || (int64_t)q->most * 256 - first < down) {
+            continue;
+        }
+        for (uint32_t k = 0; k < q->count; k++) {
+            count += is_on(plane, &q->sample[k], within_q8);
+        }
     }
     return count;
 }
 
-static const t3r_plane_hypothesis *best_of(const search *s)
+/* Returns the first hypothesis with the most samples that are left. Counts fall as samples are taken away, so an older
+ * one is a bound, and only those above the best are counted again. */
+static const t3r_plane_hypothesis *best_of(const search *s, const t3r_planes *found)
 {
-    const t3r_plane_hypothesis *best = s->hypothesis;
-    for (uint32_t h = 1; h < s->hypotheses; h++) {
-        best = s->hypothesis[h].samples > best->samples ? &s->hypothesis[h] : best;
+    for (;;) {
+        t3r_plane_hypothesis *best = s->hypothesis;
+        for (uint32_t h = 1; h < s->hypotheses; h++) {
+            best = s->hypothesis[h].samples > best->samples ? &s->hypothesis[h] : best;
+        }
+        if (best->planes == found->count) {
+            return best;
+        }
+        best->samples = count_on(s, &best->plane, found->within_q8);
+        best->planes = found->count;
     }
-    return best;
 }
 
 static t3r_plane refined(const search *s, t3r_plane plane, int64_t within_q8)
 {
     for (uint32_t fit = 0; fit < FITS; fit++) {
         t3r_surface_sums sums = {0};
-        for (uint32_t k = 0; k < s->samples; k++) {
-            const t3r_plane_sample *at = &s->sample[k];
-            if (at->inverse != 0 && t3r_plane_holds(&plane, at->x, at->y, (int64_t)at->inverse * 256, within_q8)) {
-                add(&sums, at->x, at->y, at->inverse);
+        for (const t3r_plane_square *q = s->square; q < s->square + T3R_PLANE_SQUARES; q++) {
+            for (uint32_t k = 0; k < q->count; k++) {
+                const t3r_plane_sample *at = &q->sample[k];
+                if (is_on(&plane, at, within_q8)) {
+                    add(&sums, at->x, at->y, at->inverse);
+                }
             }
         }
         plane = sums.n < LEAST_SAMPLES ? plane : plane_through(&sums, 1);
@@ -204,19 +259,17 @@ static t3r_plane refined(const search *s, t3r_plane plane, int64_t within_q8)
     return plane;
 }
 
-/* Removes the samples on a plane from the counts of all hypotheses, so that each sample is used once. */
-static void take_away(const search *s, const t3r_plane *plane, int64_t within_q8)
+/* Removes the samples on a plane, so that each is used once. */
+static void take_away(search *s, const t3r_plane *plane, int64_t within_q8)
 {
-    for (uint32_t k = 0; k < s->samples; k++) {
-        t3r_plane_sample *at = &s->sample[k];
-        const int64_t inverse_q8 = (int64_t)at->inverse * 256;
-        if (inverse_q8 == 0 || !t3r_plane_holds(plane, at->x, at->y, inverse_q8, within_q8)) {
-            continue;
+    for (t3r_plane_square *q = s->square; q < s->square + T3R_PLANE_SQUARES; q++) {
+        const uint32_t count = q->count;
+        clear(q);
+        for (uint32_t k = 0; k < count; k++) {
+            if (!is_on(plane, &q->sample[k], within_q8)) {
+                keep(q, q->sample[k]);
+            }
         }
-        for (uint32_t h = 0; h < s->hypotheses; h++) {
-            s->hypothesis[h].samples -= t3r_plane_holds(&s->hypothesis[h].plane, at->x, at->y, inverse_q8, within_q8);
-        }
-        at->inverse = 0;
     }
 }
 
@@ -231,7 +284,7 @@ void t3r_search_planes(const t3r_view *view, void *work, t3r_planes *found)
     s.rows = (view->height + s.cell - 1) / s.cell;
     s.sums = t3r_take(&cut, cells * sizeof *s.sums);
     s.hypothesis = t3r_take(&cut, T3R_PLANE_HYPOTHESES * sizeof *s.hypothesis);
-    s.sample = t3r_take(&cut, (size_t)T3R_PLANE_SAMPLES * T3R_PLANE_SAMPLES * sizeof *s.sample);
+    s.square = t3r_take(&cut, T3R_PLANE_SQUARES * sizeof *s.square);
     uint32_t *deviations = t3r_take(&cut, cells * sizeof *deviations);
     sum_cells(&s);
     take_samples(&s);
@@ -241,7 +294,7 @@ void t3r_search_planes(const t3r_view *view, void *work, t3r_planes *found)
         s.hypothesis[h].samples = count_on(&s, &s.hypothesis[h].plane, found->within_q8);
     }
     while (s.hypotheses > 0 && found->count < T3R_PLANES_MOST) {
-        const t3r_plane_hypothesis *best = best_of(&s);
+        const t3r_plane_hypothesis *best = best_of(&s, found);
         if (LEAST_SHARE * best->samples < s.samples) {
             break;
         }

@@ -28,19 +28,26 @@ static inline int64_t t3r_plane_at_q8(const t3r_plane *plane, int32_t x, int32_t
     return plane->middle_q8 + (int64_t)plane->x_q8 * x + (int64_t)plane->y_q8 * y;
 }
 
-static inline bool t3r_plane_holds(const t3r_plane *plane, int32_t x, int32_t y, int64_t inverse_q8, int64_t within_q8)
-{
-    return t3r_abs64(inverse_q8 - t3r_plane_at_q8(plane, x, y)) <= within_q8;
-}
-
+/* A matched pixel. */
 typedef struct t3r_plane_sample {
     int16_t x, y;
-    int32_t inverse; /* 0: not matched, or on a plane already found */
+    int32_t inverse; /* one over depth, Q30 */
 } t3r_plane_sample;
+
+/* Samples lie in squares of as many a side, so that a square as a whole may be far from a plane. */
+#define T3R_PLANE_SQUARE 8u
+#define T3R_PLANE_SQUARES (T3R_PLANE_SAMPLES / T3R_PLANE_SQUARE * (T3R_PLANE_SAMPLES / T3R_PLANE_SQUARE))
+typedef struct t3r_plane_square {
+    int32_t x, y;        /* of its first sample */
+    int32_t least, most; /* one over depth of all its samples, Q30 */
+    uint32_t count;
+    t3r_plane_sample sample[T3R_PLANE_SQUARE * T3R_PLANE_SQUARE]; /* on no plane found so far */
+} t3r_plane_square;
 
 typedef struct t3r_plane_hypothesis {
     t3r_plane plane;
-    uint32_t samples; /* samples on it */
+    uint32_t samples; /* samples on it, */
+    uint32_t planes;  /* without those on so many planes that were found first */
 } t3r_plane_hypothesis;
 
 /* Number of windows of one, four and nine cells */
@@ -52,7 +59,7 @@ typedef struct t3r_plane_hypothesis {
 #define T3R_PLANE_SEARCH_BYTES                                                                                         \
     (T3R_UP_(T3R_PLANE_CELLS * T3R_PLANE_CELLS * sizeof(t3r_surface_sums)) +                                           \
      T3R_UP_(T3R_PLANE_HYPOTHESES * sizeof(t3r_plane_hypothesis)) +                                                    \
-     T3R_UP_(T3R_PLANE_SAMPLES * T3R_PLANE_SAMPLES * sizeof(t3r_plane_sample)) +                                       \
+     T3R_UP_(T3R_PLANE_SQUARES * sizeof(t3r_plane_square)) +                                                           \
      T3R_UP_(T3R_PLANE_CELLS * T3R_PLANE_CELLS * sizeof(uint32_t)))
 
 typedef struct t3r_planes {
