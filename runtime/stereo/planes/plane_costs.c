@@ -34,14 +34,14 @@ static square square_of(const t3r_plane_labels *labels, uint32_t cell)
                     T3R_MIN(top + labels->cell, labels->view->height)};
 }
 
-/* Sets the costs of a cell from the distances of its matched pixels to each label. */
+/* Sets the costs of a cell from the distances of its matched pixels to each label; their own depth is at none. */
 static void fit(const t3r_plane_labels *labels, uint32_t cell)
 {
     const t3r_view *view = labels->view;
     const square at = square_of(labels, cell);
     const int64_t most = labels->spread_q8 * SIGMA * FARTHEST / 128 + 1, within = labels->planes->within_q8 * 3 / 2;
     int64_t sum[T3R_LABELS_MOST] = {0}; /* at most 2^14 pixels, each below 2^38 */
-    uint32_t matched = 0, on[T3R_LABELS_MOST] = {0};
+    uint32_t matched = 0, on[T3R_PLANES_MOST] = {0};
     for (uint32_t v = at.top; v < at.bottom; v++) {
         for (uint32_t u = at.left; u < at.right; u++) {
             const size_t i = (size_t)v * view->width + u;
@@ -50,11 +50,13 @@ static void fit(const t3r_plane_labels *labels, uint32_t cell)
             }
             const int64_t own = t3r_inverse_depth_q30(view->depth[i]) * 256;
             matched++;
-            for (uint32_t l = 0; l < labels->count; l++) {
-                const int64_t off = t3r_abs64(own - t3r_label_at_q8(labels, l, u, v));
-                sum[l] += T3R_MIN(off, most);
-                on[l] += off <= within;
+            const int32_t x = (int32_t)u - labels->middle_x, y = (int32_t)v - labels->middle_y;
+            for (uint32_t p = 0; p < labels->planes->count; p++) {
+                const int64_t off = t3r_abs64(own - t3r_plane_at_q8(&labels->planes->plane[p], x, y));
+                sum[p] += T3R_MIN(off, most);
+                on[p] += off <= within;
             }
+            sum[labels->count - 1] += T3R_MIN(t3r_abs64(own - labels->far_q8), most);
         }
     }
     const uint32_t pixels = (at.right - at.left) * (at.bottom - at.top);

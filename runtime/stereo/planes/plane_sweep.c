@@ -83,28 +83,33 @@ static void turned_ray(const sweep *s, uint32_t u, uint32_t v, int64_t turned_q2
     }
 }
 
-/* Returns the pixel of the other view that shows a point of a turned ray, or that there is none, -1. */
-static int64_t seen_at(const sweep *s, const int64_t turned_q24[3], int64_t inverse_q8)
+typedef struct pixel {
+    uint32_t u, v;
+} pixel;
+
+/* Finds the pixel of the other view that shows a point of a turned ray. Returns false if there is none. */
+static bool find_shown(const sweep *s, const int64_t turned_q24[3], int64_t inverse_q8, pixel *at)
 {
     const t3r_view *view = s->labels->view;
+    const int64_t inverse_q28 = t3r_round_shift64(inverse_q8, 10); /* below 2^26 */
     int64_t point[3];
     for (int i = 0; i < 3; i++) {
-        /* Q12 and Q28; below 2^34 and 2^26 */
-        const int64_t moved = t3r_round_shift64(s->offset_q12[i] * t3r_round_shift64(inverse_q8, 10), 16);
+        const int64_t moved = t3r_round_shift64(s->offset_q12[i] * inverse_q28, 16); /* offset: below 2^34 */
         point[i] = turned_q24[i] + t3r_clamp64(moved, -OFFSET_MOST, OFFSET_MOST);
     }
     if (point[2] < LEAST_Z || t3r_abs64(point[0]) > RAY_MOST * point[2] || t3r_abs64(point[1]) > RAY_MOST * point[2]) {
-        return -1;
+        return false;
     }
     const int64_t u = t3r_round_shift64(place_q16(point[0], point[2], s->other->fx_q16, s->other->cx_q16), 16);
     const int64_t v = t3r_round_shift64(place_q16(point[1], point[2], s->other->fy_q16, s->other->cy_q16), 16);
-    return u < 0 || v < 0 || u >= view->width || v >= view->height ? -1 : v * view->width + u;
+    *at = (pixel){(uint32_t)u, (uint32_t)v};
+    return u >= 0 && v >= 0 && u < view->width && v < view->height;
 }
 
-static uint32_t bits_of(const uint8_t *census, uint32_t width, size_t i)
+static uint32_t bits_of(const uint8_t *census, uint32_t width, pixel at)
 {
-    const uint8_t *at = census + i / width * width * T3R_CENSUS_BYTES + i % width;
-    return at[0] | (uint32_t)at[width] << 8 | (uint32_t)at[2 * (size_t)width] << 16;
+    const uint8_t *first = census + (size_t)at.v * width * T3R_CENSUS_BYTES + at.u;
+    return first[0] | (uint32_t)first[width] << 8 | (uint32_t)first[2 * (size_t)width] << 16;
 }
 
 /* Returns the number of ones of 24 bits. */
@@ -132,13 +137,14 @@ static int32_t compare(const sweep *s, uint32_t cell, int32_t *differ_q4)
         }
         int64_t turned[3];
         turned_ray(s, u, v, turned);
-        const uint32_t own = bits_of(s->census, width, (size_t)v * width + u);
+        const uint32_t own = bits_of(s->census, width, (pixel){u, v});
         for (uint32_t l = 0; l < labels->count; l++) {
             const int64_t inverse_q8 = T3R_MIN(t3r_label_at_q8(labels, l, u, v), labels->most_q8);
-            const int64_t at = inverse_q8 > 0 ? seen_at(s, turned, inverse_q8) : -1;
-            if (at >= 0 && s->luma_other[at] != 0) {
+            pixel at;
+            if (inverse_q8 > 0 && find_shown(s, turned, inverse_q8, &at) &&
+                s->luma_other[(size_t)at.v * width + at.u] != 0) {
                 seen[l]++;
-                differ[l] += ones(own ^ bits_of(s->census_other, width, (size_t)at));
+                differ[l] += ones(own ^ bits_of(s->census_other, width, at));
             }
         }
     }
