@@ -234,7 +234,7 @@ static t3r_status make(reconstruction *r, const t3r_request *request)
 /* Counts points by stereo: only the analysis knows which points exist, so it runs one with as little else as
  * possible. */
 static int count_matched_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path,
-                                reconstruction_points *points)
+                                const reconstruction_options *options, reconstruction_points *points)
 {
     reconstruction counted = {.context_count = r->context_count};
     memcpy(counted.context, r->context, sizeof counted.context);
@@ -244,7 +244,7 @@ static int count_matched_points(const reconstruction *r, const t3r_capture_frame
     c->flying = c->redundancy = c->exposure = c->refine = c->cluster_batches = 0;
     c->wavelet = T3R_WAVELET_HAAR;
     c->levels = c->clusters = c->render_width = c->render_height = 1;
-    int code = open_arena(&counted, &(reconstruction_options){.arena = ARENA_MIN, .processor = processor_defaults()});
+    int code = open_arena(&counted, &(reconstruction_options){.arena = ARENA_MIN, .processor = options->processor});
     t3r_status status = T3R_OK;
     for (uint32_t v = 0; v < r->context_count && code == CLI_OK; v++) {
         status = t3r_add_view(counted.runtime, &frames[v].frame, &frames[v].camera);
@@ -285,11 +285,11 @@ static int count_measured_points(const reconstruction *r, const t3r_capture_fram
     return code;
 }
 
-static int count_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path, t3r_depth depth,
-                        reconstruction_points *points)
+static int count_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path,
+                        const reconstruction_options *options, reconstruction_points *points)
 {
-    int code = depth == T3R_DEPTH_STEREO ? count_matched_points(r, frames, path, points)
-                                         : count_measured_points(r, frames, path, points);
+    int code = options->config.depth == T3R_DEPTH_STEREO ? count_matched_points(r, frames, path, options, points)
+                                                         : count_measured_points(r, frames, path, points);
     return code == CLI_OK && points->valid == 0
                ? cli_error(CLI_BAD_INPUT, "%s: the context frames hold no valid depth", path)
                : code;
@@ -353,7 +353,7 @@ int reconstruction_count(reconstruction_points *points, const t3r_recording *rec
     t3r_capture_frame frames[T3R_MAX_VIEWS];
     int code = choose_context(&r, recording, path, options, frames);
     code = code == CLI_OK ? need_depth(&r, path, frames, options->config.depth) : code;
-    return code == CLI_OK ? count_points(&r, frames, path, options->config.depth, points) : code;
+    return code == CLI_OK ? count_points(&r, frames, path, options, points) : code;
 }
 
 static int bind_head(reconstruction *r, const reconstruction_options *options)
@@ -446,7 +446,7 @@ static int prepare(reconstruction *r, const char *path, const reconstruction_opt
     }
 
     reconstruction_points points;
-    code = count_points(r, frames, path, options->config.depth, &points);
+    code = count_points(r, frames, path, options, &points);
     if (code != CLI_OK) {
         return code;
     }
