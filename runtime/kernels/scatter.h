@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "blend.h"
+#include "project.h"
 
 /* Numbers of monomials x^i y^j with i + j <= 2 and with i + j <= 4, in the order 1 x y xx xy yy xxx xxy xyy yyy xxxx
  * ... */
@@ -40,7 +41,7 @@ typedef struct t3r_refine_sums {
     int32_t gradient[T3R_REFINE_MOMENTS_2];  /* sum of (g . r) x^i y^j, levels^2, Q7 */
     int32_t curvature[T3R_REFINE_MOMENTS_4]; /* sum of |g|^2 x^i y^j, levels^2, Q7 */
     uint32_t area;                           /* pixels of the splat's boxes in the views added so far, below 2^28 */
-    int16_t right_q15[2], down_q15[2];       /* change of x and y a pixel to the right and down, in this view */
+    t3r_splat_axes axes;                     /* of x and y, in this view */
 } t3r_refine_sums;
 
 /* Returns the right shift of sums over `area` pixels, ceil(log2 area) - 6, at least 0, which bounds them by the sums

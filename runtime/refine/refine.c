@@ -22,7 +22,7 @@ static t3r_wanted *wanted_of(const t3r_refine_layout *w, uint32_t band)
 static void shift_each(int32_t *sums, uint32_t count, uint32_t shift)
 {
     for (uint32_t i = 0; i < count; i++) {
-        sums[i] = (int32_t)t3r_round_shift64(sums[i], shift);
+        sums[i] = t3r_scale32(sums[i], -(int32_t)shift);
     }
 }
 
@@ -37,24 +37,6 @@ static void widen(t3r_refine_sums *sums, const t3r_splat *splat)
         shift_each(&sums->weight, 1, shift);
         shift_each(sums->gradient, T3R_REFINE_MOMENTS_2, shift);
         shift_each(sums->curvature, T3R_REFINE_MOMENTS_4, shift);
-    }
-}
-
-/* |K| <= t / (t^2 + 0.3) < 0.913 for each singular value t of T */
-#define AXIS_MOST_Q15 30147
-
-/* Stores the splat's own axes: e = K d, K = T^T S^-1 with the first two columns of T, so that d q = -e . step for a
- * shift by `step` of them. */
-static void set_axes(const t3r_projection *projection, const t3r_gaussian *g, const t3r_splat *s, t3r_refine_sums *sums)
-{
-    int32_t row[2][3];
-    (void)t3r_footprint_rows(projection, g, row[0], row[1]);
-    for (int k = 0; k < 2; k++) {
-        /* the conic is S^-1 / 2, so it holds S^-1 in Q29. |T| <= 2^24: the sums stay below 2^56. */
-        int64_t right = t3r_round_shift64((int64_t)row[0][k] * s->a_q30 + (int64_t)row[1][k] * s->b_q30, 26);
-        int64_t down = t3r_round_shift64((int64_t)row[0][k] * s->b_q30 + (int64_t)row[1][k] * s->c_q30, 26);
-        sums->right_q15[k] = (int16_t)t3r_clamp64(right, -AXIS_MOST_Q15, AXIS_MOST_Q15);
-        sums->down_q15[k] = (int16_t)t3r_clamp64(down, -AXIS_MOST_Q15, AXIS_MOST_Q15);
     }
 }
 
@@ -240,17 +222,28 @@ typedef struct slice_job {
     bool in_parts;                  /* the pass compares a part of the pixels */
 } slice_job;
 
+/* Prepares the sums of at most BEGUN_AT_ONCE Gaussians of the slice for the view. */
+#define BEGUN_AT_ONCE 64u
+static void begin_some(const slice_job *job, uint32_t first, uint32_t count)
+{
+    const t3r_splat *splats = &job->work->room.splats[job->slice.first + first];
+    t3r_splat_axes axes[BEGUN_AT_ONCE];
+    job->kernels->axes(job->projection, &job->scene[job->slice.first + first], splats, count, axes);
+    for (uint32_t i = 0; i < count; i++) {
+        if (splats[i].z_q20 != 0) {
+            widen(&job->slice.sums[first + i], &splats[i]);
+            job->slice.sums[first + i].axes = axes[i];
+        }
+    }
+}
+
 static void begin_chunk(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
     const slice_job *job = context;
     const uint32_t end = T3R_MIN((index + 1) * CHUNK, job->slice.count);
-    for (uint32_t i = index * CHUNK; i < end; i++) {
-        const t3r_splat *splat = &job->work->room.splats[job->slice.first + i];
-        if (splat->z_q20 != 0) {
-            widen(&job->slice.sums[i], splat);
-            set_axes(job->projection, &job->scene[job->slice.first + i], splat, &job->slice.sums[i]);
-        }
+    for (uint32_t first = index * CHUNK; first < end; first += BEGUN_AT_ONCE) {
+        begin_some(job, first, T3R_MIN(end - first, BEGUN_AT_ONCE));
     }
 }
 

@@ -44,9 +44,7 @@ static bool find_crossing(const t3r_binning *bin, const t3r_refine_slice *slice,
         }
         const t3r_refine_sums *own = &slice->sums[i - slice->first];
         t3r_refine_sums *copy = &sums[band->crossing];
-        *copy = (t3r_refine_sums){.area = own->area, /* the scale that both sums use */
-                                  .right_q15 = {own->right_q15[0], own->right_q15[1]},
-                                  .down_q15 = {own->down_q15[0], own->down_q15[1]}};
+        *copy = (t3r_refine_sums){.area = own->area, .axes = own->axes}; /* the scale that both sums use */
         index[band->crossing++] = i;
     }
     return true;

@@ -101,16 +101,16 @@ static kept_splats draw(const t3r_refine_view *job, const uint32_t *list, uint32
 
 /* Computes x, y and their steps a pixel, from the axes in Q15 and the offset of the first pixel from the mean in Q12.
  * The results are modulo 2^16, so 32-bit intermediates are enough. */
-static void place(const t3r_refine_sums *sums, const t3r_splat *s, uint32_t x, uint32_t y, uint32_t spread,
+static void place(const t3r_splat_axes *axes, const t3r_splat *s, uint32_t x, uint32_t y, uint32_t spread,
                   t3r_scatter_splat *out)
 {
     const uint32_t dx_q12 = (x << (12 + spread)) - (uint32_t)s->x_q12;
     const uint32_t dy_q12 = (y << (12 + spread)) - (uint32_t)s->y_q12;
     for (int k = 0; k < 2; k++) {
-        const uint32_t at_q27 = (uint32_t)sums->right_q15[k] * dx_q12 + (uint32_t)sums->down_q15[k] * dy_q12;
+        const uint32_t at_q27 = (uint32_t)axes->right_q15[k] * dx_q12 + (uint32_t)axes->down_q15[k] * dy_q12;
         out->origin_q13[k] = (int16_t)(uint16_t)((at_q27 + (1 << 13)) >> 14);
-        out->right_q13[k] = (int16_t)t3r_round_shift32(sums->right_q15[k], 2 - spread);
-        out->down_q13[k] = (int16_t)t3r_round_shift32(sums->down_q15[k], 2 - spread);
+        out->right_q13[k] = (int16_t)t3r_round_shift32(axes->right_q15[k], 2 - spread);
+        out->down_q13[k] = (int16_t)t3r_round_shift32(axes->down_q15[k], 2 - spread);
     }
 }
 
@@ -155,7 +155,7 @@ static void take_off(const t3r_refine_view *job, const uint32_t *list, const kep
         const bool faint = spread > 0 && splat.scale >= FAINT_SCALE;
         if (!faint && is_in(&job->slice, index)) {
             sums = t3r_refine_sums_in(job->bands, job->band, job->borders, &job->slice, s, index, job->across);
-            place(sums, s, tile->left + span.column, tile->top + span.first, spread, &splat);
+            place(&sums->axes, s, tile->left + span.column, tile->top + span.first, spread, &splat);
             splat.pixels = (span.x1 - span.x0 + 1u) * (span.last - span.first + 1u);
         }
         job->kernels->scatter(job->wanted, &splat, sums);

@@ -79,6 +79,27 @@ const char *check_project(const t3r_kernels *kernels, uint64_t *seed)
     return NULL;
 }
 
+const char *check_axes(const t3r_kernels *kernels, uint64_t *seed)
+{
+    const uint32_t count = any_length(seed, COUNT);
+    const t3r_projection p = any_projection(seed);
+    t3r_gaussian *g = guarded_take(count * sizeof *g, _Alignof(t3r_gaussian));
+    t3r_splat *splats = guarded_take(count * sizeof *splats, _Alignof(t3r_splat));
+    t3r_splat_axes *axes = guarded_take(count * sizeof *axes, _Alignof(t3r_splat_axes)), want[COUNT];
+    for (uint32_t i = 0; i < count; i++) {
+        g[i] = any_gaussian(seed, &p, unit_random(seed) % 8);
+    }
+    t3r_project_c(&p, g, count, splats);
+    kernels->axes(&p, g, splats, count, axes);
+    t3r_axes_c(&p, g, splats, count, want);
+    for (uint32_t i = 0; i < count; i++) {
+        if (splats[i].z_q20 != 0 && !SAME(&axes[i], &want[i], 1)) {
+            return "the axes of a splat differ";
+        }
+    }
+    return NULL;
+}
+
 /* Makes splats that reach one tile of a view, or of a part of its pixels: projects Gaussians until each does. */
 static uint32_t any_splats(uint64_t *seed, t3r_splat splats[COUNT], t3r_tile_place *tile)
 {

@@ -52,6 +52,7 @@
     X(place, check_place)                                                                                              \
     X(blend, check_blend)                                                                                              \
     X(blend_keep, check_blend_keep)                                                                                    \
+    X(axes, check_axes)                                                                                                \
     X(scatter, check_scatter)                                                                                          \
     X(solve, check_solve)                                                                                              \
     X(hash_bytes, check_hash_bytes)

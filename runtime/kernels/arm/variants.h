@@ -77,6 +77,7 @@
 #endif
 #if T3R_FEATURE_REFINEMENT
 #define T3R_NEON_REFINEMENT_VARIANTS_(X)                                                                               \
+    X(axes, T3R_CPU_NEON, t3r_axes_neon)                                                                               \
     X(scatter, T3R_CPU_NEON, t3r_scatter_neon)                                                                         \
     X(solve, T3R_CPU_NEON, t3r_solve_neon)
 #else

@@ -17,6 +17,7 @@
 #endif
 #if T3R_FEATURE_REFINEMENT
 #define T3R_SIMD128_REFINEMENT_VARIANTS_(X)                                                                            \
+    X(axes, T3R_CPU_SIMD128, t3r_axes_simd128)                                                                         \
     X(scatter, T3R_CPU_SIMD128, t3r_scatter_simd128)                                                                   \
     X(solve, T3R_CPU_SIMD128, t3r_solve_simd128)
 #else

@@ -22,8 +22,14 @@
 #define T3R_X86_OPTIMIZED_(X)                                                                                          \
     X(project, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_project_avx512)                                                      \
     X(hash_bytes, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_hash_bytes_avx512)
+#if T3R_FEATURE_REFINEMENT
+#define T3R_X86_OPTIMIZED_REFINEMENT_(X) X(axes, T3R_CPU_AVX2 | T3R_CPU_AVX512, t3r_axes_avx512)
+#else
+#define T3R_X86_OPTIMIZED_REFINEMENT_(X)
+#endif
 #else
 #define T3R_X86_OPTIMIZED_(X)
+#define T3R_X86_OPTIMIZED_REFINEMENT_(X)
 #endif
 /* Variants of features that a library may be built without. */
 #if T3R_FEATURE_STEREO
@@ -57,11 +63,14 @@
 #endif
 #if T3R_FEATURE_REFINEMENT
 #define T3R_X86_REFINEMENT_VARIANTS_(X)                                                                                \
+    X(axes, T3R_CPU_SSE41, t3r_axes_sse41)                                                                             \
+    X(axes, T3R_CPU_AVX2, t3r_axes_avx2)                                                                               \
     X(scatter, T3R_CPU_SSE41, t3r_scatter_sse41)                                                                       \
     X(scatter, T3R_CPU_AVX2, t3r_scatter_avx2)                                                                         \
     X(scatter, T3R_CPU_X86_VNNI_, t3r_scatter_vnni)                                                                    \
     X(solve, T3R_CPU_SSE41, t3r_solve_sse41)                                                                           \
-    X(solve, T3R_CPU_AVX2, t3r_solve_avx2)
+    X(solve, T3R_CPU_AVX2, t3r_solve_avx2)                                                                             \
+    T3R_X86_OPTIMIZED_REFINEMENT_(X)
 #else
 #define T3R_X86_REFINEMENT_VARIANTS_(X)
 #endif
