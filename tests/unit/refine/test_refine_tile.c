@@ -116,8 +116,8 @@ static void clear_sums(t3r_refine_sums *sums, uint32_t first, uint32_t count)
         const own_axes axes = axes_of(&scene[first + i], s);
         sums[i].area = (uint32_t)(s->x1 - s->x0 + 1) * (uint32_t)(s->y1 - s->y0 + 1);
         for (int k = 0; k < 2; k++) {
-            sums[i].right_q15[k] = (int16_t)lround(axes.k[k][0] * 32768);
-            sums[i].down_q15[k] = (int16_t)lround(axes.k[k][1] * 32768);
+            sums[i].axes.right_q15[k] = (int16_t)lround(axes.k[k][0] * 32768);
+            sums[i].axes.down_q15[k] = (int16_t)lround(axes.k[k][1] * 32768);
         }
     }
 }
