@@ -90,6 +90,7 @@ typedef struct t3r_kernels {
     t3r_blend_kernel *blend;
     t3r_blend_keep_kernel *blend_keep;
     t3r_axes_kernel *axes;
+    t3r_compare_row_kernel *compare_row;
     t3r_scatter_kernel *scatter;
     t3r_solve_kernel *solve;
     /* the hash of each stage */

@@ -75,4 +75,10 @@ typedef void t3r_scatter_kernel(t3r_wanted *restrict tile, const t3r_scatter_spl
                                 t3r_refine_sums *restrict sums);
 t3r_scatter_kernel t3r_scatter_c;
 
+/* Computes residuals of `count` pixels of a tile's row and channel, at most T3R_TILE_SIDE: of levels 2^spread apart
+ * times the gain, less drawn colours. spread: 0 or 1. */
+typedef void t3r_compare_row_kernel(const uint8_t *restrict shown, uint32_t spread, uint16_t gain_q14,
+                                    const uint16_t *restrict drawn_q7, uint32_t count, int16_t *restrict residual_q4);
+t3r_compare_row_kernel t3r_compare_row_c;
+
 #endif

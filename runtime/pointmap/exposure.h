@@ -5,10 +5,9 @@
 
 #include <stdint.h>
 
+#include "core/gain.h"
 #include "pointmap_work.h"
 #include "state/views.h"
-
-#define T3R_GAIN_ONE_Q14 (1u << 14)
 
 /* Computes gains of r, g, b, Q14, 1/4..4, that bring each view to the mean exposure of all. Each view is compared with
  * the earlier ones, already levelled: its gain is the median of log2(its level / the other's) over pairs of pixels. A
@@ -17,12 +16,5 @@
  * levelled views, including the first one. */
 uint32_t t3r_exposure_gains(const t3r_view *views, uint32_t count, int32_t exponent, uint16_t gain_q14[][3],
                             const t3r_pointmap_work *work);
-
-/* Levels a colour of the view by its gain: Q7, clamped to 255. */
-static inline uint16_t t3r_level_q7(uint32_t colour_q7, uint16_t gain_q14)
-{
-    uint32_t levelled = (colour_q7 * gain_q14 + (1u << 13)) >> 14; /* below 2^15 x 2^16 */
-    return (uint16_t)(levelled < 255 * 128 ? levelled : 255 * 128);
-}
 
 #endif

@@ -100,6 +100,22 @@ const char *check_axes(const t3r_kernels *kernels, uint64_t *seed)
     return NULL;
 }
 
+const char *check_compare_row(const t3r_kernels *kernels, uint64_t *seed)
+{
+    const uint32_t count = (uint32_t)any_value(seed, 1, SIDE), spread = (uint32_t)(unit_random(seed) % 2);
+    uint8_t *shown = guarded_take(((count - 1) << spread) + 1, 1);
+    uint16_t *drawn = guarded_take(count * sizeof *drawn, _Alignof(uint16_t));
+    int16_t *residual = guarded_take(count * sizeof *residual, _Alignof(int16_t)), want[SIDE];
+    const uint16_t gain = (uint16_t)any_value(seed, 0, UINT16_MAX);
+    for (uint32_t i = 0; i < count; i++) {
+        shown[i << spread] = (uint8_t)any_value(seed, 0, 255);
+        drawn[i] = (uint16_t)any_value(seed, 0, UINT16_MAX);
+    }
+    kernels->compare_row(shown, spread, gain, drawn, count, residual);
+    t3r_compare_row_c(shown, spread, gain, drawn, count, want);
+    return SAME(residual, want, count) ? NULL : "a residual differs";
+}
+
 /* Makes splats that reach one tile of a view, or of a part of its pixels: projects Gaussians until each does. */
 static uint32_t any_splats(uint64_t *seed, t3r_splat splats[COUNT], t3r_tile_place *tile)
 {

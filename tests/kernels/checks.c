@@ -53,6 +53,7 @@
     X(blend, check_blend)                                                                                              \
     X(blend_keep, check_blend_keep)                                                                                    \
     X(axes, check_axes)                                                                                                \
+    X(compare_row, check_compare_row)                                                                                  \
     X(scatter, check_scatter)                                                                                          \
     X(solve, check_solve)                                                                                              \
     X(hash_bytes, check_hash_bytes)

@@ -28,7 +28,8 @@ kernel_check check_sample_potential, check_sample_approach, check_nearest;
 kernel_check check_blur_row, check_blur_column, check_wanted_row, check_key_row;
 kernel_check check_convolve, check_depthwise, check_convolve_packed;
 kernel_check check_project, check_radix_count, check_radix_pass;
-kernel_check check_place, check_blend, check_blend_keep, check_axes, check_scatter, check_solve;
+kernel_check check_place, check_blend, check_blend_keep, check_axes;
+kernel_check check_compare_row, check_scatter, check_solve;
 kernel_check check_hash_bytes;
 
 /* The table's entries. */

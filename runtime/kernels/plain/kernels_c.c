@@ -56,6 +56,7 @@ const t3r_kernels t3r_kernels_c = {
 #if T3R_FEATURE_REFINEMENT
     .blend_keep = t3r_blend_keep_c,
     .axes = t3r_axes_c,
+    .compare_row = t3r_compare_row_c,
     .scatter = t3r_scatter_c,
     .solve = t3r_solve_c,
 #endif

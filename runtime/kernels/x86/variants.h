@@ -65,6 +65,7 @@
 #define T3R_X86_REFINEMENT_VARIANTS_(X)                                                                                \
     X(axes, T3R_CPU_SSE41, t3r_axes_sse41)                                                                             \
     X(axes, T3R_CPU_AVX2, t3r_axes_avx2)                                                                               \
+    X(compare_row, T3R_CPU_AVX2, t3r_compare_row_avx2)                                                                 \
     X(scatter, T3R_CPU_SSE41, t3r_scatter_sse41)                                                                       \
     X(scatter, T3R_CPU_AVX2, t3r_scatter_avx2)                                                                         \
     X(scatter, T3R_CPU_X86_VNNI_, t3r_scatter_vnni)                                                                    \
