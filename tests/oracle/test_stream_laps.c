@@ -142,13 +142,13 @@ static void show(const char *what, const t3r_config *config, const lap *l)
            l->width);
 }
 
-/* Compares the last window, of whole laps, with the lap about keyframe 100. */
+/* Compares the last window, of whole laps, with as many from keyframe 70 on. */
 static void stays(t3r_config config)
 {
     walk w = start(&config);
     (void)take(&w, 0, LAP, false);
-    const lap early = take(&w, LAP, LAP, false);
-    (void)take(&w, 2 * LAP, KEYFRAMES - WINDOW - 2 * LAP, false);
+    const lap early = take(&w, LAP, WINDOW, false);
+    (void)take(&w, LAP + WINDOW, KEYFRAMES - 2 * WINDOW - LAP, false);
     const lap late = take(&w, KEYFRAMES - WINDOW, WINDOW, false);
     show("early", &config, &early);
     show("late", &config, &late);
