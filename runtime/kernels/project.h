@@ -40,21 +40,6 @@ typedef void t3r_project_kernel(const t3r_projection *projection, const t3r_gaus
                                 t3r_splat *splats);
 t3r_project_kernel t3r_project_c;
 
-/* Change of a splat's own coordinates, in deviations, a pixel to the right and down: e = K d, K = T^T S^-1 with the
- * first two columns of T, so that d q = -e . step for a shift by `step` of them. */
-typedef struct t3r_splat_axes {
-    int16_t right_q15[2], down_q15[2];
-} t3r_splat_axes;
-
-/* |K| <= t / (t^2 + 0.3) < 0.913 for each singular value t of T */
-#define T3R_AXIS_MOST_Q15 30147
-
-/* Computes the axes of `count` splats, in order, from the Gaussians that they were projected from. The axes of culled
- * splats may hold anything. */
-typedef void t3r_axes_kernel(const t3r_projection *projection, const t3r_gaussian *gaussians, const t3r_splat *splats,
-                             uint32_t count, t3r_splat_axes *axes);
-t3r_axes_kernel t3r_axes_c;
-
 /* Projects one Gaussian. Returns false when it is culled. */
 bool t3r_project(const t3r_projection *projection, const t3r_gaussian *gaussian, t3r_splat *splat);
 

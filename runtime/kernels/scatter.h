@@ -32,6 +32,15 @@ enum t3r_moment {
     T3R_M_Y4
 };
 
+/* Change of a splat's own coordinates, in deviations, a pixel to the right and down: e = K d, K = T^T S^-1 with the
+ * first two columns of T, so that d q = -e . step for a shift by `step` of them. */
+typedef struct t3r_splat_axes {
+    int16_t right_q15[2], down_q15[2];
+} t3r_splat_axes;
+
+/* |K| <= t / (t^2 + 0.3) < 0.913 for each singular value t of T */
+#define T3R_AXIS_MOST_Q15 30147
+
 /* Sums over one Gaussian's pixels in all views, shifted right by t3r_refine_shift(area). They are integers, so the
  * order of adding doesn't matter. (x, y) are the splat's own coordinates: a pixel's offset from the mean, in
  * deviations. */
@@ -43,6 +52,12 @@ typedef struct t3r_refine_sums {
     uint32_t area;                           /* pixels of the splat's boxes in the views added so far, below 2^28 */
     t3r_splat_axes axes;                     /* of x and y, in this view */
 } t3r_refine_sums;
+
+/* Sets the axes in the sums of `count` splats from the Gaussians that they were projected from, all in order. Those of
+ * culled splats may become anything. */
+typedef void t3r_axes_kernel(const t3r_projection *projection, const t3r_gaussian *gaussians, const t3r_splat *splats,
+                             uint32_t count, t3r_refine_sums *sums);
+t3r_axes_kernel t3r_axes_c;
 
 /* Returns the right shift of sums over `area` pixels, ceil(log2 area) - 6, at least 0, which bounds them by the sums
  * of 64 pixels. */

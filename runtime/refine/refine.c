@@ -222,28 +222,18 @@ typedef struct slice_job {
     bool in_parts;                  /* the pass compares a part of the pixels */
 } slice_job;
 
-/* Prepares the sums of at most BEGUN_AT_ONCE Gaussians of the slice for the view. */
-#define BEGUN_AT_ONCE 64u
-static void begin_some(const slice_job *job, uint32_t first, uint32_t count)
-{
-    const t3r_splat *splats = &job->work->room.splats[job->slice.first + first];
-    t3r_splat_axes axes[BEGUN_AT_ONCE];
-    job->kernels->axes(job->projection, &job->scene[job->slice.first + first], splats, count, axes);
-    for (uint32_t i = 0; i < count; i++) {
-        if (splats[i].z_q20 != 0) {
-            widen(&job->slice.sums[first + i], &splats[i]);
-            job->slice.sums[first + i].axes = axes[i];
-        }
-    }
-}
-
 static void begin_chunk(void *context, uint32_t index, uint32_t worker)
 {
     (void)worker;
     const slice_job *job = context;
-    const uint32_t end = T3R_MIN((index + 1) * CHUNK, job->slice.count);
-    for (uint32_t first = index * CHUNK; first < end; first += BEGUN_AT_ONCE) {
-        begin_some(job, first, T3R_MIN(end - first, BEGUN_AT_ONCE));
+    const uint32_t begin = index * CHUNK, count = T3R_MIN(CHUNK, job->slice.count - begin);
+    const t3r_splat *splats = &job->work->room.splats[job->slice.first + begin];
+    t3r_refine_sums *sums = &job->slice.sums[begin];
+    job->kernels->axes(job->projection, &job->scene[job->slice.first + begin], splats, count, sums);
+    for (uint32_t i = 0; i < count; i++) {
+        if (splats[i].z_q20 != 0) {
+            widen(&sums[i], &splats[i]);
+        }
     }
 }
 

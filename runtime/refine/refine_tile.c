@@ -8,36 +8,22 @@
 #include "core/memory.h"
 #include "state/remembered.h"
 
-/* A row of a tile in the view: `count` pixels from `at` on, 2^spread apart. */
-typedef struct shown_row {
-    size_t at;
-    uint32_t count, spread;
-} shown_row;
-
-/* Marks the pixels that count in the loss, and compares the row. */
-static void compare_row(const t3r_refine_view *job, const shown_row *row, uint32_t j, t3r_wanted *want)
+/* Whether the pixel counts in the loss. */
+static bool is_wanted(const t3r_refine_view *job, size_t at)
 {
-    const t3r_view *view = job->view;
-    for (uint32_t i = 0; i < row->count; i++) {
-        want->counts[j][i] = t3r_has_depth(view->validity[row->at + ((size_t)i << row->spread)]) ? UINT16_MAX : 0;
+    if (T3R_FEATURE_STREAMS && job->remembered != NULL) {
+        return t3r_is_remembered(job->remembered[at]);
     }
-    for (int c = 0; c < 3; c++) {
-        job->kernels->compare_row(view->colour[c] + row->at, row->spread, job->gain_q14[c],
-                                  want->pixels.colour_q7[c][j], row->count, want->residual_q4[c][j]);
-    }
+    return t3r_has_depth(job->view->validity[at]);
 }
 
-/* The same with a remembered keyframe. */
-static void compare_remembered(const t3r_refine_view *job, const shown_row *row, uint32_t j, t3r_wanted *want)
+/* Computes residuals of `count` pixels of a remembered keyframe, 2^spread apart. */
+static void compare_remembered(const uint16_t *pixels, uint32_t spread, int channel, uint16_t gain_q14,
+                               const uint16_t *drawn_q7, uint32_t count, int16_t *residual_q4)
 {
-    for (uint32_t i = 0; i < row->count; i++) {
-        const uint16_t pixel = job->remembered[row->at + ((size_t)i << row->spread)];
-        want->counts[j][i] = t3r_is_remembered(pixel) ? UINT16_MAX : 0;
-        for (int c = 0; c < 3; c++) {
-            const int32_t drawn_q7 = T3R_MIN((int32_t)want->pixels.colour_q7[c][j][i], 255 * 128);
-            const int32_t shown_q7 = t3r_level_q7(t3r_remembered_q7(pixel, c), job->gain_q14[c]);
-            want->residual_q4[c][j][i] = (int16_t)t3r_round_shift32(shown_q7 - drawn_q7, 3);
-        }
+    for (uint32_t i = 0; i < count; i++) {
+        const uint16_t shown_q7 = t3r_level_q7(t3r_remembered_q7(pixels[i << spread], channel), gain_q14);
+        residual_q4[i] = (int16_t)t3r_round_shift32(shown_q7 - T3R_MIN((int32_t)drawn_q7[i], 255 * 128), 3);
     }
 }
 
@@ -53,13 +39,21 @@ static void compare(const t3r_refine_view *job, const t3r_tile_place *tile, t3r_
     memset(want->residual_q4, 0, sizeof want->residual_q4);
     memset(want->counts, 0, sizeof want->counts);
     for (uint32_t j = 0; j < rows; j++) {
-        const shown_row row = {(size_t)(((tile->top + j) << lattice.spread) + lattice.y) * view->width +
-                                   (tile->left << lattice.spread) + lattice.x,
-                               columns, lattice.spread};
-        if (T3R_FEATURE_STREAMS && job->remembered != NULL) {
-            compare_remembered(job, &row, j, want);
-        } else {
-            compare_row(job, &row, j, want);
+        const size_t at = (size_t)(((tile->top + j) << lattice.spread) + lattice.y) * view->width +
+                          (tile->left << lattice.spread) + lattice.x;
+        for (uint32_t i = 0; i < columns; i++) {
+            want->counts[j][i] = is_wanted(job, at + ((size_t)i << lattice.spread)) ? UINT16_MAX : 0;
+        }
+        for (int c = 0; c < 3; c++) {
+            const uint16_t *drawn_q7 = want->pixels.colour_q7[c][j];
+            int16_t *residual_q4 = want->residual_q4[c][j];
+            if (T3R_FEATURE_STREAMS && job->remembered != NULL) {
+                compare_remembered(job->remembered + at, lattice.spread, c, job->gain_q14[c], drawn_q7, columns,
+                                   residual_q4);
+            } else {
+                job->kernels->compare_row(view->colour[c] + at, lattice.spread, job->gain_q14[c], drawn_q7, columns,
+                                          residual_q4);
+            }
         }
     }
 }

@@ -5,6 +5,7 @@
 #define T3R_KERNELS_LANES_AXES_LANES_H
 
 #include "footprint_lanes.h"
+#include "kernels/scatter.h"
 
 /* Returns one column of T, times one column of the conic, as in axes.c. */
 static inline T3R_LANES_TARGET lanes axis_q15(lanes a_q12, lanes first_q30, lanes b_q12, lanes second_q30)
@@ -24,7 +25,7 @@ _Static_assert(offsetof(t3r_splat, a_q30) == 8 && offsetof(t3r_splat, c_q30) == 
 /* Computes the axes of LANES splats; returns a bit for each one that plain C has to do. */
 static __attribute__((noinline)) T3R_LANES_TARGET uint32_t axes_batch(const t3r_projection *p,
                                                                       const t3r_gaussian *gaussians,
-                                                                      const t3r_splat *splats, t3r_splat_axes *axes)
+                                                                      const t3r_splat *splats, t3r_refine_sums *sums)
 {
     const uint8_t *from[LANES];
     uint8_t *to[LANES];
@@ -32,7 +33,7 @@ static __attribute__((noinline)) T3R_LANES_TARGET uint32_t axes_batch(const t3r_
     T3R_LANES_UNROLL for (int i = 0; i < LANES; i++)
     {
         from[i] = (const uint8_t *)&splats[i];
-        to[i] = (uint8_t *)&axes[i];
+        to[i] = (uint8_t *)&sums[i].axes;
     }
     read_gaussians(gaussians, words);
     read_four(from, 8, conic);
@@ -46,16 +47,16 @@ static __attribute__((noinline)) T3R_LANES_TARGET uint32_t axes_batch(const t3r_
 }
 
 void AXES(const t3r_projection *p, const t3r_gaussian *gaussians, const t3r_splat *splats, uint32_t count,
-          t3r_splat_axes *axes)
+          t3r_refine_sums *sums)
 {
     uint32_t i = 0;
     for (; i + LANES <= count; i += LANES) {
-        for (uint32_t beyond = axes_batch(p, gaussians + i, splats + i, axes + i); beyond != 0; beyond &= beyond - 1) {
+        for (uint32_t beyond = axes_batch(p, gaussians + i, splats + i, sums + i); beyond != 0; beyond &= beyond - 1) {
             const uint32_t lane = i + (uint32_t)__builtin_ctz(beyond);
-            t3r_axes_c(p, &gaussians[lane], &splats[lane], 1, &axes[lane]);
+            t3r_axes_c(p, &gaussians[lane], &splats[lane], 1, &sums[lane]);
         }
     }
-    t3r_axes_c(p, gaussians + i, splats + i, count - i, axes + i);
+    t3r_axes_c(p, gaussians + i, splats + i, count - i, sums + i);
 }
 
 #endif
