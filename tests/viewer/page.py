@@ -6,6 +6,7 @@ files are opened, windows of all sizes; no errors, no requests. With FOLDER, scr
 import base64
 import contextlib
 import gzip
+import io
 import json
 import math
 import os
@@ -16,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import zipfile
 
 import browser
 from checks import check, done, run, skip
@@ -346,11 +348,9 @@ def opens(page, scene, folder):
     """Files of other programs are read by the program's own readers; others are refused with the command that converts
     them."""
     native = json.loads(run(TRIM3R, "view", scene, "-o", f"{folder}/native.html", "--json").stdout)
-    packed, splat, spz, glb = (f"{folder}/{name}" for name in ("packed.compressed.ply", "s.splat", "s.spz", "s.glb"))
-    for path in (packed, splat, spz, glb):
+    packed, splat, spz, glb, sog = (f"{folder}/{name}" for name in ("packed.compressed.ply", "s.splat", "s.spz", "s.glb", "s.sog"))
+    for path in (packed, splat, spz, glb, sog):
         run(TRIM3R, "convert", scene, "-o", path)
-    with open(f"{folder}/s.sog", "wb") as file:
-        file.write(b"?")
     with open(glb, "rb") as file:
         text = file.read()
     with open(f"{folder}/odd.glb", "wb") as file:
@@ -365,7 +365,7 @@ def opens(page, scene, folder):
         file.write(gzip.compress(bytes(160 << 20)))
     gaussians = native["gaussians"]
     for path, wanted in ((scene, gaussians), (packed, gaussians), (splat, gaussians), (spz, gaussians), (glb, gaussians),
-                         (f"{folder}/old.spz", 50)):
+                         (sog, gaussians), (f"{folder}/old.spz", 50)):
         choose(page, path)
         name = os.path.basename(path)
         page.wait(f"document.title.startsWith({json.dumps(name)}) && document.body.dataset.gaussians === '{wanted}' && isStill()")
@@ -377,7 +377,7 @@ def opens(page, scene, folder):
             file.write(change)
     for path, words in ((f"{folder}/torn.spz", "cut off in stream 4"), (f"{folder}/lost.spz", "their table at byte 1073741824"),
                         (f"{folder}/broken.spz", "invalid zstd data"), (f"{folder}/vast.spz", "unpacks to more than"),
-                        (f"{folder}/s.sog", "trim3r convert s.sog -o s.ply"), (f"{folder}/odd.glb", "not JSON"),
+                        *bad_archives(sog, folder), (f"{folder}/odd.glb", "not JSON"),
                         (f"{folder}/none.glb", "no primitive with"),
                         (f"{folder}/room.mcap", "trim3r view room.mcap"), (f"{folder}/cut.ply", "byte "),
                         (f"{folder}/bomb.spz", "unpacks to more than")):
@@ -393,6 +393,62 @@ def opens(page, scene, folder):
     opened(page, f"{folder}/native.html")
     page.wait("isStill()")
     check(page.value(PICTURE) == dropped, "a scene that is dropped is seen as the native program shows it")
+    faint_archive(page, folder)
+
+
+def bad_archives(path, folder):
+    """Writes damaged copies of a .sog; returns their paths and words of their refusals."""
+    with open(path, "rb") as file:
+        whole = file.read()
+    with zipfile.ZipFile(path) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    picture = members["sh0.webp"]
+    at, entry = whole.index(picture), whole.index(b"PK\1\2")
+    without = {name: member for name, member in members.items() if name != "sh0.webp"}
+    cases = [("none.sog", b"?", "no zip archive"), ("cut.sog", whole[:-30], "no zip archive"),
+             ("changed.sog", whole[:at + 40] + bytes([whole[at + 40] ^ 1]) + whole[at + 41:], "sh0.webp: it cannot be read"),
+             ("long.sog", whole[:entry + 24] + struct.pack("<I", 1 << 30) + whole[entry + 28:], "unpacks to more than"),
+             ("lost.sog", zipped(without), "sh0.webp: the archive does not hold it"),
+             ("vast.sog", zipped({**members, "sh0.webp": picture[:21] + b"\xff\xff\xff\x1f" + picture[25:]}), "unpacks to more than"),
+             ("no_picture.sog", zipped({**members, "sh0.webp": b"RIFF"}), "sh0.webp: no lossless WebP"),
+             ("bomb.sog", zipped({**members, "more": bytes(160 << 20)}), "unpacks to more than")]
+    for name, data, _ in cases:
+        with open(f"{folder}/{name}", "wb") as file:
+            file.write(data)
+    return [(f"{folder}/{name}", words) for name, _, words in cases]
+
+
+def zipped(members):
+    """Returns an archive of deflated members."""
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, member in members.items():
+            archive.writestr(name, member)
+    return out.getvalue()
+
+
+def faint_archive(page, folder):
+    """A .sog of nearly transparent Gaussians, whose members are deflated, has the native program's picture: no colour was
+    scaled by opacity."""
+    names = "x y z f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3".split()
+    rows = [[x / 4, y / 4, 2, x / 3, y / 5, -.3, -x - 1, -1.5, -1.6, -1.7, 1, .1 * x, .1 * y, 0] for x in range(5) for y in range(-4, 4)]
+    scene, sog = f"{folder}/faint.ply", f"{folder}/faint.sog"
+    with open(scene, "wb") as file:
+        file.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {len(rows)}\n".encode())
+        file.write("".join(f"property float {name}\n" for name in names).encode() + b"end_header\n")
+        file.write(b"".join(struct.pack(f"<{len(row)}f", *row) for row in rows))
+    run(TRIM3R, "convert", scene, "-o", sog)
+    with zipfile.ZipFile(sog) as archive:
+        packed = zipped({name: archive.read(name) for name in archive.namelist()})
+    with open(sog, "wb") as file:
+        file.write(packed)
+    choose(page, sog)
+    page.wait(f"document.title.startsWith('faint') && document.body.dataset.gaussians === '{len(rows)}' && isStill()")
+    chosen = page.value(PICTURE)
+    run(TRIM3R, "view", sog, "-o", f"{folder}/faint.html")
+    opened(page, f"{folder}/faint.html")
+    page.wait("isStill()")
+    check(page.value(PICTURE) == chosen, "a .sog is seen as the native program shows it")
 
 
 def old_spz(count):

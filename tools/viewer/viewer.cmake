@@ -57,9 +57,10 @@ if(wasm_found)
   # Readers and writers that need no other library. The page parses JSON for them.
   file(GLOB file_sources CONFIGURE_DEPENDS viewer/module/files/*.c scene/*.c scene/formats/ply/*.c)
   list(FILTER file_sources EXCLUDE REGEX "/(scene_options|scene_append|seen_gaussian|splat_camera|tile_lists)[.]c$")
-  foreach(name viewer/bundle viewer/start_view scene/summary/scene_box scene/formats/splat scene/formats/spz/spz_read scene/formats/glb/glb_read
-               scene/formats/glb/glb_nodes scene/formats/glb/glb_attributes cli/tables/json_array scene/store/scene_formats
-               scene/store/scene_read scene/store/scene_remark scene/store/scene_write import/viewpoint_angle geometry/quaternion)
+  foreach(name viewer/bundle viewer/start_view scene/summary/scene_box scene/formats/splat scene/formats/spz/spz_read
+               scene/formats/sog/sog_read scene/formats/glb/glb_read scene/formats/glb/glb_nodes
+               scene/formats/glb/glb_attributes cli/tables/json_array scene/store/scene_formats scene/store/scene_read
+               scene/store/scene_remark scene/store/scene_write import/viewpoint_angle geometry/quaternion)
     list(APPEND file_sources ${CMAKE_CURRENT_SOURCE_DIR}/${name}.c)
   endforeach()
   foreach(name reason text)
@@ -88,7 +89,7 @@ string(REPLACE ";" "|" script "${scripts}")
 set(names viewer_html viewer_css viewer_js viewer_follow_js viewer_worker_js viewer_files_js viewer_wasm
           viewer_threads_wasm viewer_files_wasm)
 set(files ${viewer}/page/view.html ${viewer}/page/view.css ${script} ${viewer}/page/follow.js ${viewer}/page/worker.js
-          "${viewer}/page/fzstd/fzstd.js|${viewer}/page/files_json.js|${viewer}/page/files_worker.js")
+          "${viewer}/page/fzstd/fzstd.js|${viewer}/page/files_json.js|${viewer}/page/files_archive.js|${viewer}/page/files_worker.js")
 foreach(name viewer viewer_threads viewer_files)
   list(APPEND files ${CMAKE_CURRENT_BINARY_DIR}/${name}.wasm)
 endforeach()

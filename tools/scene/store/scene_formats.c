@@ -13,7 +13,7 @@
 #define FORMATS_OF_WEBP
 #endif
 #ifdef T3R_BARE_FORMATS
-#define FORMATS FORMAT(ply) FORMAT(packed_ply) FORMAT(splat) FORMAT(spz_bare) FORMAT(glb_bare)
+#define FORMATS FORMAT(ply) FORMAT(packed_ply) FORMAT(splat) FORMAT(spz_bare) FORMAT(glb_bare) FORMAT(sog_bare)
 #else
 #define FORMATS FORMAT(ply) FORMAT(packed_ply) FORMAT(splat) FORMAT(spz) FORMAT(spz_gzip) FORMAT(glb) FORMATS_OF_WEBP
 #endif

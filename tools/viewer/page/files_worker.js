@@ -17,10 +17,12 @@ function place(bytes) {
 
 const placeText = (text) => place(new TextEncoder().encode(`${text}\0`));
 
-function text() {
-  const rest = new Uint8Array(files.memory.buffer, files.text() >>> 0);
+function textAt(at) {
+  const rest = new Uint8Array(files.memory.buffer, at >>> 0);
   return new TextDecoder().decode(rest.subarray(0, rest.indexOf(0)));
 }
+
+const text = () => textAt(files.text());
 
 function need(status) {
   if (status !== 0) throw new Error(text());
@@ -28,11 +30,11 @@ function need(status) {
 
 const result = () => bytesAt(files.bytes() >>> 0, files.count() >>> 0).slice();
 
-/* Unpacks a gzip stream, unless it grows beyond what its size justifies. */
-async function unpacked(packed) {
-  const most = files.unpacked_most(packed.length), parts = [];
+/* Unpacks a stream of gzip or deflate, unless it grows beyond so many bytes. */
+async function unpacked(packed, format, most) {
+  const parts = [];
   let count = 0;
-  const reader = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip")).getReader();
+  const reader = new Blob([packed]).stream().pipeThrough(new DecompressionStream(format)).getReader();
   for (let part; !(part = await reader.read()).done;) {
     parts.push(part.value);
     count += part.value.length;
@@ -70,7 +72,9 @@ function withoutZstandard(bytes) {
 }
 
 async function read({ name, bytes: buffer }) {
-  const given = new Uint8Array(buffer), bytes = isGzip(given) ? await unpacked(given) : isSpz4(given) ? withoutZstandard(given) : given;
+  const given = new Uint8Array(buffer), most = files.unpacked_most(given.length);
+  const bytes = isGzip(given) ? await unpacked(given, "gzip", most) : isSpz4(given) ? withoutZstandard(given) : given;
+  if (isZip(given)) await openArchive(given);
   need(files.read(placeText(name), place(bytes), bytes.length));
   const numbers = Array.from({ length: 13 }, (_, i) => files.start(i));
   const start = { focal: numbers.slice(0, 2), centre: numbers.slice(2, 4), position: numbers.slice(4, 7), rotation: numbers.slice(7, 11),
@@ -86,7 +90,7 @@ function write({ name, scene }) {
 const answers = { read, write };
 onmessage = async ({ data }) => {
   try {
-    files = (await WebAssembly.instantiate(data.wasm, { wasi_snapshot_preview1: system, page: { json: placeJson } })).instance.exports;
+    files = (await WebAssembly.instantiate(data.wasm, { wasi_snapshot_preview1: system, page: { json: placeJson, member: placeMember } })).instance.exports;
     files._initialize();
     postMessage(await answers[data.kind](data));
   } catch (error) {

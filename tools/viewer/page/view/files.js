@@ -14,21 +14,21 @@ function withFile(request) {
   });
 }
 
-/* Returns the command that makes a file which the page reads or shows; "" where there is none. */
-function remedyFor(name) {
+/* Returns the command that does what the page did not; "" where there is none. */
+function remedyFor(name, reason) {
   if (/\.mcap$/i.test(name)) return ` A recording is shown by: trim3r view ${quoted(name)}`;
-  return /\.sog$/i.test(name) ? ` Convert it: trim3r convert ${quoted(name)} -o ${quoted(name.replace(/\.[^.]*$/, ".ply"))}` : "";
+  return /ImageDecoder/.test(reason) ? ` Convert it: trim3r convert ${quoted(name)} -o ${quoted(name.replace(/\.[^.]*$/, ".ply"))}` : "";
 }
 
 async function openFile(file) {
   say(`Reading ${file.name}`);
   try {
-    if (/\.(mcap|sog)$/i.test(file.name)) throw new Error("the page does not read such files");
+    if (/\.mcap$/i.test(file.name)) throw new Error("the page does not read such files");
     const { bundle, start, gaussians, text } = await withFile({ kind: "read", name: file.name, bytes: await file.arrayBuffer() });
     showScene({ title: file.name, gaussians, start }, bundle);
     $("remark").textContent = text;
   } catch (error) {
-    say(`${file.name}: ${error.message}.${remedyFor(file.name)}`, true);
+    say(`${file.name}: ${error.message}.${remedyFor(file.name, error.message)}`, true);
   }
 }
 
