@@ -48,14 +48,19 @@ int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluatio
 
 /* ---- shared by the rows of a case --------------------------------------------------------------------------- */
 
+static void free_picture(const evaluation_picture *picture)
+{
+    free(picture->rgb);
+    free(picture->shown);
+    free(picture->mask);
+}
+
 void evaluation_views_free(evaluation_views *views)
 {
-    free(views->target.rgb);
-    free(views->target.mask);
+    free_picture(&views->target);
     free(views->seen);
     for (uint32_t v = 0; v < views->context_count; v++) {
-        free(views->context[v].rgb);
-        free(views->context[v].mask);
+        free_picture(&views->context[v]);
     }
     method_source_close(&views->source);
     *views = (evaluation_views){0};
@@ -67,19 +72,25 @@ static int make_picture(evaluation_picture *picture, const evaluation_views *vie
 {
     size_t pixels = (size_t)views->width * views->height;
     picture->rgb = malloc(pixels * 3);
+    picture->shown = malloc(pixels);
     picture->mask = malloc(pixels);
-    if (picture->rgb == NULL || picture->mask == NULL) {
+    if (picture->rgb == NULL || picture->shown == NULL || picture->mask == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    int code = developed_frame(what->recording, what->path, index, views->width, views->height, picture->rgb, NULL,
-                               &picture->camera);
+    t3r_capture_frame frame;
+    int code = recorded_frame_read(what->recording, what->path, index, &frame);
+    code = code == CLI_OK ? developed_capture(&frame, what->path, index, views->width, views->height, picture->rgb,
+                                              NULL, &picture->camera)
+                          : code;
+    code =
+        code == CLI_OK ? developed_shown(&frame, what->path, index, views->width, views->height, picture->shown) : code;
     if (code != CLI_OK || what->planar) {
         memset(picture->mask, 255, pixels);
         return code;
     }
     code = evaluation_draw(r, &picture->camera, views, NULL, alpha);
     for (size_t i = 0; i < pixels && code == CLI_OK; i++) {
-        picture->mask[i] = transmittance(alpha[i]) < MASK_TRANSMITTANCE ? 255 : 0;
+        picture->mask[i] = transmittance(alpha[i]) < MASK_TRANSMITTANCE ? picture->shown[i] : 0;
     }
     return code;
 }
@@ -248,7 +259,7 @@ static int score(evaluation_row *row, uint8_t *render, uint8_t *rgb, uint16_t *a
     row->value[EVALUATION_SHARP] = metric_sharp(target->rgb, render, target->mask, w, h);
     row->value[EVALUATION_PERCEPTUAL] = metric_flip(target->rgb, render, target->mask, w, h);
     row->value[EVALUATION_HOLES] = share_of_holes(alpha, target->mask, (size_t)w * h);
-    row->value[EVALUATION_PSNR_ALL] = metric_psnr(target->rgb, render, NULL, w, h);
+    row->value[EVALUATION_PSNR_ALL] = metric_psnr(target->rgb, render, target->shown, w, h);
     if (planar) {
         row->value[EVALUATION_PLANAR_PSNR] = row->value[EVALUATION_PSNR_ALL];
         return CLI_OK;

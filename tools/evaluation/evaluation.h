@@ -39,6 +39,7 @@ typedef struct evaluation_case {
 typedef struct evaluation_picture {
     t3r_camera camera; /* undistorted */
     uint8_t *rgb;      /* width x height x 3 */
+    uint8_t *shown;    /* width x height, 255 = the recorded picture reaches it, 0 = beyond the lens: it never counts */
     uint8_t *mask;     /* width x height, 255 = counts, else 0 */
 } evaluation_picture;
 
@@ -65,7 +66,7 @@ typedef enum evaluation_value {
     EVALUATION_SSIM,
     EVALUATION_SHARP,
     EVALUATION_HOLES,        /* share of mask pixels with transmittance above 1/2 */
-    EVALUATION_PSNR_ALL,     /* all pixels over black, dB */
+    EVALUATION_PSNR_ALL,     /* all pixels that the recorded picture reaches, over black, dB */
     EVALUATION_PSNR_SEEN,    /* pixels whose surface a context view saw, over black, dB */
     EVALUATION_CONTEXT_PSNR, /* mean over the context views on their masks, dB */
     EVALUATION_PERCEPTUAL,   /* FLIP on the mask */

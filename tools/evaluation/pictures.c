@@ -52,6 +52,9 @@ int evaluation_write_views(const char *folder, const evaluation_views *views, co
     if (code == CLI_OK) {
         code = write_png(folder, "mask.png", views, 1, views->target.mask);
     }
+    if (code == CLI_OK && memchr(views->target.shown, 0, (size_t)views->width * views->height) != NULL) {
+        code = write_png(folder, "shown.png", views, 1, views->target.shown);
+    }
     if (code == CLI_OK && views->seen != NULL) {
         code = write_png(folder, "seen.png", views, 1, views->seen);
     }

@@ -6,7 +6,8 @@
 #include "evaluation/evaluation.h"
 #include "pictures/html_page.h"
 
-/* Writes FOLDER/target.png, mask.png, context_a.png, ... of a case (planar: only target.png). */
+/* Writes FOLDER/target.png, mask.png, context_a.png, ... of a case (planar: only target.png); shown.png if the recorded
+ * picture does not reach all pixels. */
 int evaluation_write_views(const char *folder, const evaluation_views *views, const evaluation_case *what);
 /* Writes the row's `picture` in FOLDER. */
 int evaluation_write_render(const char *folder, const evaluation_views *views, const evaluation_row *row,

@@ -68,14 +68,12 @@ static int develop_white(const t3r_capture_frame *frame, const char *path, uint3
     return code;
 }
 
-int developed_shown(const t3r_recording *recording, const char *path, uint32_t index, uint32_t width, uint32_t height,
+int developed_shown(const t3r_capture_frame *frame, const char *path, uint32_t index, uint32_t width, uint32_t height,
                     uint8_t *shown)
 {
-    t3r_capture_frame frame;
-    int code = recorded_frame_read(recording, path, index, &frame);
-    if (code == CLI_OK && frame.camera.distortion == T3R_DISTORTION_NONE) {
+    if (frame->camera.distortion == T3R_DISTORTION_NONE) {
         memset(shown, 255, (size_t)width * height);
         return CLI_OK;
     }
-    return code == CLI_OK ? develop_white(&frame, path, index, width, height, shown) : code;
+    return develop_white(frame, path, index, width, height, shown);
 }

@@ -16,9 +16,9 @@ int developed_frame(const t3r_recording *recording, const char *path, uint32_t i
 /* Develops a frame that was read; `index` is its number in messages. */
 int developed_capture(const t3r_capture_frame *frame, const char *path, uint32_t index, uint32_t width, uint32_t height,
                       uint8_t *rgb, uint16_t *depth, t3r_camera *camera);
-/* Marks with 255 the pixels of developed frame `index` that the recorded picture reaches, with 0 those beyond it, which
- * a lens with distortion leaves black. shown: a byte a pixel. Returns an exit status of cli.h. */
-int developed_shown(const t3r_recording *recording, const char *path, uint32_t index, uint32_t width, uint32_t height,
+/* Marks with 255 the pixels of a developed frame that the recorded picture reaches, with 0 those beyond it, which a
+ * lens with distortion leaves black: no score counts them. shown: a byte a pixel. Returns an exit status of cli.h. */
+int developed_shown(const t3r_capture_frame *frame, const char *path, uint32_t index, uint32_t width, uint32_t height,
                     uint8_t *shown);
 
 #endif

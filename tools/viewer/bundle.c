@@ -61,6 +61,7 @@ static void put_frame(FILE *out, const bundle_frame *f)
         put_u32(out, (uint32_t)c->rotation_q30[i]);
     }
     put_u64(out, f->depth != NULL ? f->depth_unit_q40 : 0);
+    put_u32(out, f->shown != NULL);
 }
 
 static void put_gaussian(FILE *out, const t3r_gaussian *g)
@@ -111,6 +112,10 @@ static void put_all(FILE *out, const bundle *b)
             for (size_t at = 0; at < pixels; at++) {
                 put_u16(out, b->frames[i].depth[at]);
             }
+        }
+        if (b->frames[i].shown != NULL) {
+            align(out);
+            fwrite(b->frames[i].shown, 1, pixels, out);
         }
     }
     align(out);

@@ -12,8 +12,9 @@
 /* A frame of the working size, undistorted. */
 typedef struct bundle_frame {
     t3r_camera camera;
-    uint8_t *rgb;            /* 3 bytes a pixel */
-    uint16_t *depth;         /* steps; NULL = none */
+    uint8_t *rgb;    /* 3 bytes a pixel */
+    uint16_t *depth; /* steps; NULL = none */
+    uint8_t *shown;  /* 255 = the recorded picture reaches the pixel, 0 = beyond the lens; NULL = it reaches all */
     uint64_t depth_unit_q40; /* world units per step */
 } bundle_frame;
 

@@ -10,18 +10,19 @@
  *   i32    the exponent of that scene's frame, then 3 x i64: its origin
  *   u32    the degree of its harmonics, and 1 if its opacities are those of mip-splatting
  *   frames BUNDLE_FRAME_BYTES each: i32 fx, fy, cx, cy (Q16); 3 x i64 position (Q32); 4 x i32 rotation (Q30); u64 unit
- *          of depth (Q40), 0 = the frame has no depth
+ *          of depth (Q40), 0 = the frame has no depth; u32 1 = its picture does not reach all pixels
  *   then, each at the next multiple of BUNDLE_ALIGN from the start: the weights; for each frame RGB, 3 bytes a pixel,
- * and, if it has depth, 2 bytes a pixel; the Gaussians, BUNDLE_GAUSSIAN_BYTES each; above degree 0 their harmonics, i16
- * in Q12. Frames have the working size. */
+ * if it has depth, 2 bytes a pixel, and if its picture does not reach all pixels, a byte a pixel, 0 = beyond the lens;
+ * the Gaussians, BUNDLE_GAUSSIAN_BYTES each; above degree 0 their harmonics, i16 in Q12. Frames have the working size.
+ */
 #ifndef TRIM3R_TOOLS_BUNDLE_LAYOUT_H
 #define TRIM3R_TOOLS_BUNDLE_LAYOUT_H
 
 #include "trim3r.h"
 
-#define BUNDLE_MAGIC 0x32763374u /* "t3v2" */
+#define BUNDLE_MAGIC 0x33763374u /* "t3v3" */
 #define BUNDLE_ALIGN 16u         /* alignment of weights */
-#define BUNDLE_FRAME_BYTES 64u
+#define BUNDLE_FRAME_BYTES 68u
 /* Position, mantissas, exponent, view, colour, opacity, confidence, in the order of t3r_gaussian, without `reserved`.
  */
 #define BUNDLE_GAUSSIAN_BYTES 41u

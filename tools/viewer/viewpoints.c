@@ -32,7 +32,13 @@ int viewpoints_add(viewpoints *v, const t3r_recording *recording, const char *pa
     if (frame->rgb == NULL || (with_depth && frame->depth == NULL)) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    return developed_frame(recording, path, index, width, height, frame->rgb, frame->depth, &frame->camera);
+    code = developed_capture(&recorded, path, index, width, height, frame->rgb, frame->depth, &frame->camera);
+    if (code != CLI_OK || recorded.camera.distortion == T3R_DISTORTION_NONE) {
+        return code;
+    }
+    frame->shown = malloc(pixels);
+    return frame->shown != NULL ? developed_shown(&recorded, path, index, width, height, frame->shown)
+                                : cli_error(CLI_BAD_INPUT, "out of memory");
 }
 
 int viewpoints_add_before(viewpoints *v, const scene_file *scene, uint32_t width, uint32_t height)
@@ -52,6 +58,7 @@ void viewpoints_free(viewpoints *v)
     for (uint32_t i = 0; i < v->count; i++) {
         free(v->frames[i].rgb);
         free(v->frames[i].depth);
+        free(v->frames[i].shown);
     }
     v->count = 0;
 }

@@ -14,6 +14,7 @@
 #include "core/hash.h"
 #include "pictures/metrics.h"
 #include "pictures/picture.h"
+#include "reconstruction/developed_frame.h"
 #include "reconstruction/replay/stream_run.h"
 
 #define TEXT_BYTES 4096
@@ -29,6 +30,17 @@ static int write_picture(const stream_run *s, const char *what, uint32_t frame, 
     }
     picture p = {.width = s->view.width, .height = s->view.height, .channels = channels, .bits = 8, .samples = samples};
     return picture_write_png(path, &p, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
+}
+
+/* Returns the PSNR in dB over the pixels that the recorded picture reaches; NaN on failure. */
+static double psnr_of_all(const stream_run *s, const t3r_capture_frame *captured, uint32_t frame)
+{
+    const drawn_frame *d = &s->view;
+    uint8_t *shown = malloc((size_t)d->width * d->height);
+    const bool known = shown != NULL && developed_shown(captured, s->path, frame, d->width, d->height, shown) == CLI_OK;
+    const double psnr = known ? metric_psnr(d->target, d->drawn, shown, d->width, d->height) : NAN;
+    free(shown);
+    return psnr;
 }
 
 /* Draws the frame's view from the current map and compares: over pixels where the frame has a depth, and over all. */
@@ -49,7 +61,7 @@ static int draw_held(stream_run *s, uint32_t frame, const char *when, double *ps
         return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
     }
     *psnr = drawn_frame_psnr(d);
-    *psnr_all = metric_psnr(d->target, d->drawn, NULL, d->width, d->height);
+    *psnr_all = psnr_of_all(s, &captured, frame);
     s->is.views_hash = t3r_hash_bytes(s->is.views_hash, d->drawn, (size_t)d->width * d->height * 3);
     if (s->options->images == NULL) {
         return CLI_OK;

@@ -33,8 +33,11 @@ static int draw(const drawing *d, const t3r_camera *camera, drawn_picture *out)
                                .alpha_q15 = d->alpha,
                                .alpha_stride_bytes = width * 2};
     t3r_camera recorded;
-    int code = developed_frame(d->recording, d->path, out->frame, width, height, d->rgb, NULL, &recorded);
-    code = code == CLI_OK ? developed_shown(d->recording, d->path, out->frame, width, height, d->shown) : code;
+    t3r_capture_frame frame;
+    int code = recorded_frame_read(d->recording, d->path, out->frame, &frame);
+    code =
+        code == CLI_OK ? developed_capture(&frame, d->path, out->frame, width, height, d->rgb, NULL, &recorded) : code;
+    code = code == CLI_OK ? developed_shown(&frame, d->path, out->frame, width, height, d->shown) : code;
     if (code != CLI_OK) {
         return code;
     }

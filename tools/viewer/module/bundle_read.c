@@ -66,12 +66,14 @@ static void take_frame(reading *in, frame_data *frame)
         c->rotation_q30[i] = (int32_t)take_u32(in);
     }
     frame->depth_unit_q40 = take_number(in, 8);
+    frame->is_partial = take_u32(in) != 0;
 }
 
 static void take_pixels(reading *in, frame_data *frame, size_t pixels)
 {
     frame->rgb = take_block(in, pixels * 3);
     frame->depth = frame->depth_unit_q40 != 0 ? take_block(in, pixels * 2) : NULL;
+    frame->shown = frame->is_partial ? take_block(in, pixels) : NULL;
 }
 
 static bool read_all(reading *in, bundle_data *out)

@@ -14,7 +14,8 @@
 typedef struct frame_data {
     t3r_camera camera;
     uint64_t depth_unit_q40;
-    const uint8_t *rgb, *depth; /* depth: NULL = none */
+    bool is_partial;                    /* its picture does not reach all pixels */
+    const uint8_t *rgb, *depth, *shown; /* depth: NULL = none; shown: NULL = all */
 } frame_data;
 
 typedef struct bundle_data {

@@ -476,6 +476,12 @@ EXPORT(frame_rgb) const uint8_t *module_frame_rgb(uint32_t frame)
     return frame < module.bundle.frames ? module.bundle.frame[frame].rgb : NULL;
 }
 
+/* Returns the pixels of a frame that its recorded picture reaches: a byte each, 0 = beyond the lens; NULL = all. */
+EXPORT(frame_shown) const uint8_t *module_frame_shown(uint32_t frame)
+{
+    return frame < module.bundle.frames ? module.bundle.frame[frame].shown : NULL;
+}
+
 enum { PLANE_MASK, PLANE_TEXTURE };
 
 /* Returns a plane of an analysed context view: the mask of retained pixels (a bit each, in words) or the texture (16

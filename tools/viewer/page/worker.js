@@ -202,13 +202,23 @@ const wordsAt = (at, count) => new Uint32Array(runtime.memory.buffer, at, count)
 
 const recorded = (frame) => bytesAt(runtime.frame_rgb(frame), opened.width * opened.height * 3);
 
+/* Returns a byte for each pixel of a frame, 0 = its recorded picture does not reach it. */
+function reached(frame) {
+  const count = opened.width * opened.height, at = runtime.frame_shown(frame);
+  return at === 0 ? new Uint8Array(count).fill(255) : bytesAt(at, count);
+}
+
 function psnr(camera, frame) {
-  const { width, height } = opened;
+  const { width, height } = opened, counts = reached(frame);
   render(camera, width, height);
   const drawn = bytesAt(opened.rgb, width * height * 3), wanted = recorded(frame);
-  let sum = 0;
-  for (let i = 0; i < drawn.length; i++) sum += (drawn[i] - wanted[i]) ** 2;
-  return sum === 0 ? Infinity : 10 * Math.log10(65025 * drawn.length / sum);
+  let sum = 0, samples = 0;
+  for (let i = 0; i < drawn.length; i++) {
+    if (counts[Math.trunc(i / 3)] === 0) continue;
+    sum += (drawn[i] - wanted[i]) ** 2;
+    samples++;
+  }
+  return sum === 0 ? Infinity : 10 * Math.log10(65025 * samples / sum);
 }
 
 /* Maps 0..1 to dark blue, red and bright yellow, with rising lightness. */
@@ -251,8 +261,9 @@ const painters = {
   },
   frame: (count, frame) => copied(recorded(frame)),
   error(count, frame) {
-    const drawn = bytesAt(opened.rgb, count * 3), wanted = recorded(frame);
+    const drawn = bytesAt(opened.rgb, count * 3), wanted = recorded(frame), counts = reached(frame);
     return (out, i, at) => {
+      if (counts[i] === 0) return;
       let sum = 0;
       for (let c = 0; c < 3; c++) sum += Math.abs(drawn[3 * i + c] - wanted[3 * i + c]);
       heat(Math.sqrt(sum / 384), out, at);
