@@ -81,7 +81,7 @@ def budget(page, room):
         page.wait("isStill()")
         seen.add(page.value(PICTURE))
     check(len(seen) == 4, "every budget is another picture")
-    shown = float(re.search(r"frame 1 ([0-9.]+) dB", page.value(STATUS))[1])
+    shown = float(re.search(r"frame\s1\s([0-9.]+)\sdB", page.value(STATUS))[1])
     row = json.loads(run(TRIM3R, "eval", room, "--context", "0,2", "--target", "1", "--gaussians", count, "--json").stdout)["rows"][0]
     check(abs(shown - row["psnr_all"]) <= 0.005, f"built here: {shown} dB in the page, {row['psnr_all']} dB by eval")
 
@@ -481,7 +481,7 @@ def harmonics(page, room, folder):
         run(TRIM3R, "view", scene, room, "--context", "0,2", "-o", f"{folder}/harmonics.html")
         opened(page, f"{folder}/harmonics.html")
         page.wait("isStill()")
-        shown = float(re.search(r"frame 1 ([0-9.]+) dB", page.value(STATUS))[1])
+        shown = float(re.search(r"frame\s1\s([0-9.]+)\sdB", page.value(STATUS))[1])
         row = json.loads(run(TRIM3R, "eval", room, "--context", "0,2", "--target", "1", "--scene", scene, "--json").stdout)["rows"][0]
         check(abs(shown - row["psnr_all"]) <= 0.005, f"harmonics {mark!r}: {shown} dB in the page, {row['psnr_all']} dB by eval")
     same_rows(save(page, folder), rows_of(scene), names)
@@ -513,7 +513,7 @@ def beyond_the_lens(page, folder):
     run(TRIM3R, "view", f"{bent}.mcap", *settings, "--compare", "2", "-o", f"{bent}.html")
     opened(page, f"{bent}.html")
     page.wait(f"document.getElementById('bits').dataset.same === 'true' && isStill() && {STATUS}.includes('dB')")
-    shown = float(re.search(r"frame 2 ([0-9.]+) dB", page.value(STATUS))[1])
+    shown = float(re.search(r"frame\s2\s([0-9.]+)\sdB", page.value(STATUS))[1])
     row = json.loads(run(TRIM3R, "eval", f"{bent}.mcap", *settings, "--target", "2", "--json").stdout)["rows"][0]
     check(abs(shown - row["psnr_all"]) <= 0.005, f"a lens: {shown} dB in the page, {row['psnr_all']} dB by eval")
 

@@ -81,7 +81,7 @@ function drawTimeline() {
   drawLine(to, scores.map((x, i) => x === null ? null : [(i + .5) * step, height - 4 - (x - low) / range * (tallest - 6)]), ink("ink"), 1.5);
   to.fillStyle = ink("ink");
   to.font = "12px system-ui, sans-serif";
-  to.fillText(`Bars: up to ${most.toFixed(1)} ms${known.length ? `; line: ${low.toFixed(1)} to ${Math.max(...known).toFixed(1)} dB` : ""}`, 6, 14);
+  to.fillText(`Bars: up to ${most.toFixed(1)} ms${known.length ? `; line: ${low.toFixed(1)} to ${Math.max(...known).toFixed(1)} dB` : ""}`, 6, 14, width - 12);
 }
 
 /* The path on the two axes of the world along which it is longest. */

@@ -5,6 +5,8 @@ const count = (n) => n.toLocaleString("en");
 const fileOfScene = () => data.title.replace(/ and .*/, "");
 /* Returns a name as a shell takes it. */
 const quoted = (name) => /^[\w.,+-]+$/.test(name) ? name : `'${name.replaceAll("'", "'\\''")}'`;
+/* Returns words that no line break parts. */
+const unbroken = (words) => words.replaceAll(" ", "\u00a0");
 let said = "", isUndrawn = false;
 function say(text, bad = false) {
   if (!bad) said = text;
@@ -40,7 +42,7 @@ function showBits(hash) {
 }
 
 function showResult({ gaussians, valid, stages, hash }) {
-  const share = valid > 0 ? ` of ${count(valid)} points (${(100 * gaussians / valid).toFixed(1)} %)` : "";
+  const share = valid > 0 ? ` of ${count(valid)} points ${unbroken(`(${(100 * gaussians / valid).toFixed(1)} %)`)}` : "";
   say(`${count(gaussians)} Gaussians${share}.`);
   $("progress").hidden = true;
   $("stages").hidden = stages.length === 0;
@@ -58,7 +60,7 @@ function showResult({ gaussians, valid, stages, hash }) {
 const scored = () => data.frames.filter((f) => f.recorded).map((f) => cameraOf(f, data.width));
 
 done.score = ({ psnr }) => {
-  const scores = psnr.map((dB, i) => `${data.frames[i].name} ${dB.toFixed(2)} dB`).join(", ");
+  const scores = psnr.map((dB, i) => unbroken(`${data.frames[i].name} ${dB.toFixed(2)} dB`)).join(", ");
   if (builder?.busy) return; /* its progress is shown */
   say(`${$("status").textContent} PSNR: ${scores}.`);
 };
