@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """commands.py TRIM3R: common behaviour of all commands: help, unknown options, tables, counts, a full disk."""
+import re
 import subprocess
 
 from program import TRIM3R, check, expect, expect_json, fill_disk, in_scratch, room
@@ -35,15 +36,23 @@ def tables_fit():
     room()
     expect(0, "build", "room.mcap", "--keep", 10, "-o", "scene.ply")
     score = ["eval", "room.mcap", "--working", "32x32", "--keep", "20,5"]
-    for line in (["--help"], ["info", "room.mcap", "room.mcap"], ["info", "scene.ply", "scene.ply"], score,
-                 ["plan", "--size", "640x480", "--gaussians", "1M"], ["plan", "--size", "96x96", "--arena", "1M"],
-                 ["build", "room.mcap", "--keep", 10, "-o", "fits.ply"], ["scene", "room.mcap", "-o", "fits.ply"],
-                 ["render", "scene.ply", "room.mcap", "--view", 1, "-o", "fits.png"],
-                 ["render", "scene.ply", "--orbit", 3, "--size", "64x64", "-o", "fits.png"],
-                 ["convert", "scene.ply", "--min-opacity", 0.5, "-o", "fits.spz"], ["diff", "scene.ply", "scene.ply"],
-                 ["room", "--size", "64x64", "-o", "fits.mcap"]):
+    expect(0, *score, "--csv", "scores.csv")
+    lines = (["--help"], ["info", "room.mcap", "room.mcap"], ["info", "scene.ply", "scene.ply"], score,
+             ["plan", "--size", "640x480", "--gaussians", "1M"], ["plan", "--size", "96x96", "--arena", "1M"],
+             ["build", "room.mcap", "--keep", 10, "-o", "fits.ply"], ["scene", "room.mcap", "-o", "fits.ply"],
+             ["render", "scene.ply", "room.mcap", "--view", 1, "-o", "fits.png"],
+             ["render", "scene.ply", "--orbit", 3, "--size", "64x64", "-o", "fits.png"],
+             ["convert", "scene.ply", "--min-opacity", 0.5, "-o", "fits.spz"], ["diff", "scene.ply", "scene.ply"],
+             ["room", "--size", "64x64", "-o", "fits.mcap"], ["import", "room.mcap", "-o", "a recording of a longer name.mcap"],
+             ["view", "scene.ply", "-o", "fits.html"], ["replay", "room.mcap"], ["replay", "room.mcap", "--stream", "--gaussians", 500],
+             ["chart", "scores.csv", "-o", "fits-chart.html"])
+    for line in lines:
         text = expect(0, *line)
-        check(max(map(len, text.splitlines())) <= 80, f"{line}: wider than 80: {text}")
+        check(max(map(len, text.splitlines()), default=0) <= 80, f"{line}: wider than 80: {text}")
+    # doctor and stress have tests of their own; completion prints a script
+    others = {"capture", "bench", "doctor", "head-info", "completion", "stress", "trouble", "quantize"}
+    commands = set(re.findall(r"^  ([a-z-]+) +[a-z]", expect(0, "--help").split("Data flow")[0], re.MULTILINE))
+    check(commands - {line[0] for line in lines} <= others, f"whose reports are not looked at: {commands - {line[0] for line in lines} - others}")
     narrow, wide = expect(0, *score).splitlines()[0].split(), expect(0, *score, "--wide").splitlines()[0].split()
     check(set(narrow) < set(wide) and {"psnr", "ssim", "gaussians"} <= set(narrow), f"{narrow}, {wide}")
     check(expect(0, *score, "--heads", "small,analytic").splitlines()[0].split() == wide, "rows of two heads look alike")

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "pictures/picture_border.h"
 
-#include <stdio.h>
 #include <stdlib.h>
+
+#include "cli/text/wrapped.h"
 
 enum {
     LEAST_PART = 16, /* a border takes at most this part of a side */
@@ -160,9 +161,10 @@ void picture_border_print(const picture_inner *inner)
     int widths[BORDER_SIDES];
     widths_of(inner, widths);
     if (inner->width != 0) {
-        printf("left out: a border of one colour around all pictures: %d, %d, %d and %d pixels on the left, top, right "
-               "and bottom; --keep-border keeps it\n",
-               widths[0], widths[1], widths[2], widths[3]);
+        wrapped_printf(2, "left out: ",
+                       "a border of one colour around all pictures: %d, %d, %d and %d pixels on the left, top, right "
+                       "and bottom; --keep-border keeps it",
+                       widths[0], widths[1], widths[2], widths[3]);
     }
 }
 

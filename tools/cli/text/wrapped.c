@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "cli/text/wrapped.h"
 
+#include <stdarg.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define COLUMNS 80u
@@ -24,4 +26,20 @@ void wrapped_print(FILE *out, uint32_t indent, const char *label, const char *te
         first = false;
     }
     fputc('\n', out);
+}
+
+void wrapped_printf(uint32_t indent, const char *label, const char *format, ...)
+{
+    char *text = NULL;
+    size_t bytes;
+    FILE *out = open_memstream(&text, &bytes);
+    if (out != NULL) {
+        va_list arguments;
+        va_start(arguments, format);
+        vfprintf(out, format, arguments);
+        va_end(arguments);
+        fclose(out);
+    }
+    wrapped_print(stdout, indent, label, text != NULL ? text : "out of memory");
+    free(text);
 }

@@ -9,6 +9,7 @@
 #include "cli/cli.h"
 #include "cli/files/whole_file.h"
 #include "cli/tables/json_output.h"
+#include "cli/text/wrapped.h"
 #include "host/reason.h"
 #include "import/bags/bag_border.h"
 #include "import/bags/bag_pictures.h"
@@ -19,6 +20,7 @@
 #include "messages/ros_messages.h"
 
 #define ERROR_BYTES 1024
+#define TOPIC_INDENT 21 /* columns */
 
 /* Estimated poses: frames[] of them, and the account of each. */
 typedef struct estimation {
@@ -264,14 +266,14 @@ static void print_topics(const t3r_recording *recording, const bag_frames *frame
         t3r_stream_info info = t3r_recording_stream(recording, i);
         t3r_stream_use use = use_of(&info, frames);
         if (use != T3R_USE_NONE) {
-            printf("%-20s %s\n", t3r_stream_use_names[use], info.topic);
+            wrapped_printf(TOPIC_INDENT, t3r_stream_use_names[use], "%s", info.topic);
         }
     }
     for (uint32_t i = 0; i < t3r_recording_stream_count(recording); i++) {
         t3r_stream_info info = t3r_recording_stream(recording, i);
         if (use_of(&info, frames) == T3R_USE_NONE) {
-            printf("%-20s %s (%s, %" PRIu64 " messages): %s\n", "not used", info.topic, info.schema, info.messages,
-                   info.unused);
+            wrapped_printf(TOPIC_INDENT, "not used", "%s (%s, %" PRIu64 " messages): %s", info.topic, info.schema,
+                           info.messages, info.unused);
         }
     }
 }
@@ -318,8 +320,8 @@ static void print_text(const char *output, const report *r)
     const bag_frames *frames = r->frames;
     const posed_recording_totals *totals = r->totals;
     say_lost(r->recording, lost, sizeof lost);
-    printf("%s: %u frames (%u with depth, %u with a pose), %u triplets, %" PRIu64 " bytes\n", output, totals->frames,
-           totals->depth_frames, totals->posed_frames, totals->triplets, totals->bytes);
+    wrapped_printf(2, output, ": %u frames (%u with depth, %u with a pose), %u triplets, %" PRIu64 " bytes",
+                   totals->frames, totals->depth_frames, totals->posed_frames, totals->triplets, totals->bytes);
     if (lost[0] != '\0') {
         printf("lost: %s\n", lost);
     }

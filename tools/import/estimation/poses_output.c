@@ -5,6 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "cli/text/wrapped.h"
+
 cJSON *pose_account_json(const uint32_t *frames, uint32_t index, const pose_account *accounts)
 {
     const pose_account *a = &accounts[index];
@@ -59,12 +61,13 @@ void poses_print(const uint32_t *frames, uint32_t count, const pose_account *acc
         char why[512];
         if (a->why[0] != '\0') {
             (void)pose_refusal(accounts, i, frames, why, sizeof why);
-            printf("%s\n", why);
+            wrapped_print(stdout, 0, "", why);
         } else if (a->matches > 0) {
-            printf("frame %" PRIu32 " posed from frame %" PRIu32 ": %" PRIu32 " of %" PRIu32
-                   " features agree within %.2f pixels%s, rotation +-%.2f degrees, direction +-%.1f\n",
-                   frames != NULL ? frames[i] : i, frames != NULL ? frames[a->from] : a->from, a->matches, a->tried,
-                   a->pixels, a->metric ? ", by depth" : "", a->turn_degrees, a->direction_degrees);
+            wrapped_printf(2, "frame ",
+                           "%" PRIu32 " posed from frame %" PRIu32 ": %" PRIu32 " of %" PRIu32
+                           " features agree within %.2f pixels%s, rotation +-%.2f degrees, direction +-%.1f",
+                           frames != NULL ? frames[i] : i, frames != NULL ? frames[a->from] : a->from, a->matches,
+                           a->tried, a->pixels, a->metric ? ", by depth" : "", a->turn_degrees, a->direction_degrees);
         }
     }
 }

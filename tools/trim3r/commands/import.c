@@ -12,6 +12,7 @@
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "cli/tables/json_output.h"
+#include "cli/text/wrapped.h"
 #include "host/reason.h"
 #include "import/bags/recording_import.h"
 #include "import/estimation/poses.h"
@@ -318,13 +319,13 @@ static void print_json(const material *m, const totals *t)
 static void print_text(const import_options *o, const material *m, const totals *t)
 {
     const posed_folder *folder = &m->folder;
-    printf("%s: %u frames of %ux%u (%u with depth), %u triplets, %llu bytes\n", o->output, folder->frame_count,
-           t->width, t->height, t->depth_frames, folder->triplet_count, (unsigned long long)t->bytes);
+    wrapped_printf(2, o->output, ": %u frames of %ux%u (%u with depth), %u triplets, %llu bytes", folder->frame_count,
+                   t->width, t->height, t->depth_frames, folder->triplet_count, (unsigned long long)t->bytes);
     if (t->unposed > 0) {
         printf("without a pose: %u frames\n", t->unposed);
     }
     if (folder->focal[0] != '\0') {
-        printf("focal length: %s\n", folder->focal);
+        wrapped_printf(2, "focal length: ", "%s", folder->focal);
     }
     picture_border_print(&m->inner);
     left_out_print(&folder->left_out);
