@@ -29,6 +29,7 @@ def bash_completes():
     check("--complete" not in completed("plan", "--"), "a hidden option is offered")
     write("scene.spz", b"NGSP")
     write("scene.npz", b"PK")
+    write("s.t3w", b"T3RW")
     write("scores.csv", b"scene")
     os.mkdir("scans")
     for line, found in {("info", "sc"): {"scene.ply", "scene.spz", "scans"},
@@ -40,6 +41,7 @@ def bash_completes():
                         ("help", "bu"): {"build"}, ("help", "comp"): {"completion"},
                         ("build", "--poses", "e"): {"estimate", "estimate-colour"},
                         ("build", "--arena", ""): {"min", "full"},
+                        ("build", "--head", "s"): {"small", "s.t3w", "scans"}, ("replay", "--stream", "--lines", "s"): {"scans"},
                         ("convert", "--up", "-"): {"-x", "-y", "-z"},
                         ("room", "--compression", "z"): {"zstd"},
                         ("build", "--color", "a"): {"auto", "always"}}.items():
@@ -62,7 +64,7 @@ def fish_completes():
         return
     for line, found in {"bu": {"build"}, "help bu": {"build"}, "plan --sv": {"--svg"}, "build --poses given": {"given"},
                         "info scen": {"scene.ply", "scene.spz"}, "import --pointmaps scen": {"scene.npz"},
-                        "build --gaussians sc": set()}.items():
+                        "build --gaussians sc": set(), "build --head s": {"small", "s.t3w", "scans/"}}.items():
         check(in_fish(f"trim3r {line}") == found, f"fish, {line}: {in_fish('trim3r ' + line)}")
 
 

@@ -251,7 +251,7 @@ const struct argp evaluation_argp = {
            "  sharp         mean gradient over the target's, on the mask\n"
            "  perceptual    FLIP at 67 pixels a degree, on the mask; 0 = no difference\n"
            "  holes         share of the mask that keeps a transmittance above 0.5\n"
-           "  psnr_all      of the whole picture that the lens reaches, black where nothing is\n"
+           "  psnr_all      of the picture as far as the lens reaches, over black\n"
            "  psnr_seen     of pixels that a context view saw: it measured their depth\n"
            "  planar_psnr   of all pixels of --planar, where no score has a mask\n"
            "  context_psnr  mean over the context views, each on its own mask\n"

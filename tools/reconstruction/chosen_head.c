@@ -31,16 +31,6 @@ static bool is_analytic(const char *text)
     return strcmp(text, "analytic") == 0 || strcmp(text, "none") == 0;
 }
 
-const char *chosen_head_names(char names[CHOSEN_HEAD_NAMES_BYTES])
-{
-    size_t length = 0;
-    for (int i = 0; i < SHIPPED; i++) {
-        length += (size_t)snprintf(names + length, CHOSEN_HEAD_NAMES_BYTES - length, "%s, ", shipped[i].name);
-    }
-    snprintf(names + length, CHOSEN_HEAD_NAMES_BYTES - length, "FILE" FILE_END ", analytic, none");
-    return names;
-}
-
 static int shipped_index(const char *text)
 {
     for (int i = 0; i < SHIPPED; i++) {

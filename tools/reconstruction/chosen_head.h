@@ -11,7 +11,7 @@
 #include "trim3r.h"
 
 #define CHOSEN_HEAD_DEFAULT "small"
-#define CHOSEN_HEAD_NAMES_BYTES 256
+#define CHOSEN_HEAD_VALUES "tiny|small|FILE.t3w|analytic|none" /* all values of --head */
 
 typedef struct chosen_head {
     t3r_head head;
@@ -25,8 +25,6 @@ typedef struct chosen_head {
     void *owned; /* weights read from a file */
 } chosen_head;
 
-/* Writes "tiny, small, FILE.t3w, ...", all values of --head. Returns `names`. */
-const char *chosen_head_names(char names[CHOSEN_HEAD_NAMES_BYTES]);
 /* Whether the text is one of the names or ends in .t3w. */
 bool chosen_head_is_one(const char *text);
 

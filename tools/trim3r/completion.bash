@@ -21,7 +21,10 @@ _trim3r() {
     file:*)
         compopt -o filenames 2>/dev/null
         wanted=${wanted#file:}
-        for ending in ${wanted//|/$IFS}; do COMPREPLY+=($(compgen -f -X "!*$ending" -- "$word")); done
+        for ending in ${wanted//|/$IFS}; do
+            if [[ $ending == .* ]]; then COMPREPLY+=($(compgen -f -X "!*$ending" -- "$word"))
+            else COMPREPLY+=($(compgen -W "$ending" -- "$word")); fi
+        done
         COMPREPLY+=($(compgen -d -- "$word"))
         ;;
     file) compopt -o filenames 2>/dev/null; COMPREPLY=($(compgen -f -- "$word")) ;;

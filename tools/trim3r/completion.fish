@@ -18,7 +18,11 @@ function __trim3r_values
     set -l kind (__trim3r_kind)
     if string match -q 'file:*' -- $kind
         for ending in (string split '|' -- (string replace 'file:' '' -- $kind))
-            __fish_complete_suffix $ending | string match -- "*$ending"
+            if string match -q '.*' -- $ending
+                __fish_complete_suffix $ending | string match -- "*$ending"
+            else
+                echo $ending
+            end
         end
         __fish_complete_directories (commandline -ct)
     else if test "$kind" = file

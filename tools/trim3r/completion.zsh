@@ -20,7 +20,11 @@ _trim3r() {
     fi
     wanted=${wanted:-$others}
     case $wanted in
-    file:*) _files -g "*${(j: *:)${(s:|:)wanted#file:}}" ;;
+    file:*)
+        rows=("${(@s:|:)wanted#file:}")
+        compadd -- ${rows:#.*}
+        _files -g "*${(j: *:)${(M)rows:#.*}}"
+        ;;
     file) _files ;;
     value) _message value ;;
     *) compadd -- "${(@s:|:)wanted}" ;;

@@ -68,7 +68,7 @@ static void add_endings(const char *placeholders, char kind[KIND_BYTES])
     }
 }
 
-/* Writes the kind of a file: "file", or "file:" and the endings. */
+/* Writes the kind of a file: "file", or "file:" and the endings, then the words that may stand for one. */
 static void file_text(const char *placeholders, int flags, char kind[KIND_BYTES])
 {
     char endings[KIND_BYTES] = "";
@@ -76,6 +76,9 @@ static void file_text(const char *placeholders, int flags, char kind[KIND_BYTES]
         add_endings_of(OPTION_KINDS(flags), endings);
     } else {
         add_endings(placeholders, endings);
+    }
+    if ((flags & OPTION_OR_WORD) != 0) {
+        add_words(placeholders, endings);
     }
     snprintf(kind, KIND_BYTES, "file%s%.*s", endings[0] != '\0' ? ":" : "", KIND_BYTES - 8, endings);
 }

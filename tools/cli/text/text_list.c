@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/text/wrapped.h"
 #include "host/text.h"
 
 #define LINE_BYTES 1024
@@ -45,7 +46,7 @@ void text_list_free(text_list *list)
 void text_list_print(const text_list *list, const char *what)
 {
     for (uint32_t i = 0; i < list->count; i++) {
-        printf("%s: %s\n", what, list->lines[i]);
+        wrapped_printf(2, what, ": %s", list->lines[i]);
     }
 }
 

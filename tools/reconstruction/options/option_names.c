@@ -8,8 +8,7 @@
 const char *option_head(struct argp_state *state, const char *option, const char *text)
 {
     if (!chosen_head_is_one(text)) {
-        char names[CHOSEN_HEAD_NAMES_BYTES];
-        argp_error(state, "--%s does not know '%s'; there are %s", option, text, chosen_head_names(names));
+        argp_error(state, "--%s does not know '%s'; there are " CHOSEN_HEAD_VALUES, option, text);
     }
     return text;
 }

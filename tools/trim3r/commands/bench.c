@@ -44,8 +44,8 @@ enum { KEY_HEAD = 0x1000, KEY_DEPTH, KEY_RUNS };
 static const struct argp_option options[] = {
     {"points", OPTION_TO(bench_options, settings.points), "FILE", OPTION_READS,
      "points to cluster instead of the room's: raw float32, N x 6", 0},
-    {"head", KEY_HEAD, "HEAD", OPTION_READS | OPTION_OR_WORD,
-     "network of head_gmac_per_s and network_ms: tiny, small (default), or FILE.t3w", 0},
+    {"head", KEY_HEAD, "tiny|small|FILE.t3w", OPTION_READS | OPTION_OR_WORD,
+     "network of head_gmac_per_s and network_ms (small)", 0},
     {"depth", KEY_DEPTH, "SOURCE", 0,
      "source of depth of the scenes that are built and drawn: sensor (default), or stereo, from the colours", 0},
     {"stages", OPTION_TO(bench_options, stages), "LIST", 0, "rows to time, as kmeans_ms,stereo_ms (all)", 0},
