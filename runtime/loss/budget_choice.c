@@ -52,9 +52,7 @@ static void stand(const t3r_runtime *rt, t3r_view *views, bool as_given)
     }
 }
 
-/* Returns the disagreement of the views with the given poses; 0: nothing to compare. New views come with given poses,
- * which nothing aligns. */
-static uint32_t disagreement_as_given(t3r_runtime *rt, t3r_view *views)
+uint32_t t3r_disagreement_as_given_q8(t3r_runtime *rt, t3r_view *views)
 {
     const bool aligned = t3r_aligns(&rt->config);
     uint32_t pairs;
@@ -88,7 +86,7 @@ t3r_status t3r_choose_budget(t3r_runtime *rt, t3r_view *views, uint32_t max_loss
         build->gaussians = most;
         return T3R_OK;
     }
-    evidence.disagreement_q8 = disagreement_as_given(rt, views);
+    evidence.disagreement_q8 = t3r_disagreement_as_given_q8(rt, views);
     for (uint32_t i = 0; i < 2; i++) {
         t3r_build trial = *build;
         trial.gaussians = evidence.trial << i;

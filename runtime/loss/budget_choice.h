@@ -22,6 +22,10 @@ typedef struct t3r_budget_evidence {
  * points, 1..most. */
 uint32_t t3r_predict_budget(const t3r_budget_evidence *evidence, uint32_t most, uint32_t max_loss_q8);
 
+/* Returns the disagreement of the analysed views with the given poses, levels^2 Q8; 0: nothing to compare. New views
+ * come with given poses, which nothing aligns. The views' poses are restored before it returns. */
+uint32_t t3r_disagreement_as_given_q8(t3r_runtime *rt, t3r_view *views);
+
 /* Lowers build->gaussians to the prediction for the analysed views. Builds two trial scenes in the arena, each of at
  * most 1/50 of the points. importance: for the allocation `given`, else NULL. The views' poses are restored before it
  * returns. With T3R_ERR_CANCELLED, `build` is unchanged. */

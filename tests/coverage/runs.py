@@ -65,6 +65,7 @@ def run_program(program, scratch):
     for words in (("--keep", "100%", "--context", "0,1,2,3", "--threads", 3),
                   ("--keep", "1%", "--arena", "min", "--context", "5"),
                   ("--auto", "--max-loss", 0.5),
+                  ("--auto", "--max-loss", 0.5, "--context", 0),
                   ("--keep", "5%", "--fit-passes", "on", "--refine", 16),
                   ("--keep", "20%", "--fit-widths", "on", "--head", "analytic"),
                   ("--keep", "5%", "--structural", "on", "--context", "0,2"),

@@ -17,7 +17,7 @@ numpy, cv2 = need_numpy()
 trim3r = sys.argv[1]
 scorer = load_scorer(sys.argv[2])
 COLUMNS = ("scene context target method head bits refine allocate depth ablation wavelet levels clusters settings keep requested gaussians psnr "
-           "ssim sharp holes psnr_all psnr_seen context_psnr perceptual build_ms render_ms arena_bytes scene_bytes planar_psnr "
+           "ssim sharp holes psnr_all psnr_seen context_psnr perceptual build_ms render_ms arena_bytes scene_bytes planar_psnr loss "
            "picture bits_epoch").split()
 
 

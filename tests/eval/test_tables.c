@@ -111,9 +111,9 @@ TEST(test_columns_and_empty_cells)
         "requested,"
         "gaussians,psnr,ssim,sharp,holes,psnr_all,psnr_seen,context_psnr,perceptual,build_ms,render_ms,arena_bytes,"
         "scene_bytes,"
-        "planar_psnr,"
+        "planar_psnr,loss,"
         "picture,bits_epoch\n"
-        "room,\"0,2\",1,trim3r,analytic,,0,density,sensor,,db2,2,300,default,2.5,,13107,21.2500,,,0.00000,,,,,,,,,,"
+        "room,\"0,2\",1,trim3r,analytic,,0,density,sensor,,db2,2,300,default,2.5,,13107,21.2500,,,0.00000,,,,,,,,,,,"
         "1/trim3r_2.5.png,\n");
     free(text);
     assert_null(evaluation_column_name(EVALUATION_COLUMNS));

@@ -67,13 +67,20 @@ def built():
     some = expect_json(*auto, "-o", "some.ply")
     check(some["max_loss"] == 0.5 and 0 < few["gaussians"] < some["gaussians"] < some["valid_points"],
           "--auto takes no fewer for more loss")
+    check(0 <= some["loss"] <= 0.5 < few["loss"] <= 3 and 2 <= few["builds"] <= 8 and 50 < few["held_percent"] <= 100,
+          f"--auto measures no loss: {some}, {few}")
     expect(0, "eval", "room.mcap", "--working", "64x64", "--context", "0,2", "--target", 1, "--auto", "--csv", "auto.csv")
     with open("auto.csv", newline="") as table:
         row = next(csv.DictReader(table))
-    check(row["settings"] == "max-loss-0.5 working-64x64" and int(row["gaussians"]) == some["gaussians"],
-          "eval --auto does not take what build --auto takes")
+    check(row["settings"] == "max-loss-0.5 working-64x64" and int(row["gaussians"]) == some["gaussians"] and
+          row["loss"] == f"{some['loss']:.4f}", "eval --auto does not take what build --auto takes")
+    expect(0, *auto, "-o", "some.ply", out=f"new views lose {some['loss']:.2f} dB against all points")
     most = expect_json(*auto, "--gaussians", 50, "-o", "most.ply")
-    check(most["gaussians"] == 50, "--gaussians is not the most of --auto")
+    check(most["gaussians"] == 50 and most["loss"] > 0.5, "--gaussians is not the most of --auto")
+    expect(0, *auto, "--gaussians", 50, "-o", "most.ply", out="warning: that is more than --max-loss 0.5")
+    alone = ["build", "room.mcap", "--context", "0", "--working", "64x64", "--auto"]
+    check(expect_json(*alone, "-o", "alone.ply")["loss"] is None, "--auto measures a loss of one view")
+    expect(0, *alone, "-o", "alone.ply", out="share no surface to measure the loss on: it is predicted")
     least = ["build", "room.mcap", "--context", "0,2", "--working", "64x64", "--min-psnr"]
     dull, sharp = (expect_json(*least, psnr, "-o", "least.ply") for psnr in (20, 26))
     check(20 <= dull["context_psnr"] and 26 <= sharp["context_psnr"] and dull["gaussians"] < sharp["gaussians"],

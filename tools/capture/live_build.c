@@ -31,7 +31,9 @@ static uint32_t most_gaussians(const live_build *build)
 {
     uint64_t points = (uint64_t)build->r.config.width * build->r.config.height * build->r.context_count;
     uint64_t most = points;
-    if (build->options.gaussians != 0) {
+    if (build->options.automatic) { /* it compares with a scene of all points */
+        most = points;
+    } else if (build->options.gaussians != 0) {
         most = build->options.gaussians;
     } else if (build->options.keep_percent > 0) {
         most = (uint64_t)ceil((double)points * build->options.keep_percent / 100) + 1;

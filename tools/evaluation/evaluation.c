@@ -439,6 +439,7 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, evaluation_views *v
     }
     reconstruction_warn_of_budget(&options, account.requested, built.scene.count);
     row->value[EVALUATION_GAUSSIANS] = built.scene.count;
+    row->value[EVALUATION_LOSS] = built.loss.builds > 0 ? built.loss.loss : NAN;
     row->value[EVALUATION_BUILD_MS] = account.seconds * 1000;
     row->value[EVALUATION_ARENA_BYTES] = (double)account.arena_bytes;
     row->value[EVALUATION_SCENE_BYTES] = (double)built.scene.count * T3R_GAUSSIAN_BYTES;

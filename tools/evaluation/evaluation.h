@@ -76,6 +76,7 @@ typedef enum evaluation_value {
     EVALUATION_SCENE_BYTES, /* size of the Gaussians in the arena */
     EVALUATION_PLANAR_PSNR, /* all pixels of a planar case, dB */
     EVALUATION_BITS_EPOCH,
+    EVALUATION_LOSS, /* measured by --auto, dB */
     EVALUATION_VALUE_COUNT
 } evaluation_value;
 

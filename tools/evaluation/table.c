@@ -69,6 +69,7 @@ static const column columns[EVALUATION_COLUMNS] = {
     {"arena_bytes", EVALUATION_ARENA_BYTES, 0, 0, 12, ALWAYS},
     {"scene_bytes", EVALUATION_SCENE_BYTES, 0, 0, 0, NEVER},
     {"planar_psnr", EVALUATION_PLANAR_PSNR, 4, 12, 12, PLANAR},
+    {"loss", EVALUATION_LOSS, 4, 0, 0, NEVER},
     {"picture", PICTURE, 0, 0, 0, NEVER},
     {"bits_epoch", EVALUATION_BITS_EPOCH, 0, 0, 0, NEVER},
 };

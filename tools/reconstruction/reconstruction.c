@@ -362,6 +362,13 @@ static int bind_head(reconstruction *r, const reconstruction_options *options)
     return status == T3R_OK ? CLI_OK : reconstruction_error(status, r->head.name, &r->config, r->arena_bytes);
 }
 
+/* Analyses the views by building a scene of one Gaussian. */
+static t3r_status analyse(reconstruction *r, t3r_request request)
+{
+    request.gaussians = 1;
+    return make(r, &request);
+}
+
 /* Builds the fewest Gaussians that draw the context views at options->min_psnr. */
 static t3r_status make_least(reconstruction *r, const reconstruction_options *options, t3r_request request)
 {
@@ -370,9 +377,7 @@ static t3r_status make_least(reconstruction *r, const reconstruction_options *op
     const t3r_target picture = {.width = width, .height = height, .rgb = rgb, .rgb_stride_bytes = 3 * width};
     t3r_status status = T3R_ERR_ARENA;
     if (rgb != NULL) {
-        request.gaussians = 1; /* for the analysis alone */
-        status = make(r, &request);
-        request.gaussians = 0;
+        status = analyse(r, request);
     } else {
         snprintf(r->reason, sizeof r->reason, "out of memory");
     }
@@ -386,14 +391,22 @@ static t3r_status make_least(reconstruction *r, const reconstruction_options *op
     return status;
 }
 
+/* Builds the fewest Gaussians that lose at most options->max_loss. */
+static t3r_status make_automatic(reconstruction *r, const reconstruction_options *options, t3r_request request)
+{
+    const t3r_status status = analyse(r, request);
+    request.gaussians = r->config.gaussians;
+    return status == T3R_OK ? measured_loss_build(r->runtime, &r->config, &request, options->max_loss, &r->scene,
+                                                  &r->loss, r->reason)
+                            : status;
+}
+
 t3r_status reconstruction_make(reconstruction *r, const reconstruction_options *options, const uint16_t *const *planes)
 {
-    const t3r_request request = {
-        .max_loss_q8 = options->automatic ? (uint32_t)(options->max_loss * 256 + 0.5) : 0,
-        .importance = planes,
-        .importance_stride_bytes = r->config.width * 2,
-    };
-    return options->min_psnr > 0 ? make_least(r, options, request) : make(r, &request);
+    const t3r_request request = {.importance = planes, .importance_stride_bytes = r->config.width * 2};
+    return options->min_psnr > 0 ? make_least(r, options, request)
+           : options->automatic  ? make_automatic(r, options, request)
+                                 : make(r, &request);
 }
 
 void reconstruction_configure(reconstruction *r, const reconstruction_options *options)
@@ -418,7 +431,7 @@ void reconstruction_request(reconstruction *r, const reconstruction_options *opt
                    : options->keep_percent > 0 ? reconstruction_budget(all, options->keep_percent)
                                                : all;
     r->config.gaussians = T3R_MIN(r->requested, r->valid_points);
-    r->config.max_gaussians = r->config.gaussians;
+    r->config.max_gaussians = options->automatic ? r->valid_points : r->config.gaussians; /* it compares with all */
 }
 
 /* Prepares head, settings, budget and arena, for a stream with `keyframes` live keyframes, or for the context frames

@@ -14,6 +14,7 @@
 #include "cli/options/processor_options.h"
 #include "posing/poses_source.h"
 #include "reconstruction/chosen_head.h"
+#include "reconstruction/measured_loss.h"
 #include "reconstruction/stage_times.h"
 #include "recording/recording.h"
 #include "scene/scene_file.h"
@@ -103,6 +104,7 @@ typedef struct reconstruction {
     double add_views_seconds; /* time of the image stage */
     double build_seconds;     /* time of t3r_reconstruct() */
     t3r_least least;          /* for min_psnr; else all zero */
+    measured_loss loss;       /* for max_loss; else all zero */
     stage_times stages;       /* of both, if hashes are collected */
     double give_up_at;        /* cli_now() at which the run is cancelled; 0 = never */
     uint64_t stage_hash[T3R_STAGE_COUNT]; /* the reports of a stage that reports several times are chained */

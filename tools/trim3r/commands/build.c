@@ -163,6 +163,19 @@ static void add_unmatched(cJSON *root, const build_options *o, const reconstruct
     }
 }
 
+/* Adds how much --auto loses, and how often its bound held; null: the loss is predicted. */
+static void add_loss(cJSON *root, const reconstruction_options *settings, const measured_loss *loss)
+{
+    cJSON_AddNumberToObject(root, "max_loss", settings->max_loss);
+    if (loss->builds > 0) {
+        cJSON_AddNumberToObject(root, "loss", loss->loss);
+    } else {
+        cJSON_AddNullToObject(root, "loss");
+    }
+    cJSON_AddNumberToObject(root, "held_percent", measured_loss_held(loss, settings->max_loss));
+    json_add_integer(root, "builds", loss->builds);
+}
+
 static void print_json(const build_options *o, const reconstruction_account *account, const reconstruction *r,
                        const t3r_recording *recording, const found *f, const work_times *times)
 {
@@ -177,7 +190,7 @@ static void print_json(const build_options *o, const reconstruction_account *acc
     json_add_integer(root, "gaussians", r->scene.count);
     json_add_integer(root, "requested", account->requested);
     if (o->settings.automatic) {
-        cJSON_AddNumberToObject(root, "max_loss", o->settings.max_loss);
+        add_loss(root, &o->settings, &r->loss);
     }
     if (o->settings.min_psnr > 0) {
         cJSON_AddNumberToObject(root, "min_psnr", o->settings.min_psnr);
@@ -294,6 +307,28 @@ static void print_lists(const tile_lists *lists)
     }
 }
 
+/* Prints how much --auto loses, and how often its bound held. */
+static void print_loss(const reconstruction_options *settings, const measured_loss *loss)
+{
+    if (!settings->automatic) {
+        return;
+    }
+    if (loss->builds > 0) {
+        printf("new views lose %.2f dB against all points, as measured halfway between the context views in %" PRIu32
+               " builds\n",
+               loss->loss, loss->builds);
+    } else {
+        printf("the context views share no surface to measure the loss on: it is predicted\n");
+    }
+    if (loss->loss > settings->max_loss) {
+        printf("%swarning:%s that is more than --max-loss %g: the budget allows no more Gaussians\n",
+               style_begin(stdout, STYLE_WARNING), style_end(stdout), settings->max_loss);
+    } else {
+        printf("on the training scenes %d %% of the new views stayed within the bound\n",
+               measured_loss_held(loss, settings->max_loss));
+    }
+}
+
 /* Prints how well the context views are drawn, for --min-psnr. */
 static void print_least(const reconstruction_options *settings, const t3r_least *least)
 {
@@ -323,6 +358,7 @@ static void print_text(const build_options *o, const reconstruction_account *acc
         const uint32_t passes = t3r_refinement_passes(r->runtime);
         printf("refined in %" PRIu32 " pass%s\n", passes, passes == 1 ? "" : "es");
     }
+    print_loss(&o->settings, &r->loss);
     print_least(&o->settings, &r->least);
     for (uint32_t v = 0; v < account->context_count; v++) {
         uint32_t partner;
