@@ -258,7 +258,7 @@ const struct argp evaluation_argp = {
            "  build_ms      recorded frames to scene\n"
            "  render_ms     the target view\n"
            "  scene_bytes   the Gaussians as the arena holds them, 44 bytes each\n"
-           "  loss          of --auto: decibels lost against all points, measured halfway between the context views\n"
+           "  loss          of --auto: decibels lost, measured between the context views\n"
            "  picture       the name of the render within --images\n"
            "  bits_epoch    of the program: results of other epochs have other bits\n"
            "The mask: the pixels that all points of the raw depth, drawn with the plain analytic head, leave a "

@@ -19,8 +19,8 @@ static const struct argp_option settings[] = {
     {"preset", KEY_PRESET, "fast|balanced|best", 0,
      "head and refinement for an amount of work (balanced); later settings override it", 0},
     {"auto", OPTION_TO(reconstruction_options, automatic), NULL, 0,
-     "take no more Gaussians than the scene needs: the fewest that stay within --max-loss where it is measured, halfway "
-     "between the context views, and at most the budget (all valid points); needs memory and time for a scene of all",
+     "take no more Gaussians than the scene needs: the fewest that stay within --max-loss, as measured halfway between "
+     "the context views, and at most the budget (all valid points); it needs memory and time for a scene of all",
      0},
     {"max-loss", KEY_MAX_LOSS, "DB", 0,
      "decibels that --auto may lose on new views, against a scene of all valid points; 0.01..10 (0.5)", 0},
