@@ -42,8 +42,8 @@ typedef struct t3r_triplet {
  *
  * A colour image is paired with the depth and pose of the same header.stamp, else with the nearest within
  * 20 ms, unless they have exactly another colour image's stamp. Intrinsics hold from their stamp on, the first ones
- * also before. A stamp of 0 means the log time. If the stamps of the colour images go back, log times replace all
- * stamps.
+ * also before. A stamp of 0 means the log time. If the stamps of the colour images go back or most of them repeat, or
+ * those of depth or poses go back or are all the same, log times replace all stamps.
  *
  * Doubles become fixed point by t3r_fixed_from_double(): intrinsics Q16, distortion Q24, position Q32, rotation Q30;
  * the depth unit is decimal text, to Q40. NaN and values outside the ranges of t3r_camera are refused. */
@@ -184,7 +184,7 @@ t3r_recorded_message t3r_recording_frame_message(const t3r_recording *recording,
 /* Counts of the pairing of depth, pose and camera_info with the colour images. */
 typedef struct t3r_pairing_info {
     uint32_t frames, with_depth, with_pose, with_intrinsics;
-    bool by_log; /* stamps go back, so that log times stand in their place */
+    bool by_log; /* stamps go back or repeat, so that log times stand in their place */
     int64_t worst_depth_gap_ns, worst_pose_gap_ns;
 } t3r_pairing_info;
 t3r_pairing_info t3r_recording_pairing(const t3r_recording *recording);

@@ -139,7 +139,7 @@ bool t3r_topic_is_no_pose(const char *topic);
 int t3r_recording_choose(t3r_recording *recording, const t3r_recording_choice *choice, char *error, size_t error_bytes);
 
 /* recording_pairing.c: links each colour image to its companions. Returns 0, or -1 with a reason: memory is out, or
- * stamps and log times both go back. */
+ * stamps go back or repeat, and log times do not rise. */
 int t3r_recording_pair(t3r_recording *recording, char *error, size_t error_bytes);
 
 #endif

@@ -77,25 +77,61 @@ static int64_t *sorted_stamps(const t3r_stream *colour)
     return stamps;
 }
 
-/* ---- clocks that go back ---- */
+/* ---- clocks that go back or stand ---- */
 
-/* Whether the colour images were stamped by a clock that began again: their stamps, in the file's order, go back far,
- * or go back and come again. Writers that store images slightly out of order do neither. */
-static bool clock_restarts(const t3r_stream *colour, const int64_t *sorted)
+/* Whether messages were stamped by a clock that began again: their stamps, in the file's order, go back far, or go back
+ * at all where some repeat. Writers that store messages slightly out of order do neither. */
+static bool clock_restarts(const t3r_stream *stream, bool repeats)
 {
-    bool repeats = false;
-    for (size_t i = 1; i < colour->kept; i++) {
-        repeats = repeats || sorted[i] == sorted[i - 1];
-    }
     int64_t latest = INT64_MIN;
-    for (size_t i = 0; i < colour->kept; i++) {
-        const int64_t stamp = colour->messages[i].stamp_ns;
+    for (size_t i = 0; i < stream->kept; i++) {
+        const int64_t stamp = stream->messages[i].stamp_ns;
         if (i > 0 && (stamp < latest - RESTART_NS || (repeats && stamp < latest))) {
             return true;
         }
         latest = stamp > latest ? stamp : latest;
     }
     return false;
+}
+
+/* Whether messages were stamped by a clock that stood still, though they were logged one after another. */
+static bool clock_stands(const t3r_stream *stream)
+{
+    size_t same = 1;
+    while (same < stream->kept && stream->messages[same].stamp_ns == stream->messages[0].stamp_ns) {
+        same++;
+    }
+    return stream->kept > 1 && same == stream->kept &&
+           stream->messages[0].log_ns != stream->messages[stream->kept - 1].log_ns;
+}
+
+static const char *const goes_back = "go back", *const repeat = "repeat";
+
+/* Returns what is wrong with the stamps of the colour images; NULL: they tell the images apart. */
+static const char *fault_of_colour(const t3r_stream *colour, const int64_t *sorted)
+{
+    size_t repeated = 0;
+    for (size_t i = 1; i < colour->kept; i++) {
+        repeated += sorted[i] == sorted[i - 1];
+    }
+    return clock_restarts(colour, repeated > 0) ? goes_back : 2 * repeated >= colour->kept ? repeat : NULL;
+}
+
+static bool is_static(const t3r_stream *stream)
+{
+    static const char end[] = "tf_static";
+    const size_t count = strlen(stream->topic), tail = sizeof end - 1;
+    return count >= tail && strcmp(stream->topic + count - tail, end) == 0;
+}
+
+/* Returns the same of another stream. Transforms have several clocks, some of them ahead. */
+static const char *fault_of_companion(const t3r_stream *stream)
+{
+    const bool has_place = stream->use == T3R_USE_POSE || stream->use == T3R_USE_DEPTH;
+    const bool has_transforms = stream->use == T3R_USE_TRANSFORMS && !is_static(stream);
+    return has_place && clock_restarts(stream, false)              ? goes_back
+           : (has_place || has_transforms) && clock_stands(stream) ? repeat
+                                                                   : NULL;
 }
 
 /* Replaces the stamps of all messages by their log times. Returns whether those of the colour images ascend. */
@@ -113,7 +149,6 @@ static bool use_log_times(t3r_recording *recording)
         }
     }
     recording->pairing.by_log = true;
-    t3r_recording_remark(recording, "the stamps of %s go back: log times are used instead", colour->topic);
     return true;
 }
 
@@ -130,14 +165,22 @@ static int64_t *usable_stamps(t3r_recording *recording, char *error, size_t erro
 {
     const t3r_stream *colour = &recording->streams[recording->colour];
     int64_t *stamps = sorted_stamps(colour);
-    if (stamps != NULL && has_companions(recording) && clock_restarts(colour, stamps)) {
+    const char *fault = stamps != NULL && has_companions(recording) ? fault_of_colour(colour, stamps) : NULL;
+    const char *topic = colour->topic;
+    for (size_t i = 0; fault == NULL && stamps != NULL && i < recording->stream_count; i++) {
+        fault = fault_of_companion(&recording->streams[i]);
+        topic = recording->streams[i].topic;
+    }
+    if (fault != NULL) {
         free(stamps);
         if (!use_log_times(recording)) {
-            t3r_reason(error, error_bytes,
-                       "the stamps of %s go back, and so do its log times: split the file where they do",
-                       colour->topic);
+            t3r_reason(
+                error, error_bytes,
+                "the stamps of %s %s, and the log times of %s do not rise either: split the file where they do not",
+                topic, fault, colour->topic);
             return NULL;
         }
+        t3r_recording_remark(recording, "the stamps of %s %s: log times are used instead", topic, fault);
         stamps = sorted_stamps(colour);
     }
     if (stamps == NULL) {

@@ -224,6 +224,36 @@ def clocks_that_begin_again():
     check("go back" in imported(bag, status=1), "log times that go back, too, are refused")
 
 
+def clocks_that_stand():
+    """Where all stamps of a topic are the same, or it begins again, log times pair the messages."""
+    def bag_of(still, stamp, log=lambda i: (i + 1) * SECOND):
+        bag = Bag()
+        for i in range(6):
+            def at(topic, i=i):
+                return stamp(i) if topic in still else log(i)
+            bag.put("/cam/depth", ros.IMAGE, log(i), ros.image(at("/cam/depth"), "cam", "16UC1", ros.steps(1000 + i)))
+            if "/tf" in still:
+                bag.put("/tf", ros.TF, log(i), ros.transforms((at("/tf"), "map", "cam", (i, 0, 0), ros.UPRIGHT)))
+            else:
+                bag.put("/pose", ros.POSE, log(i), ros.pose(at("/pose"), "map", (i, 0, 0)))
+            bag.put("/cam/image", ros.IMAGE, log(i), ros.image(at("/cam/image"), "cam", "rgb8", ros.colour(i)))
+        return bag
+    topics = ("/cam/image", "/cam/depth", "/pose")
+    for still in (*((topic,) for topic in (*topics, "/tf")), topics, (*topics, "/tf")):
+        for name, stamp in (("stand", lambda i: 7 * SECOND), ("begin again", lambda i: (10 + i % 3) * SECOND)):
+            if name == "begin again" and still == ("/tf",):
+                continue  # each frame has a pose of either pass
+            report = imported(bag_of(still, stamp))
+            check(positions(report) == [(i, 0, 0) for i in range(6)], f"{still} {name}: {positions(report)}")
+            check([z[0, 0] for z in report["read"]["depth"]] == list(range(1000, 1006)), f"{still} {name}: depth")
+            check("log times" in report["note"] and any(topic in report["note"] for topic in still), f"{still} {name}: {report['note']}")
+    folder = folder_of("still", "still_0.mcap")
+    bag_of(("/pose",), lambda i: 7 * SECOND).write(f"{folder}/still_0.mcap")
+    check(positions(imported(folder)) == [(i, 0, 0) for i in range(6)], "a folder of rosbag2")
+    error = imported(bag_of(topics, lambda i: 7 * SECOND, lambda i: 9 * SECOND if i < 5 else 10 * SECOND), status=1)
+    check("/cam/image repeat, and the log times of /cam/image do not rise" in error, error)
+
+
 # --- messages --------------------------------------------------------------------------------------------------------
 
 
@@ -612,7 +642,7 @@ def encoding_is_stored(name):
 with tempfile.TemporaryDirectory() as work:
     os.chdir(work)
     for case in (depth_is_chosen_by_name_and_type, poses_are_not_goals, frames_with_two_parents, depth_of_another_clock, colour_is_chosen_by_votes, intrinsics_are_of_the_same_frame,
-                 channels_of_a_topic_are_one_stream, clocks_that_begin_again, bad_poses_are_left_out, bad_images_are_left_out,
+                 channels_of_a_topic_are_one_stream, clocks_that_begin_again, clocks_that_stand, bad_poses_are_left_out, bad_images_are_left_out,
                  jpegs_without_their_end, triplets_follow_the_frames, rectified_images_have_the_lens_of_p, depth_of_another_aspect_needs_its_own_lens, encodings, transparent_pixels_are_none, images_that_exif_turns, depth_units, other_files,
                  folders_of_rosbag2, bad_files_of_a_folder, packed_files, lenses_that_no_recording_holds, large_pictures, intrinsics_for_another_size):
         case()

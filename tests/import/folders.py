@@ -42,11 +42,12 @@ def test_nerfstudio():
         for frame in content["frames"]:
             frame["depth_map"] = frame.pop("depth_file_path")
         content["poses_bounds"] = "poses_bounds.npy"
+        content["distortion_params"] = [0.1, 0, 0, 0]
 
     report, got = imported(transforms("unread", change=other))
     same("unread fields", got, depth=False)
     said = "this field is not read, though its name says depth, pose, mask or lens"
-    check(report["remarks"] == [f"poses_bounds: {said}", f"frames[0]: depth_map: {said}",
+    check(report["remarks"] == [f"poses_bounds: {said}", f"distortion_params: {said}", f"frames[0]: depth_map: {said}",
                                 "no frame has depth: build and replay need --depth stereo"], f"unread fields: {report}")
     refused(transforms("two_units", integer_depth_scale=0.5, depth_unit_scale_factor=UNIT), "integer_depth_scale")
     report, _ = imported(transforms("two_paths", change=lambda c: c["frames"][1].update(depth_path="x.png")))

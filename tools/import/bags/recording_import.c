@@ -329,7 +329,7 @@ static void print_text(const char *output, const report *r)
     print_refused(&frames->tree);
     print_topics(r->recording, frames);
     if (t3r_recording_pairing(r->recording).by_log) {
-        printf("stamps: those of the colour images go back, so log times are used\n");
+        printf("stamps: they go back or repeat, so log times are used\n");
     }
     if (frames->interpolated > 0 || frames->composed > 0) {
         printf("poses: %u between two of their topic, %u composed of transforms\n", frames->interpolated,
