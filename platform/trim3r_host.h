@@ -94,6 +94,8 @@ typedef struct t3r_scene_remarks {
     uint32_t pulled;  /* Gaussians beyond the fixed point, moved to its end */
     uint32_t clipped; /* Gaussians with harmonics beyond 8, which are 8 now */
     uint32_t dropped; /* invalid Gaussians left out */
+    double step;      /* between the floats of the file's positions, if over half of `width`; else 0 */
+    double width;     /* half of the Gaussians are at most so wide */
     char text[96];    /* what of the file is not read; "": nothing */
 } t3r_scene_remarks;
 
@@ -108,6 +110,12 @@ typedef enum t3r_scene_up {
     T3R_UP_MZ
 } t3r_scene_up;
 
+/* A Gaussian beyond the fixed point: `times` as far from the frame's origin, and as large, as gaussians[index]. */
+typedef struct t3r_scene_far {
+    uint32_t index;
+    double times;
+} t3r_scene_far;
+
 /* A scene outside the arena. */
 typedef struct t3r_scene_file {
     t3r_scene_frame frame;
@@ -116,6 +124,9 @@ typedef struct t3r_scene_file {
     uint32_t degree;        /* of its harmonics, 0..3 */
     int16_t *harmonics_q12; /* heap; NULL: degree 0. In the layout of t3r_harmonics_colour(), Gaussian by Gaussian */
     bool mip;               /* opacities are those of mip-splatting: t3r_scene_load() draws them so */
+    uint32_t finer;         /* t3r_scene_load() for an eye takes a unit of 2^-finer of the frame's; 0: the frame */
+    t3r_scene_far *far;     /* heap, by rising index; NULL: none */
+    uint32_t far_count;     /* of them */
     t3r_scene_up up;        /* as a comment of the file names it, for the first view */
     t3r_scene_remarks remarks;
 } t3r_scene_file;
@@ -146,6 +157,7 @@ enum {
     X(t3r_recorded_camera)                                                                                             \
     X(t3r_crop)                                                                                                        \
     X(t3r_scene_remarks)                                                                                               \
+    X(t3r_scene_far)                                                                                                   \
     X(t3r_scene_file)                                                                                                  \
     X(t3r_scene_floats)
 #define T3R_HOST_FIELDS_(X)                                                                                            \
@@ -166,13 +178,20 @@ enum {
     X(t3r_scene_remarks, pulled)                                                                                       \
     X(t3r_scene_remarks, clipped)                                                                                      \
     X(t3r_scene_remarks, dropped)                                                                                      \
+    X(t3r_scene_remarks, step)                                                                                         \
+    X(t3r_scene_remarks, width)                                                                                        \
     X(t3r_scene_remarks, text)                                                                                         \
+    X(t3r_scene_far, index)                                                                                            \
+    X(t3r_scene_far, times)                                                                                            \
     X(t3r_scene_file, frame)                                                                                           \
     X(t3r_scene_file, gaussians)                                                                                       \
     X(t3r_scene_file, count)                                                                                           \
     X(t3r_scene_file, degree)                                                                                          \
     X(t3r_scene_file, harmonics_q12)                                                                                   \
     X(t3r_scene_file, mip)                                                                                             \
+    X(t3r_scene_file, finer)                                                                                           \
+    X(t3r_scene_file, far)                                                                                             \
+    X(t3r_scene_file, far_count)                                                                                       \
     X(t3r_scene_file, up)                                                                                              \
     X(t3r_scene_file, remarks)                                                                                         \
     X(t3r_scene_floats, count)                                                                                         \
@@ -325,14 +344,24 @@ static inline t3r_status t3r_floats_of_scene(const t3r_scene_file *scene, t3r_sc
 }
 
 /* Replaces the scene in the arena by one of a file, as a picture of width x height by `eye` sees it: colours of
- * harmonics, opacities of mip-splatting. NULL: colours of degree 0 and opacities as they are. Returns the statuses of
- * t3r_scene_begin(), t3r_scene_append() and, with an eye, T3R_ERR_CAMERA: it is for another size, or out of range. */
+ * harmonics, opacities of mip-splatting, and in a frame of its own where the scene's cannot show what is near or far.
+ * NULL: colours of degree 0, opacities and frame as they are. Returns the statuses of t3r_scene_begin(),
+ * t3r_scene_append() and, with an eye, T3R_ERR_CAMERA: it is for another size, or out of range. */
 t3r_status t3r_scene_load_as(t3r_program program, t3r_runtime *runtime, const t3r_scene_file *scene,
                              const t3r_camera *eye, uint32_t width, uint32_t height);
 static inline t3r_status t3r_scene_load(t3r_runtime *runtime, const t3r_scene_file *scene, const t3r_camera *eye,
                                         uint32_t width, uint32_t height)
 {
     return t3r_scene_load_as(t3r_host_program(), runtime, scene, eye, width, height);
+}
+/* Converts depths of a picture, which t3r_render() drew for the eye of t3r_scene_load(), to world units: a frame of the
+ * picture's own compresses what is far. */
+t3r_status t3r_scene_depths_as(t3r_program program, const t3r_scene_file *scene, const t3r_camera *eye,
+                               const uint32_t *depths_q20, size_t count, double *depths);
+static inline t3r_status t3r_scene_depths(const t3r_scene_file *scene, const t3r_camera *eye,
+                                          const uint32_t *depths_q20, size_t count, double *depths)
+{
+    return t3r_scene_depths_as(t3r_host_program(), scene, eye, depths_q20, count, depths);
 }
 
 /* ---- files -------------------------------------------------------------------------------------------------- */

@@ -135,6 +135,28 @@ def check_drawn():
         check(np.array_equal(made.render(camera), made.render(camera.at(behind))), "the same from both sides")
 
 
+def check_near_and_far():
+    """Near detail in far surroundings is drawn from within each, with its depth; copies and pickles are drawn alike."""
+    far = 6000.0
+    close = [[0.1 * np.cos(i), 0.1 * np.sin(i), 2 + 0.01 * i] for i in range(12)]
+    scene = trim3r.Scene.from_arrays([*close, [0, 0, far], [0, 0, -far]], [[0.05] * 3] * 12 + [[far] * 3] * 2,
+                                     colours=[[1, 0, 0]] * 12 + [[0, 1, 0]] * 2)
+    check(scene.depends_on_camera and len(scene.far) == 2 and scene.far["index"].tolist() == [12, 13], f"{scene.far}")
+    camera = trim3r.Camera.calibrated(SIDE, SIDE, (SIDE - 1) / 2, (SIDE - 1) / 2, np.eye(4), size=(SIDE, SIDE))
+    there = np.eye(4)
+    there[2, 3] = -far / 2
+    with small(0, gaussians=14) as made:
+        for kept in (scene, scene.copy(), pickle.loads(pickle.dumps(scene)), scene.select(np.arange(14) != 13)):
+            made.load(kept)
+            for eye, nearer, farther in ((camera, 2.0, far), (camera.at(there), far / 2, 1.5 * far)):
+                picture = made.picture(eye)
+                corner, middle = (picture.colour[at, at].astype(int) for at in (2, SIDE // 2))
+                check(corner[1] > 100 and corner[0] < 20, f"the surroundings: {corner}")
+                check(middle[0] > 150, f"what is near: {middle}")
+                near(picture.depth[SIDE // 2, SIDE // 2] / nearer, 1, 0.06, "the depth in the middle")
+                near(picture.depth[2, 2] / farther, 1, 0.001, "the depth in the corner")
+
+
 def check_refused():
     nan = float("nan")
     for words, change in (
@@ -256,6 +278,7 @@ def main():
         check_files(folder)
         check_dropped(folder)
         check_drawn()
+        check_near_and_far()
         check_refused()
         check_views()
         check_pickled()

@@ -68,6 +68,26 @@ def one_bad_gaussian():
             check(open("out.ply", "rb").read() == open("same.ply", "rb").read(), f"{name}, {NUMBERS[at]} = {value}: the others")
 
 
+def floats_far_from_the_origin():
+    """Floats whose steps are wider than the Gaussians lost detail when they were written: a warning says so."""
+    def placed(east, north, width):
+        return [[row[0] + east, row[1] + north, *row[2:7], *[math.log(width)] * 3, *row[10:]] for row in rows()]
+
+    def text(path, of):
+        header = f"ply\nformat ascii 1.0\nelement vertex {len(of)}\n" + "".join(f"property float {name}\n" for name in NUMBERS)
+        singles = [struct.unpack("<14f", struct.pack("<14f", *row)) for row in of]
+        return write(path, header + "end_header\n" + "".join(" ".join(map(repr, row)) + "\n" for row in singles))
+
+    for place, width, is_lost in (((450000, 5400000), 0.05, True), ((450000, 5400000), 0.9, True), ((450000, 5400000), 2, False),
+                                  ((450, 5400), 0.05, False), ((0, 0), 0.05, False), ((450, 5400), 0.0005, True)):
+        for name, write_scene in (("utm.ply", ply), ("text.ply", text), ("utm.splat", splat)):
+            write_scene(name, placed(*place, width))
+            for line in (("info", name), ("convert", name, "-o", "near.glb", "--force"), ("render", name, "--orbit", 1, "-o", "v.png", "--force")):
+                code, _, error = run(*line)
+                check(code == 0, f"{line}: {error}")
+                check(("positions are floats, so far from the origin in steps of" in error) == is_lost, f"{place}, {width}, {line}: {error}")
+
+
 def closed_streams():
     """No file gets the number of a closed standard stream, so no table goes into it."""
     recording = room()
@@ -106,4 +126,4 @@ def two_writers():
     check(open("two.mcap", "rb").read() == before, "what another process records")
 
 
-in_scratch(lenses_of_poses, one_bad_gaussian, closed_streams, files_of_the_kernel, two_writers)
+in_scratch(lenses_of_poses, one_bad_gaussian, floats_far_from_the_origin, closed_streams, files_of_the_kernel, two_writers)

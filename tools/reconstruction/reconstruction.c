@@ -612,10 +612,19 @@ static int append_loaded(reconstruction *r, const scene_eye *eye)
 
 int reconstruction_look_from(reconstruction *r, const t3r_camera *camera, uint32_t width, uint32_t height)
 {
-    t3r_pose pose;
-    const bool is_drawn = t3r_pose_in_scene(camera, &r->loaded.frame, &pose) == T3R_OK; /* else t3r_render() refuses */
+    if (r->loaded.gaussians == NULL) {
+        return CLI_OK;
+    }
     const scene_eye eye = {camera, width, height};
-    return scene_file_depends_on_view(&r->loaded) && is_drawn ? append_loaded(r, &eye) : CLI_OK;
+    const bool was_seen = r->is_seen;
+    r->seen = scene_seen_from(&r->loaded, &eye);
+    r->is_seen = scene_differs(&r->loaded, &r->seen);
+    return was_seen || r->is_seen ? append_loaded(r, &eye) : CLI_OK;
+}
+
+double reconstruction_depth(const reconstruction *r, uint32_t depth_q20)
+{
+    return ldexp(seen_depth(&r->seen, depth_q20), r->scene.frame.exponent);
 }
 
 static int load(reconstruction *r, uint32_t width, uint32_t height, const reconstruction_options *options)

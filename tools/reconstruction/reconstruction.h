@@ -18,6 +18,7 @@
 #include "reconstruction/stage_times.h"
 #include "recording/recording.h"
 #include "scene/scene_file.h"
+#include "scene/seen_gaussian.h"
 #include "trim3r.h"
 #include "trim3r_host.h"
 
@@ -96,6 +97,8 @@ typedef struct reconstruction {
     t3r_threads *threads;
     t3r_scene scene;
     scene_file loaded; /* scene taken by reconstruction_load(); else all zero */
+    bool is_seen;      /* the arena has the loaded scene as a camera sees it: */
+    seen_from seen;    /* that of the last view */
     uint32_t context[T3R_MAX_VIEWS];
     uint32_t context_count;
     uint32_t valid_points;    /* pixels of the context views with a depth before filling, working size */
@@ -164,9 +167,11 @@ t3r_hooks reconstruction_hooks(reconstruction *r, const reconstruction_options *
  * threads and hash are read. `r` takes ownership of the scene in every case: *scene is left empty. */
 int reconstruction_load(reconstruction *r, scene_file *scene, uint32_t width, uint32_t height,
                         const reconstruction_options *options);
-/* Gives a loaded scene the colours and opacities that a camera sees; later t3r_render() calls draw them. Scenes that
- * look the same from everywhere are unchanged. */
+/* Gives a loaded scene the colours, opacities and frame that a camera sees; later t3r_render() calls draw them. Scenes
+ * that look the same from everywhere are unchanged. */
 int reconstruction_look_from(reconstruction *r, const t3r_camera *camera, uint32_t width, uint32_t height);
+/* Returns a depth that t3r_render() drew, in world units. */
+double reconstruction_depth(const reconstruction *r, uint32_t depth_q20);
 
 /* Contents of a scene's frames before it is built: valid points, and by stereo the scene's depth in world units, a
  * power of two times 1.5 (0 by sensor). */

@@ -1,24 +1,55 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/scene_append.h"
 
-#include "scene/seen_gaussian.h"
+static seen_traits traits_of(const scene_file *scene)
+{
+    return (seen_traits){.degree = scene->degree,
+                         .mip = scene->mip,
+                         .is_spread = scene->finer > 0 || scene->far_count > 0,
+                         .finer = scene->finer};
+}
+
+seen_from scene_seen_from(const scene_file *scene, const scene_eye *eye)
+{
+    const seen_traits traits = traits_of(scene);
+    seen_from from;
+    seen_from_camera(eye->camera, &scene->frame, &traits, eye->width, eye->height, &from);
+    return from;
+}
+
+bool scene_differs(const scene_file *scene, const seen_from *from)
+{
+    const seen_traits traits = traits_of(scene);
+    return seen_differs(&traits, from);
+}
+
+/* Appends the Gaussians as a camera sees them. */
+static t3r_status append_seen(t3r_runtime *runtime, const scene_file *scene, const seen_from *from, uint32_t *index)
+{
+    const seen_traits traits = traits_of(scene);
+    const t3r_scene_far *far = scene->far, *end = scene->far + scene->far_count;
+    t3r_status status = t3r_scene_begin(runtime, &from->frame);
+    for (*index = 0; *index < scene->count && status == T3R_OK; ++*index) {
+        t3r_gaussian gaussian = scene->gaussians[*index];
+        const double times = far != end && far->index == *index ? far++->times : 1;
+        status = seen_gaussian(&traits, times, scene->degree > 0 ? scene_file_harmonics(scene, *index) : NULL, from,
+                               &gaussian);
+        status = status == T3R_OK ? t3r_scene_append(runtime, &gaussian) : status;
+    }
+    return status;
+}
 
 t3r_status scene_append_all(t3r_runtime *runtime, const scene_file *scene, const scene_eye *eye, uint32_t *index)
 {
-    const seen_traits traits = {.degree = scene->degree, .mip = scene->mip};
-    const bool depends = eye != NULL && scene_file_depends_on_view(scene);
-    seen_from from;
-    t3r_status status = t3r_scene_begin(runtime, &scene->frame);
-    if (status == T3R_OK && depends) {
-        status = seen_from_camera(eye->camera, &scene->frame, eye->width, eye->height, &from);
-    }
-    for (*index = 0; *index < scene->count && status == T3R_OK; ++*index) {
-        t3r_gaussian gaussian = scene->gaussians[*index];
-        if (depends) {
-            status = seen_gaussian(&traits, scene->degree > 0 ? scene_file_harmonics(scene, *index) : NULL, &from,
-                                   &gaussian);
+    if (eye != NULL) {
+        const seen_from from = scene_seen_from(scene, eye);
+        if (scene_differs(scene, &from)) {
+            return append_seen(runtime, scene, &from, index);
         }
-        status = status == T3R_OK ? t3r_scene_append(runtime, &gaussian) : status;
+    }
+    t3r_status status = t3r_scene_begin(runtime, &scene->frame);
+    for (*index = 0; *index < scene->count && status == T3R_OK; ++*index) {
+        status = t3r_scene_append(runtime, &scene->gaussians[*index]);
     }
     return status;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/scene_extent.h"
 
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -14,6 +15,10 @@
 #define SPREAD 16.0
 #define NEARER 64.0
 #define PAIRS 4096u
+/* A unit that is finer by more octaves than positions have bits would show their rounding. */
+#define FINER_MOST 20
+/* Least width that counts, in typical distances: points have none. */
+#define THINNEST 0x1p-16
 
 /* Reorders the values, and returns the one that would stand at `wanted` if they were sorted (Hoare's selection). */
 static double take_sorted(double *values, uint32_t count, int64_t wanted)
@@ -61,17 +66,23 @@ static double largest_coefficient(const scene_row *row, uint32_t degree)
     return largest;
 }
 
+static bool is_float(double value)
+{
+    return fabs(value) <= FLT_MAX && (float)value == value;
+}
+
 static void widen(scene_bounds *bounds, double value)
 {
     bounds->least = value < bounds->least ? value : bounds->least;
     bounds->most = value > bounds->most ? value : bounds->most;
 }
 
-/* Fills positions[], the bounds and the largest coefficient. */
-static int read_positions(const scene_rows *rows, double (*positions)[3], scene_extent *out, char *error,
-                          size_t error_bytes)
+/* Fills positions[], widths[], the bounds and the largest coefficient. *are_floats: whether all positions are. */
+static int read_positions(const scene_rows *rows, double (*positions)[3], double *widths, scene_extent *out,
+                          bool *are_floats, char *error, size_t error_bytes)
 {
     scene_row row;
+    *are_floats = true;
     *out = (scene_extent){.colour = {INFINITY, -INFINITY}, .log_scale = {INFINITY, -INFINITY}};
     for (uint32_t i = 0; i < rows->count; i++) {
         if (scene_rows_read(rows, i, &row, error, error_bytes) != 0) {
@@ -79,9 +90,11 @@ static int read_positions(const scene_rows *rows, double (*positions)[3], scene_
         }
         for (int axis = 0; axis < 3; axis++) {
             positions[i][axis] = row.position[axis];
+            *are_floats = *are_floats && is_float(row.position[axis]);
             widen(&out->log_scale, row.log_scale[axis]);
             widen(&out->colour, scene_row_colour(&row, axis));
         }
+        widths[i] = fmax(row.log_scale[0], fmax(row.log_scale[1], row.log_scale[2]));
         out->harmonics = fmax(out->harmonics, largest_coefficient(&row, rows->degree));
     }
     return 0;
@@ -130,16 +143,23 @@ static double nearness_of(double (*positions)[3], double *values, uint32_t count
     return apart > 0 ? take_sorted(values, apart, apart / 10) : INFINITY;
 }
 
-/* Returns the typical of the distances from the centre; 0: all are 0. */
-static double typical_of(double *distances, uint32_t count, double nearness)
+/* Fills in the typical of the distances from the centre, 0 if all are 0, and how much finer a backdrop's detail is. */
+static void find_typical(double *distances, uint32_t count, double nearness, scene_extent *extent)
 {
     const uint32_t apart = keep_positive(distances, count);
+    extent->typical = 0;
+    extent->finer = 0;
     if (apart == 0) {
-        return 0;
+        return;
     }
     const double median = take_sorted(distances, apart, apart / 2);
     const double near = fmin(take_sorted(distances, apart, apart / 10), nearness);
-    return fmax(fmin(median, SPREAD * near), median / NEARER);
+    extent->typical = fmax(fmin(median, SPREAD * near), median / NEARER);
+    if (extent->typical < median) {
+        int octaves;
+        (void)frexp(extent->typical / near, &octaves);
+        extent->finer = (uint32_t)(octaves < FINER_MOST ? octaves : FINER_MOST);
+    }
 }
 
 /* Fills in place and size. */
@@ -155,7 +175,7 @@ static void measure(double (*positions)[3], double *values, uint32_t count, scen
     for (uint32_t i = 0; i < count; i++) {
         values[i] = distance_of(positions[i], extent->centre);
     }
-    extent->typical = typical_of(values, count, nearness);
+    find_typical(values, count, nearness, extent);
     if (extent->typical == 0) {
         extent->typical = exp(fmin(fmax(extent->log_scale.most, -30), 30));
     }
@@ -164,31 +184,48 @@ static void measure(double (*positions)[3], double *values, uint32_t count, scen
     }
 }
 
+/* Returns the distance between floats as large as the largest coordinate. */
+static double float_step(const double place[3])
+{
+    int exponent;
+    (void)frexp(fmax(fabs(place[0]), fmax(fabs(place[1]), fabs(place[2]))), &exponent);
+    return ldexp(1, exponent - FLT_MANT_DIG);
+}
+
+bool scene_extent_is_rounded(const scene_extent *extent)
+{
+    return extent->step > extent->width / 2;
+}
+
 int scene_extent_of(const scene_rows *rows, scene_extent *out, char *error, size_t error_bytes)
 {
     double(*positions)[3] = malloc(rows->count * sizeof *positions);
     double *values = malloc(rows->count * sizeof *values);
+    bool are_floats;
     int result = positions != NULL && values != NULL
-                     ? read_positions(rows, positions, out, error, error_bytes)
+                     ? read_positions(rows, positions, values, out, &are_floats, error, error_bytes)
                      : t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", rows->count);
     if (result == 0) {
+        const double width = exp(take_sorted(values, rows->count, rows->count / 2));
         measure(positions, values, rows->count, out);
+        out->width = fmax(width, THINNEST * out->typical);
+        out->step = are_floats ? float_step(out->centre) : 0;
     }
     free(positions);
     free(values);
     return result;
 }
 
-bool scene_pull(scene_row *row, const double centre[3], double reach)
+double scene_pull(scene_row *row, double reach)
 {
-    const double distance = distance_of(row->position, centre);
-    if (!(distance > reach)) {
-        return false;
+    static const double origin[3] = {0};
+    const double times = distance_of(row->position, origin) / reach;
+    if (!(times > 1)) {
+        return 1;
     }
-    const double share = reach / distance;
     for (int axis = 0; axis < 3; axis++) {
-        row->position[axis] = centre[axis] + share * (row->position[axis] - centre[axis]);
-        row->log_scale[axis] += log(share);
+        row->position[axis] /= times;
+        row->log_scale[axis] -= log(times);
     }
-    return true;
+    return times;
 }

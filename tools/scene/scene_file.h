@@ -15,12 +15,6 @@
 typedef t3r_scene_remarks scene_remarks;
 typedef t3r_scene_file scene_file;
 
-/* Whether the Gaussians look different from each viewpoint. */
-static inline bool scene_file_depends_on_view(const scene_file *scene)
-{
-    return scene->degree > 0 || scene->mip;
-}
-
 /* Returns the numbers in harmonics_q12 per Gaussian. */
 static inline size_t scene_file_harmonics_count(const scene_file *scene)
 {

@@ -14,6 +14,8 @@
 
 /* Widest scale of the fixed point, in scene units: such a Gaussian covers every picture. */
 #define SCALE_MOST 0x1p29
+/* Farthest distance of a Gaussian, in reaches of the fixed point. */
+#define TIMES_MOST 0x1p200
 
 /* Converts a world coordinate to Q32; |value| < 2^30. */
 static int64_t to_q32(double value)
@@ -21,21 +23,20 @@ static int64_t to_q32(double value)
     return (int64_t)nearbyint(ldexp(value, 32));
 }
 
-int scene_rows_choose_frame(const scene_rows *rows, const scene_turn *turn, t3r_scene_frame *frame, char *error,
-                            size_t error_bytes)
+int scene_rows_choose_frame(const scene_rows *rows, const scene_turn *turn, t3r_scene_frame *frame,
+                            scene_extent *extent, char *error, size_t error_bytes)
 {
-    scene_extent extent;
-    if (scene_extent_of(rows, &extent, error, error_bytes) != 0) {
+    if (scene_extent_of(rows, extent, error, error_bytes) != 0) {
         return -1;
     }
-    double *centre = extent.centre, none[4] = {1, 0, 0, 0};
+    double centre[3] = {extent->centre[0], extent->centre[1], extent->centre[2]}, none[4] = {1, 0, 0, 0};
     scene_turn_apply(turn, centre, none, 0, NULL);
-    frame->exponent = scene_extent_exponent(&extent);
+    frame->exponent = scene_extent_exponent(extent);
     if (!(fmax(fabs(centre[0]), fmax(fabs(centre[1]), fabs(centre[2]))) < 0x1p30) ||
         frame->exponent < T3R_EXPONENT_LEAST || frame->exponent > T3R_EXPONENT_MOST) {
         return t3r_reason(error, error_bytes,
                           "half of the positions lie within %g units of (%g, %g, %g): outside 2^-24..2^24",
-                          extent.typical, centre[0], centre[1], centre[2]);
+                          extent->typical, centre[0], centre[1], centre[2]);
     }
     for (int axis = 0; axis < 3; axis++) {
         frame->origin_q32[axis] = to_q32(centre[axis]);
@@ -85,10 +86,25 @@ static bool convert_harmonics(const scene_row *row, uint32_t degree, int16_t *ha
     return clipped;
 }
 
+/* Notes how far a Gaussian is that was pulled. Returns 0, or -1 without memory. */
+static int add_far(scene_file *scene, uint32_t index, double times)
+{
+    const uint32_t count = scene->far_count;
+    if ((count & (count - 1)) == 0) { /* it is full at powers of two */
+        t3r_scene_far *more = realloc(scene->far, (count == 0 ? 1 : 2 * (size_t)count) * sizeof *more);
+        if (more == NULL) {
+            return -1;
+        }
+        scene->far = more;
+    }
+    scene->far[scene->far_count++] = (t3r_scene_far){index, fmin(times, TIMES_MOST)};
+    scene->remarks.pulled = scene->far_count;
+    return 0;
+}
+
 static int convert_row(const scene_rows *rows, const scene_turn *turn, uint32_t index, scene_file *scene, char *error,
                        size_t error_bytes)
 {
-    static const double middle[3] = {0};
     const t3r_scene_frame *frame = &scene->frame;
     t3r_gaussian *g = &scene->gaussians[index];
     scene_row row;
@@ -100,7 +116,10 @@ static int convert_row(const scene_rows *rows, const scene_turn *turn, uint32_t 
     for (int i = 0; i < 3 && !(rows->has_frame && rows->local); i++) {
         row.position[i] -= ldexp((double)frame->origin_q32[i], -32);
     }
-    scene->remarks.pulled += scene_pull(&row, middle, ldexp(SCENE_REACH, frame->exponent));
+    const double times = scene_pull(&row, ldexp(SCENE_REACH, frame->exponent));
+    if (times > 1 && add_far(scene, index, times) != 0) {
+        return t3r_reason(error, error_bytes, "out of memory for a Gaussian far away");
+    }
     *g = (t3r_gaussian){.confidence = 255};
     for (int i = 0; i < 3; i++) {
         g->position_q20[i] = (int32_t)nearbyint(ldexp(row.position[i], 20 - frame->exponent));
@@ -123,9 +142,15 @@ int scene_file_from_rows(const scene_rows *rows, scene_file *out, char *error, s
     scene_file scene = {
         .frame = rows->frame, .count = rows->count, .degree = rows->degree, .mip = rows->mip, .up = rows->up};
     const scene_turn turn = scene_turn_between(rows->axes, SCENE_AXES_AS_THEY_ARE, T3R_UP_UNKNOWN);
+    scene_extent extent = {0};
     if ((rows->has_frame ? check_frame(&scene.frame, error, error_bytes)
-                         : scene_rows_choose_frame(rows, &turn, &scene.frame, error, error_bytes)) != 0) {
+                         : scene_rows_choose_frame(rows, &turn, &scene.frame, &extent, error, error_bytes)) != 0) {
         return -1;
+    }
+    scene.finer = extent.finer;
+    if (scene_extent_is_rounded(&extent)) {
+        scene.remarks.step = extent.step;
+        scene.remarks.width = extent.width;
     }
     scene.gaussians = malloc(rows->count * sizeof *scene.gaussians);
     scene.harmonics_q12 =
@@ -149,5 +174,6 @@ void scene_file_free(scene_file *scene)
 {
     free(scene->gaussians);
     free(scene->harmonics_q12);
+    free(scene->far);
     *scene = (scene_file){0};
 }

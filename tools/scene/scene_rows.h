@@ -60,10 +60,12 @@ int scene_file_take(const char *path, int flags, const scene_sink *sink, char *e
 
 /* ---- the runtime's fixed point ---- */
 
+struct scene_extent;
 /* Chooses a frame for rows of a file without one, as they are turned: origin at the centre, typical distance in [1, 2)
- * scene units. Returns 0, or -1 with the reason in error[] if no frame is in range. */
-int scene_rows_choose_frame(const scene_rows *rows, const scene_turn *turn, t3r_scene_frame *frame, char *error,
-                            size_t error_bytes);
+ * scene units. *extent receives that of the rows. Returns 0, or -1 with the reason in error[] if no frame is in range.
+ */
+int scene_rows_choose_frame(const scene_rows *rows, const scene_turn *turn, t3r_scene_frame *frame,
+                            struct scene_extent *extent, char *error, size_t error_bytes);
 /* Returns 0, after which scene_file_free() is due; or -1 with the reason in error[]. */
 int scene_file_from_rows(const scene_rows *rows, scene_file *out, char *error, size_t error_bytes);
 /* Returns the rows of a scene in fixed point, which has to outlive them. */

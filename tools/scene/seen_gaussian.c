@@ -4,11 +4,16 @@
 #define WIDENED 0.3 /* square pixels that the rasterizer adds; runtime/SPEC.md, "Raster" */
 #define HELD 1.3    /* bound of the Jacobian over the tangent to the picture's farther edge, as there */
 
-t3r_status seen_from_camera(const t3r_camera *camera, const t3r_scene_frame *frame, uint32_t width, uint32_t height,
-                            seen_from *out)
+void seen_from_camera(const t3r_camera *camera, const t3r_scene_frame *frame, const seen_traits *traits, uint32_t width,
+                      uint32_t height, seen_from *out)
 {
-    *out = (seen_from){.camera = *camera, .width = width, .height = height};
-    return t3r_pose_in_scene(camera, frame, &out->pose);
+    *out = (seen_from){.camera = *camera, .width = width, .height = height, .frame = *frame};
+    out->is_own = t3r_pose_in_scene(camera, frame, &out->pose) != T3R_OK || traits->is_spread;
+    if (out->is_own) {
+        view_frame_of(camera, frame, traits->finer, &out->view);
+        out->frame = out->view.frame;
+        out->pose = out->view.pose;
+    }
 }
 
 static double held(double slope, double pixels, double centre, double focal)
@@ -80,10 +85,13 @@ static uint16_t mip_opacity_q15(const t3r_gaussian *gaussian, const seen_from *f
     return (uint16_t)(gaussian->opacity_q15 * __builtin_sqrt(ratio > 0 ? ratio : 0) + 0.5);
 }
 
-t3r_status seen_gaussian(const seen_traits *traits, const int16_t *harmonics_q12, const seen_from *from,
+t3r_status seen_gaussian(const seen_traits *traits, double times, const int16_t *harmonics_q12, const seen_from *from,
                          t3r_gaussian *gaussian)
 {
     int32_t direction[3];
+    if (from->is_own) {
+        view_frame_place(&from->view, times, gaussian);
+    }
     for (int axis = 0; axis < 3; axis++) { /* both within 2^30 */
         direction[axis] = gaussian->position_q20[axis] - from->pose.position_q20[axis];
     }

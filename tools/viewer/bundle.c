@@ -81,6 +81,14 @@ static void put_gaussian(FILE *out, const t3r_gaussian *g)
     fputc(g->confidence, out);
 }
 
+static void put_far(FILE *out, const t3r_scene_far *far)
+{
+    uint64_t bits;
+    memcpy(&bits, &far->times, sizeof bits);
+    put_u32(out, far->index);
+    put_u64(out, bits);
+}
+
 static void put_all(FILE *out, const bundle *b)
 {
     const scene_file *scene = b->scene;
@@ -97,6 +105,8 @@ static void put_all(FILE *out, const bundle *b)
     }
     put_u32(out, scene->degree);
     put_u32(out, scene->mip);
+    put_u32(out, scene->finer);
+    put_u32(out, scene->far_count);
     for (uint32_t i = 0; i < b->frame_count; i++) {
         put_frame(out, &b->frames[i]);
     }
@@ -121,6 +131,10 @@ static void put_all(FILE *out, const bundle *b)
     align(out);
     for (uint32_t i = 0; i < scene->count; i++) {
         put_gaussian(out, &scene->gaussians[i]);
+    }
+    align(out);
+    for (uint32_t i = 0; i < scene->far_count; i++) {
+        put_far(out, &scene->far[i]);
     }
     align(out);
     for (size_t i = 0; scene->degree > 0 && i < scene->count * scene_file_harmonics_count(scene); i++) {

@@ -40,7 +40,7 @@ if(wasm_found)
   file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/wasm)
   get_target_property(runtime_sources trim3r_runtime SOURCES)
   list(FILTER runtime_sources EXCLUDE REGEX "/kernels/(x86|arm)/")
-  file(GLOB module_sources CONFIGURE_DEPENDS viewer/module/*.c scene/seen_gaussian.c)
+  file(GLOB module_sources CONFIGURE_DEPENDS viewer/module/*.c scene/seen_gaussian.c geometry/view_frame.c)
   set(freestanding ${T3R_WASM_CLANG} --target=wasm32 -std=c11 -O3 -mbulk-memory -matomics -mmutable-globals -msimd128
                    -ffreestanding)
   t3r_wasm_objects(runtime_objects BY ${freestanding} SOURCES ${runtime_sources})

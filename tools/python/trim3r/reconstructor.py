@@ -6,6 +6,7 @@ import os
 from typing import Any, Deque, Iterator, Optional, Tuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ._native import HOST, address, called, check, ffi, lib
 from .arguments import pair, real, whole
@@ -257,6 +258,16 @@ class Reconstructor(Runtime):
         if self._loaded is not None:
             self._load(runtime, self._loaded[0], camera, (target.width, target.height))
         super()._draw(runtime, camera, target)
+
+    def _of_scene(self, depth_q20: "NDArray[np.uint32]", eye: Any, exponent: int) -> "Tuple[NDArray[np.uint32], int]":
+        if self._loaded is None:
+            return depth_q20, exponent
+        depths = np.empty(depth_q20.shape)
+        lib.t3r_scene_depths_as(HOST, self._loaded[0], eye, address(depth_q20, "uint32_t *"), depths.size,
+                                address(depths, "double *"))
+        unit = max(self._loaded[0].frame.exponent, int(np.frexp(depths.max())[1]) - 12) # 2**12 units and less fit
+        steps = np.rint(np.ldexp(depths, 20 - unit))
+        return np.minimum(steps, 2**32 - 1).astype(np.uint32), unit
 
     def _load(self, runtime: Any, file: Any, eye: Any, size: Tuple[int, int]) -> None:
         """Appends the Gaussians of a file, as the eye sees them."""

@@ -97,7 +97,12 @@ class Runtime:
             self._draw(runtime, camera.native((width, height)), target)
             scene = ffi.new("t3r_scene *")
             self._check("t3r_get_scene", runtime, scene)
-        return Picture(colour, depth, alpha, scene.frame.exponent)
+        depth, exponent = self._of_scene(depth, camera.native((width, height)), scene.frame.exponent)
+        return Picture(colour, depth, alpha, exponent)
+
+    def _of_scene(self, depth_q20: "NDArray[np.uint32]", eye: Any, exponent: int) -> "Tuple[NDArray[np.uint32], int]":
+        """The depths in scene units, and the exponent of these."""
+        return depth_q20, exponent
 
     # ---- properties ----
 

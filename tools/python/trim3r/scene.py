@@ -13,6 +13,7 @@ from .errors import InputError, StateError
 from .scene_arrays import IDENTITY, Arrays, arrays_of, checked, scene_of
 
 GAUSSIAN = dtype_of("t3r_gaussian")
+FAR = dtype_of("t3r_scene_far")
 _ORIGIN_MOST = (1 << 62) - 1
 _EXPONENT_MOST = 24
 _POINTS_MOST = (1 << 32) - 1
@@ -38,10 +39,16 @@ class Scene:
         The coefficients of colours that depend on the direction, from degree 0 on, in 1/2**12; None: they do not.
     antialiased : bool
         Opacities are those of mip-splatting.
+    finer : int
+        A picture takes a frame of its own, with a unit of 2**-finer scene units; 0: only if `far` has Gaussians.
+    far : ndarray of FAR
+        Gaussians beyond the fixed point, by rising index: they are `times` as far from the origin, and as large, as
+        `gaussians` says.
     """
 
     def __init__(self, gaussians: "NDArray[Any]", origin_q32: Tuple[int, int, int], exponent: int,
                  valid_points: int = 0, harmonics_q12: "Optional[NDArray[np.int16]]" = None, antialiased: bool = False,
+                 finer: int = 0, far: "Optional[NDArray[Any]]" = None,
                  fresh: Callable[[], bool] = lambda: True) -> None:
         if gaussians.dtype != GAUSSIAN or gaussians.ndim != 1:
             raise ValueError("Gaussians are a one-dimensional array of trim3r.scene.GAUSSIAN")
@@ -49,6 +56,7 @@ class Scene:
         self.origin_q32, self.exponent = origin_q32, exponent
         self.valid_points = whole("valid_points", valid_points, 0, _POINTS_MOST)
         self.harmonics_q12, self.antialiased = harmonics_q12, antialiased
+        self.finer, self.far = finer, np.zeros(0, FAR) if far is None else far
         self._degree() # which checks them
         self.native_frame() # which checks it
 
@@ -127,7 +135,9 @@ class Scene:
             coefficients = (file.degree + 1)**2
             flat = borrowed(file.harmonics_q12, file.count * coefficients * 3, owner, np.dtype(np.int16))
             scene.harmonics_q12 = flat.reshape(file.count, coefficients, 3)
-        scene.antialiased = bool(file.mip)
+        scene.antialiased, scene.finer = bool(file.mip), file.finer
+        if file.far_count > 0:
+            scene.far = borrowed(file.far, file.far_count, owner, FAR)
         return scene
 
     def save(self, path: Path, local: bool = False, comments: bool = False) -> None:
@@ -159,18 +169,22 @@ class Scene:
 
     def copy(self) -> "Scene":
         """The same scene in memory of its own."""
-        return self._with(self.gaussians.copy(), None if self.harmonics_q12 is None else self.harmonics_q12.copy())
+        return self.select(np.arange(len(self)))
 
     def select(self, which: "NDArray[Any]") -> "Scene":
         """The scene of the Gaussians that an index array or a mask of (N,) chooses, in memory of its own."""
-        return self._with(self.gaussians[which].copy(), None if self.harmonics_q12 is None else self.harmonics_q12[which])
-
-    def _with(self, gaussians: "NDArray[Any]", harmonics_q12: "Optional[NDArray[np.int16]]") -> "Scene":
-        return Scene(gaussians, self.origin_q32, self.exponent, self.valid_points, harmonics_q12, self.antialiased)
+        gaussians, harmonics = self.gaussians[which], self.harmonics_q12
+        times = np.ones(len(self))
+        times[self.far["index"]] = self.far["times"]
+        chosen = times[which]
+        far = np.zeros(np.count_nonzero(chosen > 1), FAR)
+        far["index"], far["times"] = np.flatnonzero(chosen > 1), chosen[chosen > 1]
+        return Scene(gaussians.copy(), self.origin_q32, self.exponent, self.valid_points,
+                     None if harmonics is None else harmonics[which].copy(), self.antialiased, self.finer, far)
 
     def __reduce__(self) -> Tuple[Any, ...]:
         return Scene, (self.gaussians.copy(), self.origin_q32, self.exponent, self.valid_points, self.harmonics_q12,
-                       self.antialiased)
+                       self.antialiased, self.finer, self.far.copy())
 
     def __len__(self) -> int:
         return len(self._gaussians)
@@ -236,7 +250,7 @@ class Scene:
     @property
     def depends_on_camera(self) -> bool:
         """Whether the Gaussians look different from each viewpoint."""
-        return self.harmonics_q12 is not None or self.antialiased
+        return self.harmonics_q12 is not None or self.antialiased or self.finer > 0 or len(self.far) > 0
 
     @property
     def covariances(self) -> "NDArray[np.float64]":
@@ -275,11 +289,13 @@ class Scene:
         gaussians = np.ascontiguousarray(self.gaussians)
         degree = self._degree()
         harmonics = None if degree == 0 else np.ascontiguousarray(self.harmonics_q12)
+        far = np.ascontiguousarray(self.far)
         file = ffi.new("t3r_scene_file *", {
             "gaussians": address(gaussians, "t3r_gaussian *"), "count": len(gaussians), "frame": self.native_frame()[0],
-            "degree": degree, "mip": bool(self.antialiased),
+            "degree": degree, "mip": bool(self.antialiased), "finer": self.finer,
+            "far": address(far, "t3r_scene_far *"), "far_count": len(far),
             "harmonics_q12": ffi.NULL if harmonics is None else address(harmonics, "int16_t *")})
-        return file, (gaussians, harmonics)
+        return file, (gaussians, harmonics, far)
 
     def _degree(self) -> int:
         """Returns the degree of the harmonics. Raises ValueError where they are no array of a scene of so many

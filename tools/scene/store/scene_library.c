@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Scene files for programs of the host library: remarks go into the caller's text. */
 #include <locale.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -120,4 +121,17 @@ t3r_status t3r_scene_load_as(t3r_program program, t3r_runtime *runtime, const t3
     }
     const t3r_status status = eye != NULL ? t3r_camera_check(eye, width, height) : T3R_OK;
     return status == T3R_OK ? scene_append_all(runtime, scene, eye != NULL ? &from : NULL, &index) : status;
+}
+
+t3r_status t3r_scene_depths_as(t3r_program program, const t3r_scene_file *scene, const t3r_camera *eye,
+                               const uint32_t *depths_q20, size_t count, double *depths)
+{
+    if (!t3r_program_fits(program, t3r_host_program(), NULL, 0)) {
+        return T3R_ERR_INTERFACE;
+    }
+    const seen_from from = scene_seen_from(scene, &(scene_eye){.camera = eye});
+    for (size_t i = 0; i < count; i++) {
+        depths[i] = ldexp(seen_depth(&from, depths_q20[i]), from.frame.exponent);
+    }
+    return T3R_OK;
 }

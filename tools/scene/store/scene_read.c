@@ -89,6 +89,9 @@ void scene_store_remark(const scene_caller *caller, const char *path, const scen
         scene_remark(caller, path, "%s", remarks->text);
     }
     remark_dropped(caller, path, remarks->dropped);
+    if (remarks->step > 0) {
+        scene_remark_rounded(caller, path, remarks->step, remarks->width);
+    }
     if (remarks->pulled > 0) {
         scene_remark_far(caller, path, remarks->pulled, "drawn nearer, and smaller in proportion");
     }

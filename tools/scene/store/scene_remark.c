@@ -28,3 +28,11 @@ void scene_remark_far(const scene_caller *caller, const char *path, uint32_t cou
                  "%" PRIu32 " Gaussians are over 1,000 times as far away as is typical of the scene: they are %s",
                  count, done);
 }
+
+void scene_remark_rounded(const scene_caller *caller, const char *path, double step, double width)
+{
+    scene_remark(caller, path,
+                 "its positions are floats, so far from the origin in steps of %.3g, but half of the Gaussians are at "
+                 "most %.3g wide: detail was lost where the file was written, which an offset or doubles would keep",
+                 step, width);
+}

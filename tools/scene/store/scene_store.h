@@ -38,6 +38,8 @@ void scene_store_remark(const scene_caller *caller, const char *path, const scen
 /* Passes a formatted remark on a file to the caller. */
 void scene_remark(const scene_caller *caller, const char *path, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* Passes on that a file's positions are floats in such steps, while half of the Gaussians have at most this width. */
+void scene_remark_rounded(const scene_caller *caller, const char *path, double step, double width);
 /* Passes on that so many Gaussians of a file are far away, and what is done with them. */
 void scene_remark_far(const scene_caller *caller, const char *path, uint32_t count, const char *done);
 

@@ -184,7 +184,8 @@ static int check_scene(const scene_file *scene, const scene_rows *rows, char *er
     }
     const scene_turn as_they_are = scene_turn_between(rows->axes, rows->axes, T3R_UP_UNKNOWN);
     t3r_scene_frame chosen;
-    return scene_rows_choose_frame(rows, &as_they_are, &chosen, error, error_bytes);
+    scene_extent extent;
+    return scene_rows_choose_frame(rows, &as_they_are, &chosen, &extent, error, error_bytes);
 }
 
 /* Returns the largest harmonic above degree 0. */
@@ -231,6 +232,9 @@ static int convert_rows(const conversion *c, const scene_rows *rows, char *error
     char reason[256] = "";
     if (scene_extent_of(rows, &extent, reason, sizeof reason) != 0) {
         return t3r_reason(error, error_bytes, "%s: %s", c->from, reason);
+    }
+    if (scene_extent_is_rounded(&extent)) {
+        scene_remark_rounded(c->caller, c->from, extent.step, extent.width);
     }
     return write_rows(c->to, rows, &extent, c->flags | kept, NULL, c->caller, c->out, error, error_bytes);
 }

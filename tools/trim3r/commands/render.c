@@ -230,15 +230,14 @@ static int write_picture(const char *path, uint32_t index, uint32_t count, const
     return picture_write_png(name, p, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
-/* Converts scene units in Q20 to steps of the depth picture. A depth of more steps than 16 bits hold, or of less than
+/* Converts depths of a picture to steps of the depth picture. A depth of more steps than 16 bits hold, or of less than
  * half a step, becomes 0, none, with a warning. */
-static void convert_depth(const char *path, const uint32_t *depth_q20, size_t count, double unit, int exponent,
-                          uint16_t *out)
+static void convert_depth(const char *path, const reconstruction *r, const uint32_t *depth_q20, size_t count,
+                          double unit, uint16_t *out)
 {
-    double steps = ldexp(1.0, exponent - 20) / unit;
     uint32_t far = 0, near = 0;
     for (size_t i = 0; i < count; i++) {
-        const double value = nearbyint(depth_q20[i] * steps);
+        const double value = nearbyint(reconstruction_depth(r, depth_q20[i]) / unit);
         out[i] = value > UINT16_MAX ? 0 : (uint16_t)value;
         far += value > UINT16_MAX;
         near += depth_q20[i] != 0 && value < 1;
@@ -327,7 +326,7 @@ static int render_one(const render_options *o, reconstruction *r, const t3r_came
     code = write_colour(o, view, index, count, p, film);
     picture grey = {.width = view->width, .height = view->height, .channels = 1, .bits = 16, .samples = p->grey};
     if (code == CLI_OK && o->depth != NULL) {
-        convert_depth(o->depth, p->depth_q20, pixels, o->depth_unit, r->scene.frame.exponent, p->grey);
+        convert_depth(o->depth, r, p->depth_q20, pixels, o->depth_unit, p->grey);
         code = write_picture(o->depth, index, count, &grey);
     }
     if (code == CLI_OK && o->alpha != NULL) {

@@ -92,9 +92,13 @@ static bool read_all(reading *in, bundle_data *out)
     }
     out->traits.degree = take_u32(in);
     out->traits.mip = take_u32(in) != 0;
+    out->traits.finer = take_u32(in);
+    out->far_count = take_u32(in);
+    out->traits.is_spread = out->traits.finer > 0 || out->far_count > 0;
     if (in->broken || out->frames > BUNDLE_MOST_FRAMES || views > out->frames || views != out->config.views ||
-        out->gaussian_count > T3R_MAX_GAUSSIANS || out->traits.degree > T3R_HARMONICS_DEGREE_MOST ||
-        out->config.width > T3R_MAX_SIDE || out->config.height > T3R_MAX_SIDE) {
+        out->gaussian_count > T3R_MAX_GAUSSIANS || out->far_count > out->gaussian_count ||
+        out->traits.degree > T3R_HARMONICS_DEGREE_MOST || out->config.width > T3R_MAX_SIDE ||
+        out->config.height > T3R_MAX_SIDE) {
         return false;
     }
     for (uint32_t i = 0; i < out->frames; i++) {
@@ -105,6 +109,7 @@ static bool read_all(reading *in, bundle_data *out)
         take_pixels(in, &out->frame[i], (size_t)out->config.width * out->config.height);
     }
     out->gaussians = take_block(in, (size_t)out->gaussian_count * BUNDLE_GAUSSIAN_BYTES);
+    out->far = take_block(in, (size_t)out->far_count * BUNDLE_FAR_BYTES);
     out->harmonics = take_block(in, 2 * (size_t)out->gaussian_count * carried_harmonics_count(out->traits.degree));
     return !in->broken;
 }
@@ -133,6 +138,26 @@ t3r_gaussian bundle_gaussian(const bundle_data *bundle, uint32_t index)
     g.opacity_q15 = (uint16_t)take_number(&in, 2);
     g.confidence = (uint8_t)take_number(&in, 1);
     return g;
+}
+
+double bundle_times(const bundle_data *bundle, uint32_t index)
+{
+    uint32_t low = 0, high = bundle->far_count;
+    while (low < high) { /* by rising index */
+        const uint32_t middle = low + (high - low) / 2;
+        reading in = {.start = bundle->far + (size_t)middle * BUNDLE_FAR_BYTES, .count = BUNDLE_FAR_BYTES};
+        const uint32_t found = take_u32(&in);
+        if (found == index) {
+            const union {
+                uint64_t bits;
+                double times;
+            } as = {take_number(&in, 8)};
+            return as.times;
+        }
+        low = found < index ? middle + 1 : low;
+        high = found < index ? high : middle;
+    }
+    return 1;
 }
 
 const int16_t *bundle_harmonics(const bundle_data *bundle, uint32_t index)

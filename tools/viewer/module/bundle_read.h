@@ -22,8 +22,8 @@ typedef struct bundle_data {
     t3r_config config;
     uint32_t frames;
     frame_data frame[BUNDLE_MOST_FRAMES];
-    const uint8_t *weights, *gaussians, *harmonics;
-    uint32_t weight_bytes, gaussian_count;
+    const uint8_t *weights, *gaussians, *far, *harmonics;
+    uint32_t weight_bytes, gaussian_count, far_count;
     t3r_scene_frame scene_frame;
     seen_traits traits;
 } bundle_data;
@@ -32,6 +32,8 @@ typedef struct bundle_data {
 bool bundle_read(const uint8_t *bytes, size_t count, bundle_data *out);
 /* Returns a Gaussian of its scene. */
 t3r_gaussian bundle_gaussian(const bundle_data *bundle, uint32_t index);
+/* Returns how many times as far away it is as it says: t3r_scene_far. */
+double bundle_times(const bundle_data *bundle, uint32_t index);
 /* Returns the harmonics of that Gaussian; NULL at degree 0. */
 const int16_t *bundle_harmonics(const bundle_data *bundle, uint32_t index);
 

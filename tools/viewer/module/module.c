@@ -55,6 +55,7 @@ static struct {
     const carried *taken; /* the whole scene, if it was taken */
     kept_part kept;
     t3r_scene scene; /* in the arena: the kept part */
+    bool is_seen;    /* as a camera sees it */
     uint32_t pictured;
     uint64_t hash[T3R_STAGE_COUNT];
     uint8_t hashed[T3R_STAGE_COUNT];
@@ -191,23 +192,28 @@ static bool is_kept(const t3r_gaussian *g)
     return is_inside && g->opacity_q15 >= module.kept.opacity_least_q15;
 }
 
-static bool depends_on_view(void)
-{
-    const seen_traits *traits = &module.bundle.traits;
-    return module.source == SCENE_OF_BUNDLE && (traits->degree > 0 || traits->mip);
-}
-
+/* Returns the frame of the whole scene; that in the arena may be a view's own. */
 static const t3r_scene_frame *frame_of_scene(void)
 {
-    return module.source == SCENE_TAKEN ? &module.taken->frame : &module.bundle.scene_frame;
+    return module.source == SCENE_TAKEN       ? &module.taken->frame
+           : module.source == SCENE_OF_BUNDLE ? &module.bundle.scene_frame
+                                              : &module.scene.frame;
+}
+
+static const seen_traits *traits_of_scene(void)
+{
+    static const seen_traits plain = {0};
+    return module.source == SCENE_OF_BUNDLE ? &module.bundle.traits : &plain;
 }
 
 /* Puts a Gaussian of the whole scene into an arena, as a camera sees it; NULL: as it is. */
 static t3r_status append(t3r_runtime *to, uint32_t index, const t3r_gaussian *gaussian, const seen_from *from)
 {
+    const bool is_bundle = module.source == SCENE_OF_BUNDLE;
+    const double times = is_bundle ? bundle_times(&module.bundle, index) : 1;
+    const int16_t *harmonics_q12 = is_bundle ? bundle_harmonics(&module.bundle, index) : NULL;
     t3r_gaussian g = *gaussian;
-    const t3r_status status =
-        from != NULL ? seen_gaussian(&module.bundle.traits, bundle_harmonics(&module.bundle, index), from, &g) : T3R_OK;
+    const t3r_status status = from != NULL ? seen_gaussian(traits_of_scene(), times, harmonics_q12, from, &g) : T3R_OK;
     return status == T3R_OK ? t3r_scene_append(to, &g) : status;
 }
 
@@ -215,7 +221,8 @@ static t3r_status append(t3r_runtime *to, uint32_t index, const t3r_gaussian *ga
 static t3r_status append_kept(const seen_from *from)
 {
     const uint32_t count = module_whole();
-    t3r_status status = t3r_scene_begin(module.runtime, frame_of_scene());
+    t3r_status status = t3r_scene_begin(module.runtime, from != NULL ? &from->frame : frame_of_scene());
+    module.is_seen = from != NULL;
     for (uint32_t i = 0; i < count && status == T3R_OK; i++) {
         const t3r_gaussian g = whole_gaussian(i);
         status = is_kept(&g) ? append(module.runtime, i, &g, from) : T3R_OK;
@@ -288,14 +295,14 @@ static t3r_status append_sketch(uint32_t drawn, const seen_from *from)
     if (from == NULL && module.sketched.drawn == drawn) {
         return T3R_OK;
     }
-    t3r_status status = t3r_scene_begin(module.sketched.runtime, frame_of_scene());
+    t3r_status status = t3r_scene_begin(module.sketched.runtime, from != NULL ? &from->frame : frame_of_scene());
     for (uint32_t rank = 0; rank < drawn && status == T3R_OK; rank++) {
         const uint32_t index = sketch_index(sample, rank);
         t3r_gaussian g = whole_gaussian(index);
         sketch_widen(sample, drawn, &g);
         status = append(module.sketched.runtime, index, &g, from);
     }
-    module.sketched.drawn = status == T3R_OK ? drawn : 0;
+    module.sketched.drawn = status == T3R_OK && from == NULL ? drawn : 0;
     return status;
 }
 
@@ -331,6 +338,7 @@ EXPORT(build) int32_t module_build(uint32_t gaussians)
 {
     const t3r_request request = {.gaussians = gaussians};
     module.source = SCENE_BUILT;
+    module.is_seen = false;
     for (int stage = 0; stage < T3R_STAGE_COUNT; stage++) {
         module.hashed[stage] = 0;
     }
@@ -361,7 +369,7 @@ EXPORT(carried_bytes) uint32_t module_carried_bytes(void)
 EXPORT(give) void module_give(carried *out)
 {
     const uint32_t numbers = carried_harmonics_count(degree_of_scene()), whole = module_whole();
-    *out = (carried){.frame = module.scene.frame,
+    *out = (carried){.frame = *frame_of_scene(),
                      .count = module.scene.count,
                      .valid_points = module.scene.valid_points,
                      .degree = degree_of_scene(),
@@ -393,13 +401,13 @@ EXPORT(valid_points) uint32_t module_valid_points(void)
 /* Returns a coordinate of the scene's origin in the world, Q32. */
 EXPORT(origin) int64_t module_origin(uint32_t axis)
 {
-    return module.scene.frame.origin_q32[axis];
+    return frame_of_scene()->origin_q32[axis];
 }
 
 /* Returns the exponent of the scene's frame: the median depth is 1 to 2 times 2^exponent world units. */
 EXPORT(exponent) int32_t module_exponent(void)
 {
-    return module.scene.frame.exponent;
+    return frame_of_scene()->exponent;
 }
 
 /* Returns the hash of a stage of the last build, 0 = it did not run; for T3R_STAGE_COUNT the hash of all stages that
@@ -419,6 +427,15 @@ EXPORT(hash) uint64_t module_hash(uint32_t stage)
 }
 
 /* ---- pictures ---------------------------------------------------------------------------------------------------- */
+
+/* Turns depths in the frame of a view to those in the scene's. */
+static void expand_depths(const seen_from *from, uint32_t *depth_q20, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const double depth = seen_depth(from, depth_q20[i]) / from->view.ratio * 0x1p20;
+        depth_q20[i] = depth < UINT32_MAX ? (uint32_t)depth : UINT32_MAX;
+    }
+}
 
 /* Draws RGB, depth (Q20 scene units) and alpha (Q15), rows without gaps, as a camera of these numbers sees the scene
  * (t3r_camera has their ranges); NULL leaves a plane out. most: a sketch of at most so many Gaussians is drawn, if the
@@ -449,13 +466,19 @@ int32_t module_render(int32_t fx_q16, int32_t fy_q16, int32_t cx_q16, int32_t cy
         .alpha_stride_bytes = width * 2,
     };
     seen_from from;
-    const seen_from *seen =
-        depends_on_view() && seen_from_camera(&camera, &module.scene.frame, width, height, &from) == T3R_OK ? &from
-                                                                                                            : NULL;
-    const t3r_status status = is_sketched ? append_sketch(drawn, seen) : seen != NULL ? append_kept(seen) : T3R_OK;
+    seen_from_camera(&camera, frame_of_scene(), traits_of_scene(), width, height, &from);
+    const bool differs = module.source != SCENE_BUILT && seen_differs(traits_of_scene(), &from);
+    const seen_from *seen = differs ? &from : NULL;
+    t3r_status status = is_sketched                 ? append_sketch(drawn, seen)
+                        : differs || module.is_seen ? append_kept(seen)
+                                                    : T3R_OK;
     module.pictured = is_sketched ? drawn : module.scene.count;
-    return status == T3R_OK ? t3r_render(is_sketched ? module.sketched.runtime : module.runtime, &camera, &target)
-                            : status;
+    status = status == T3R_OK ? t3r_render(is_sketched ? module.sketched.runtime : module.runtime, &camera, &target)
+                              : status;
+    if (status == T3R_OK && differs && from.is_own && depth_q20 != NULL) {
+        expand_depths(&from, depth_q20, (size_t)width * height);
+    }
+    return status;
 }
 
 /* Returns the Gaussians of the last picture. */

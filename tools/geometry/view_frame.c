@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "geometry/view_frame.h"
+
+#include <stdbool.h>
+
+#include "core/camera.h"
+#include "core/fixed.h"
+
+/* Depths up to NEAR units stay, and each doubling beyond adds a unit, for OCTAVES_MOST doublings. A Gaussian that is
+ * seen is at most ASIDE_MOST depths away: its x and y are at most 16 depths. So all are within 1,024 units. */
+#define NEAR 8.0
+#define OCTAVES_MOST 34
+#define ASIDE_MOST 23.0
+#define DEPTH_MOST 0x1p300 /* its square is finite */
+
+/* Returns 2^exponent. */
+static double power_of_two(int exponent)
+{
+    double power = 1;
+    for (; exponent > 0; exponent--) {
+        power *= 2;
+    }
+    for (; exponent < 0; exponent++) {
+        power /= 2;
+    }
+    return power;
+}
+
+void view_frame_of(const t3r_camera *camera, const t3r_scene_frame *scene, uint32_t finer, view_frame *out)
+{
+    const int32_t room = scene->exponent - T3R_EXPONENT_LEAST;
+    const int32_t down = T3R_MIN((int32_t)T3R_MIN(finer, (uint32_t)T3R_EXPONENT_MOST), room);
+    *out = (view_frame){.frame.exponent = scene->exponent - down, .ratio = power_of_two(down)};
+    t3r_camera_rotation(camera->rotation_q30, out->pose.rotation_q30);
+    const double unit = power_of_two(-32 - out->frame.exponent);
+    for (int i = 0; i < 3; i++) {
+        out->frame.origin_q32[i] = camera->position_q32[i];
+        /* both are within 2^62 */
+        out->offset[i] = (double)(scene->origin_q32[i] - camera->position_q32[i]) * unit;
+        out->forward[i] = out->pose.rotation_q30[3 * i + 2] * 0x1p-30;
+    }
+}
+
+/* Compresses a depth above 0: linear up to NEAR, then linear between doublings. */
+static double compressed(double depth)
+{
+    double octaves = 0, rest = depth / NEAR;
+    if (rest <= 1) {
+        return depth;
+    }
+    for (; rest > 2 && octaves < OCTAVES_MOST; octaves++) {
+        rest /= 2;
+    }
+    return NEAR + (rest > 2 ? octaves : octaves + rest - 1);
+}
+
+double view_frame_depth(double depth)
+{
+    if (depth <= NEAR) {
+        return depth;
+    }
+    const int octaves = (int)(depth - NEAR);
+    return NEAR * power_of_two(octaves) * (1 + depth - NEAR - octaves);
+}
+
+static int32_t rounded(double value)
+{
+    return (int32_t)(value < 0 ? value - 0.5 : value + 0.5);
+}
+
+/* Scales the factor. Widths beyond the format stay at its end. */
+static void scale(t3r_gaussian *g, double by)
+{
+    int exponent = g->factor_exponent;
+    for (; by > 1; by /= 2) {
+        exponent++;
+    }
+    for (; by <= 0.5 && exponent > -60; by *= 2) {
+        exponent--;
+    }
+    for (int i = 0; i < 9; i++) {
+        g->factor[i] = (int16_t)rounded(g->factor[i] * by);
+    }
+    g->factor_exponent = (int8_t)T3R_MIN(exponent, 15);
+}
+
+void view_frame_place(const view_frame *view, double times, t3r_gaussian *gaussian)
+{
+    double position[3], depth = 0, square = 0;
+    for (int i = 0; i < 3; i++) {
+        position[i] = gaussian->position_q20[i] * 0x1p-20 * view->ratio * times + view->offset[i];
+        depth += position[i] * view->forward[i];
+        square += position[i] * position[i];
+    }
+    const bool is_seen = depth > 0 && depth < DEPTH_MOST && square <= ASIDE_MOST * ASIDE_MOST * depth * depth;
+    const double share = is_seen ? compressed(depth) / depth : 0;
+    for (int i = 0; i < 3; i++) {
+        gaussian->position_q20[i] = is_seen ? rounded(position[i] * share * 0x1p20) : 0;
+    }
+    scale(gaussian, is_seen ? view->ratio * times * share : 1);
+}
