@@ -18,6 +18,13 @@ bool t3r_text_same(t3r_text a, t3r_text b)
     return a.count == b.count && memcmp(a.chars, b.chars, a.count) == 0;
 }
 
+size_t t3r_text_mark(t3r_text text)
+{
+    static const char mark[] = "\xEF\xBB\xBF";
+    const size_t count = sizeof mark - 1;
+    return text.count >= count && memcmp(text.chars, mark, count) == 0 ? count : 0;
+}
+
 /* Returns the bytes of the UTF-8 sequence at the front of s; 0 for an invalid one (overlong forms and surrogates
  * included). */
 static size_t sequence_bytes(const unsigned char *s, size_t count)

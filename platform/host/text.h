@@ -16,6 +16,9 @@ t3r_text t3r_text_of(const char *string);
 bool t3r_text_is(t3r_text text, const char *literal);
 bool t3r_text_same(t3r_text a, t3r_text b);
 
+/* Returns the bytes of a byte order mark of UTF-8 at the front, 3; or 0. */
+size_t t3r_text_mark(t3r_text text);
+
 /* Whether a text is clean: UTF-8 without control characters (C0, DEL, C1, line separators, direction marks). Text from
  * files is data that a terminal, a page or a table must not obey. */
 bool t3r_text_is_clean(t3r_text text);

@@ -148,6 +148,8 @@ def test_colmap_refusals():
         write(f"{path}/sparse/0/{file}", content.replace(old, new, 1))
         return path
 
+    for file in ("cameras.txt", "images.txt"):
+        imported(changed(f"marked_{file}", file, "# ", "\ufeff# "))  # a byte order mark
     refused(changed("fov", "cameras.txt", "PINHOLE", "FOV"), "cameras.txt: line 2: fewer parameters")
     path = changed("fov", "cameras.txt", "7 PINHOLE 64 48", "7 FOV 64 48 1")
     refused(path, "the camera model FOV is not supported")

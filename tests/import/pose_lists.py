@@ -156,6 +156,20 @@ def lists_agree():
     expect(1, *commands()[3].line, "--pose-topic", "/pose", err="--pose-topic names a topic of a bag")
 
 
+def byte_order_marks(command, path):
+    """A list that an editor of Windows saved begins with a byte order mark, before a comment or a pose."""
+    for comment in ("", "# a comment\n"):
+        poses = [tum_line(i, (0.1 * i, 0, 0), UPRIGHT) for i in range(3)]
+        found = []
+        for mark in ("", "\ufeff"):
+            write(path, (mark + comment + "".join(poses)).encode())
+            code, out, error = run(*command.line, "--strict", "--json")
+            check(code == 0 and "left out" not in error, f"{command.name}, {mark!r}{comment}: {error}")
+            report = json.loads(out or "{}")
+            found.append(report.get("hash", report.get("posed_frames")))
+        check(found[0] is not None and found[0] == found[1], f"{command.name}: {found}")
+
+
 def bags_of_poses_in_parts():
     os.makedirs("parts", exist_ok=True)
     for part in range(2):
@@ -180,5 +194,7 @@ with tempfile.TemporaryDirectory() as work:
         if each.line[0] != "render":
             repeated_stamps(each)
     lists_agree()
+    byte_order_marks(commands()[0], "t.txt")
+    byte_order_marks(commands()[6], "tum/groundtruth.txt")
     bags_of_poses_in_parts()
     done()

@@ -13,10 +13,7 @@
 
 void csv_reader_open(csv_reader *reader, const char *name, const char *text, size_t bytes)
 {
-    *reader = (csv_reader){.name = name, .text = text, .bytes = bytes};
-    if (bytes >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) {
-        reader->at = 3;
-    }
+    *reader = (csv_reader){.name = name, .text = text, .bytes = bytes, .at = t3r_text_mark((t3r_text){text, bytes})};
 }
 
 static int fail(const csv_reader *reader, const char *why, char *error, size_t error_bytes)

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "import/frames/line_reader.h"
 
+#include <string.h>
+
+#include "host/text.h"
 #include "mcap/reader_limits.h"
 
 bool line_reader_at_limit(const line_reader *reader)
@@ -25,6 +28,10 @@ bool line_reader_next(line_reader *r)
         }
     }
     r->line[length] = '\0';
+    if (r->number == 0) {
+        const size_t mark = t3r_text_mark(t3r_text_of(r->line));
+        memmove(r->line, r->line + mark, length + 1 - mark);
+    }
     r->number++;
     return !line_reader_at_limit(r) && (c == '\n' || length > 0 || r->longer);
 }

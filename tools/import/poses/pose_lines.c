@@ -4,10 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "host/text.h"
+
 char *pose_lines_next(pose_lines *lines)
 {
     while (lines->rest != NULL) {
         char *line = strsep(&lines->rest, "\n");
+        line += lines->number == 0 ? t3r_text_mark(t3r_text_of(line)) : 0;
         line += strspn(line, " \t\r");
         lines->number++;
         if (*line != '\0' && *line != '#') {
