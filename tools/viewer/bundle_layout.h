@@ -14,7 +14,7 @@
  *          of depth (Q40), 0 = the frame has no depth; u32 1 = its picture does not reach all pixels
  *   then, each at the next multiple of BUNDLE_ALIGN from the start: the weights; for each frame RGB, 3 bytes a pixel,
  * if it has depth, 2 bytes a pixel, and if its picture does not reach all pixels, a byte a pixel, 0 = beyond the lens;
- * the Gaussians, BUNDLE_GAUSSIAN_BYTES each; those far away, BUNDLE_FAR_BYTES each; above degree 0 the harmonics, i16 in
+ * the Gaussians, BUNDLE_GAUSSIAN_BYTES each; those far away, BUNDLE_FAR_BYTES each; above degree 0 harmonics, i16 in
  * Q12. Frames have the working size. */
 #ifndef TRIM3R_TOOLS_BUNDLE_LAYOUT_H
 #define TRIM3R_TOOLS_BUNDLE_LAYOUT_H
