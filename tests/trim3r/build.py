@@ -80,7 +80,7 @@ def built():
     expect(0, *auto, "--gaussians", 50, "-o", "most.ply", out="warning: that is more than --max-loss 0.5")
     alone = ["build", "room.mcap", "--context", "0", "--working", "64x64", "--auto"]
     check(expect_json(*alone, "-o", "alone.ply")["loss"] is None, "--auto measures a loss of one view")
-    expect(0, *alone, "-o", "alone.ply", out="share no surface to measure the loss on: it is predicted")
+    expect(0, *alone, "-o", "alone.ply", out="share a surface to measure the loss on: it is predicted")
     least = ["build", "room.mcap", "--context", "0,2", "--working", "64x64", "--min-psnr"]
     dull, sharp = (expect_json(*least, psnr, "-o", "least.ply") for psnr in (20, 26))
     check(20 <= dull["context_psnr"] and 26 <= sharp["context_psnr"] and dull["gaussians"] < sharp["gaussians"],

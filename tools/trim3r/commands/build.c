@@ -318,7 +318,7 @@ static void print_loss(const reconstruction_options *settings, const measured_lo
                " builds\n",
                loss->loss, loss->builds);
     } else {
-        printf("the context views share no surface to measure the loss on: it is predicted\n");
+        printf("no two context views share a surface to measure the loss on: it is predicted\n");
     }
     if (loss->loss > settings->max_loss) {
         printf("%swarning:%s that is more than --max-loss %g: the budget allows no more Gaussians\n",
