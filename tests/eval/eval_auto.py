@@ -16,9 +16,9 @@ LOSSES = (0.5, 2)  # dB asked for
 SLACK = 0.25  # dB above what was asked for, of the worst recorded view
 UNSEEN = 40  # dB: better than this a loss is not to be seen
 
-# The largest share of the points, percent, for each loss. Measured: the room 57, 33 %; the plane 91, 69 %; foliage 100 %.
-# None loses more than asked.
-DRAWN = {"room": (65, 40), "scene-plane": (99, 80), "scene-foliage": (100, 100)}
+# The largest share of the points, percent, for each loss. Measured: the room 57, 33 %; the plane 91, 69 %. Foliage keeps
+# all. None loses more than asked.
+DRAWN = {"room": (65, 40), "scene-plane": (99, 80), "scene-foliage": None}
 # Training scenes: every triplet within this, most of them within what was asked for, and the mean share. Measured of the
 # 20: all within it, 0.48 dB at most, 50 and 11 %.
 RECORDED = ("hololens_a", "7scenes_redkitchen")
@@ -62,9 +62,10 @@ def drawn_scenes(folder):
     run(TRIM3R, "room", "-o", f"{folder}/room.mcap")
     found = {"room": [views[0] for views in choices("eval", f"{folder}/room.mcap", "--context", "0,2", "--target", "1")]}
     found |= {name: drawn(name) for name in DRAWN if name not in found}
-    for name, bounds in DRAWN.items():
-        for choice, asked, share in zip(found[name], LOSSES, bounds):
-            check(choice.lost <= asked and choice.share <= share, f"{name} within {asked} dB: {choice}")
+    for name, shares in DRAWN.items():
+        for i, choice in enumerate(found[name]):
+            check(choice.lost <= LOSSES[i], f"{name} within {LOSSES[i]} dB: {choice}")
+            check(shares is None or choice.share <= shares[i], f"{name} within {LOSSES[i]} dB of few points: {choice}")
     for wall, foliage in zip(drawn("scene-wall"), found["scene-foliage"]):
         check(wall.share < 1 and wall.psnr > UNSEEN, f"a blank wall: {wall}")
         check(foliage.share > 10 * wall.share, f"foliage needs more than a wall: {foliage}, {wall}")
