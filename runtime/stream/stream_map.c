@@ -11,7 +11,7 @@
 
 #define FINER_Q8 256        /* log2: a keyframe with pixels this much narrower on the surface replaces the Gaussian */
 #define ALIKE_Q7 (72 << 7)  /* levels, of the three channels together */
-#define LOST_HALF_LIVES 4   /* a Gaussian that no keyframe has seen for so long leaves if it is hidden */
+#define LOST_Q10 2048       /* log2: a Gaussian that has faded so far and is hidden leaves */
 #define WIDEN_STEP_Q10 64   /* log2 of density: smaller changes wait until they add up */
 #define SCALE_MOST_Q10 4096 /* log2: bound of one step of the width */
 #define WIDTH_MOST_Q10 2048 /* log2: widths are within a quarter of the spacing and four times it */
@@ -124,8 +124,7 @@ uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyfra
     for (uint32_t i = 0; i < map->count; i++) {
         t3r_map_record *record = &map->records[i];
         const look seen = (look)looks[i];
-        const bool lost = seen == HIDDEN && half_life > 0 && record->idle >= LOST_HALF_LIVES * half_life;
-        if (seen == CONTRADICTED || seen == COARSE || lost) {
+        if (seen == CONTRADICTED || seen == COARSE || (seen == HIDDEN && record->faded_q10 >= LOST_Q10)) {
             continue;
         }
         record->idle = seen == SEEN ? 0 : (uint8_t)T3R_MIN(record->idle + 1, UINT8_MAX);
@@ -134,7 +133,7 @@ uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyfra
         }
         if (seen == SEEN || seen == SEEN_AFAR) {
             record->faded_q10 = 0;
-        } else if (seen == AWAY) { /* its surroundings thin out with it, and its width follows */
+        } else if (seen != UNSEEN) { /* else its surroundings are seen and stay: it must not widen alone */
             record->faded_q10 = (uint16_t)T3R_MIN(record->faded_q10 + fade, (uint32_t)UINT16_MAX);
         }
         move_to(map, i, kept++);

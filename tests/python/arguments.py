@@ -88,6 +88,7 @@ def rows(made, stream):
     gaussians = made.build(5).gaussians.copy()
     yield ("Scene", "valid_points"), "valid_points", 0, 2**32 - 1, lambda value: trim3r.Scene(gaussians, (0, 0, 0), 0, value)
     yield ("Scene", "exponent"), "exponent", -24, 24, lambda value: trim3r.Scene(gaussians, (0, 0, 0), value)
+    yield ("Scene", "finer"), "finer", 0, 48, lambda value: trim3r.Scene(gaussians, (0, 0, 0), 0, finer=value)
     yield ("Scene", "origin_q32"), "origin_q32[2]", -(1 << 62) + 1, (1 << 62) - 1, lambda value: trim3r.Scene(
         gaussians, (0, 0, value), 0)
 

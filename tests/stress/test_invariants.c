@@ -129,8 +129,12 @@ TEST(arenas_that_change)
         row.method = cases[i].method;
         row.value[STRESS_ARENA_BYTES] = cases[i].arena;
         row.value[STRESS_GAUSSIANS] = cases[i].gaussians;
-        stress_relate(&row, &base, 1);
+        const stress_row before = row;
+        stress_relate(&row, &base, 1, false);
         assert_int_equal(row.status, cases[i].expected);
+        row = before;
+        stress_relate(&row, &base, 1, true);
+        assert_int_equal(row.status, STRESS_MEASURED);
     }
 }
 

@@ -46,12 +46,13 @@ def tables_fit():
              ["room", "--size", "64x64", "-o", "fits.mcap"], ["import", "room.mcap", "-o", "a recording of a longer name.mcap"],
              ["view", "scene.ply", "-o", "fits.html"], ["replay", "room.mcap"], ["replay", "room.mcap", "--stream", "--gaussians", 500],
              ["chart", "scores.csv", "-o", "fits-chart.html"])
+    commands = set(re.findall(r"^  ([a-z-]+) +[a-z]", expect(0, "--help").split("Data flow")[0], re.MULTILINE))
     for line in lines:
-        text = expect(0, *line)
-        check(max(map(len, text.splitlines()), default=0) <= 80, f"{line}: wider than 80: {text}")
+        if line[0] in commands | {"--help"}:  # a product has no chart
+            text = expect(0, *line)
+            check(max(map(len, text.splitlines()), default=0) <= 80, f"{line}: wider than 80: {text}")
     # doctor and stress have tests of their own; completion prints a script
     others = {"capture", "bench", "doctor", "head-info", "completion", "stress", "trouble", "quantize"}
-    commands = set(re.findall(r"^  ([a-z-]+) +[a-z]", expect(0, "--help").split("Data flow")[0], re.MULTILINE))
     check(commands - {line[0] for line in lines} <= others, f"whose reports are not looked at: {commands - {line[0] for line in lines} - others}")
     narrow, wide = expect(0, *score).splitlines()[0].split(), expect(0, *score, "--wide").splitlines()[0].split()
     check(set(narrow) < set(wide) and {"psnr", "ssim", "gaussians"} <= set(narrow), f"{narrow}, {wide}")

@@ -40,7 +40,8 @@ class Scene:
     antialiased : bool
         Opacities are those of mip-splatting.
     finer : int
-        A picture takes a frame of its own, with a unit of 2**-finer scene units; 0: only if `far` has Gaussians.
+        A picture takes a frame of its own, with a unit of 2**-finer scene units, 0..48; 0: only if `far` has
+        Gaussians.
     far : ndarray of FAR
         Gaussians beyond the fixed point, by rising index: they are `times` as far from the origin, and as large, as
         `gaussians` says.
@@ -56,7 +57,8 @@ class Scene:
         self.origin_q32, self.exponent = origin_q32, exponent
         self.valid_points = whole("valid_points", valid_points, 0, _POINTS_MOST)
         self.harmonics_q12, self.antialiased = harmonics_q12, antialiased
-        self.finer, self.far = finer, np.zeros(0, FAR) if far is None else far
+        self.finer = whole("finer", finer, 0, 2 * _EXPONENT_MOST)
+        self.far = np.zeros(0, FAR) if far is None else far
         self._degree() # which checks them
         self.native_frame() # which checks it
 

@@ -281,7 +281,7 @@ static int perturb_all(stress_report *report, const options *o, const stress_cas
         }
     }
     if (code == CLI_OK) {
-        stress_relate(m->unperturbed, m->unperturbed, count);
+        stress_relate(m->unperturbed, m->unperturbed, count, contest->settings.automatic);
         code = stress_report_cell(report, m->unperturbed, m->plain, m->plain, c, NULL);
     }
     const perturbation *p;
@@ -290,7 +290,7 @@ static int perturb_all(stress_report *report, const options *o, const stress_cas
             if (o->perturb[i] && o->grade[g]) {
                 code = stress_measure(m->rows, m->renders, c, contest, p, g);
                 if (code == CLI_OK) {
-                    stress_relate(m->rows, m->unperturbed, count);
+                    stress_relate(m->rows, m->unperturbed, count, contest->settings.automatic);
                     code = stress_report_cell(report, m->rows, m->renders, m->plain, c, p);
                 }
             }

@@ -260,7 +260,7 @@ int stress_measure(stress_row *rows, uint8_t *renders, const stress_case *c, con
     return code;
 }
 
-void stress_relate(stress_row *rows, const stress_row *unperturbed, uint32_t count)
+void stress_relate(stress_row *rows, const stress_row *unperturbed, uint32_t count, bool automatic)
 {
     for (uint32_t i = 0; i < count; i++) {
         double *value = rows[i].value;
@@ -269,7 +269,7 @@ void stress_relate(stress_row *rows, const stress_row *unperturbed, uint32_t cou
         value[STRESS_SSIM_LOST] = base[STRESS_SSIM] - value[STRESS_SSIM];
         value[STRESS_BUILD_RATIO] = value[STRESS_BUILD_MS] / base[STRESS_BUILD_MS];
         /* a rival's value covers all points, however many there are */
-        bool ours = method_kind_of(rows[i].method) == METHOD_TRIM3R;
+        bool ours = method_kind_of(rows[i].method) == METHOD_TRIM3R && !automatic;
         bool fewer = value[STRESS_GAUSSIANS] < base[STRESS_GAUSSIANS];
         if (ours && (value[STRESS_ARENA_BYTES] > base[STRESS_ARENA_BYTES] ||
                      (!fewer && value[STRESS_ARENA_BYTES] < base[STRESS_ARENA_BYTES]))) {

@@ -12,7 +12,7 @@ int stress_measure(stress_row *rows, uint8_t *renders, const stress_case *c, con
                    const perturbation *p, uint32_t grade);
 
 /* Fills losses and ratios of `rows` against the unperturbed rows, and marks rows of trim3r as broken whose arena
- * differs. */
-void stress_relate(stress_row *rows, const stress_row *unperturbed, uint32_t count);
+ * differs. An automatic budget has an arena for all points, which are as many as the views show: it is not marked. */
+void stress_relate(stress_row *rows, const stress_row *unperturbed, uint32_t count, bool automatic);
 
 #endif
