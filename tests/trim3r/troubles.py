@@ -9,7 +9,8 @@ from program import check, expect, expect_json, in_scratch, room
 FIRST, COUNT, GOOD, FRAMES = 8, 2, 5, 34
 MOST_LOST = 0.3 # dB
 BASE = ["--stream", "--every", 2, "--gaussians", 1500]
-SKIPPED = {"hand": {"covered": 2}, "blind-hand": {"covered": 2}, "black": {"dark": 2}, "dark": {"exposure": 2}, "gap": {}, "back": {},
+# a hand without depth is as unlike the map as one that covers it may be: likeness 81 and 66, and 80 is the bound
+SKIPPED = {"hand": {"covered": 2}, "blind-hand": {"covered": 1, "contradicts": 1}, "black": {"dark": 2}, "dark": {"exposure": 2}, "gap": {}, "back": {},
            "flick": {"contradicts": 2}, "nan-pose": {"no pose": 2}, "absurd-pose": {"far": 2}, "no-depth": {"no depth": 2},
            "no-pose": {"no pose": 2}}
 
