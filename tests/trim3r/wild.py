@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """wild.py TRIM3R: what files of others and odd surroundings must not do without a word: a lens that is not drawn, one bad
-Gaussian in many, closed standard streams, files of the kernel, two writers of one recording."""
+Gaussian in many, closed standard streams, files of the kernel, kinds of files that are not read, and two writers of one
+recording."""
 import fcntl
 import json
 import math
@@ -111,6 +112,18 @@ def files_of_the_kernel():
             check(ended.returncode == 1 and path in ended.stderr, f"{line[0]} {path}: {ended}")
 
 
+def kinds_that_are_not_read():
+    """Every command that takes a scene or a recording names what makes one of such a file."""
+    for name, remedy in (("a.ksplat", "splat-transform"), ("a.GLTF", "gltf-transform"), ("a.ckpt", "ns-export"), ("a.las", "point cloud"), ("a.obj", "a mesh")):
+        write(name, b"\x07" * 300)
+        for line in (("info", name), ("convert", name, "-o", "n.ply"), ("view", name, "-o", "n.html"), ("diff", name, name),
+                     ("render", name, "room.mcap", "--view", 0, "-o", "n.png"), ("import", name, "-o", "n.mcap"), ("build", name, "--keep", 10, "-o", "n.ply")):
+            expect(1, *line, err=remedy)
+    expect(1, "info", "absent.ksplat", err="No such file")
+    ply("scene.pt", rows())
+    check(expect_json("info", "scene.pt")["scenes"][0]["gaussians"] == COUNT, "a scene of another suffix")
+
+
 def two_writers():
     """A recording that another process writes is not written, and stays."""
     with open("two.mcap.part", "wb") as held:
@@ -126,4 +139,5 @@ def two_writers():
     check(open("two.mcap", "rb").read() == before, "what another process records")
 
 
-in_scratch(lenses_of_poses, one_bad_gaussian, floats_far_from_the_origin, closed_streams, files_of_the_kernel, two_writers)
+in_scratch(lenses_of_poses, one_bad_gaussian, floats_far_from_the_origin, closed_streams, files_of_the_kernel,
+           kinds_that_are_not_read, two_writers)

@@ -7,6 +7,8 @@
 #include <sys/stat.h>
 
 #include "cli/cli.h"
+#include "cli/files/foreign_scene.h"
+#include "cli/options/file_kind.h"
 #include "host/file_bytes.h"
 #include "host/reason.h"
 #include "import/folders/posed_folder.h"
@@ -28,6 +30,9 @@ import_source import_source_of(const char *path, const char **advice)
         fclose(file);
     }
     *advice = foreign_file_of_bytes(bytes, count);
+    if (*advice == NULL && file_kind_of(path) != FILE_RECORDING) {
+        *advice = foreign_scene_of_name(path);
+    }
     return *advice == NULL ? IMPORT_RECORDING : IMPORT_FOREIGN;
 }
 
