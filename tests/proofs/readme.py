@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""readme.py example LIBRARY... | table PROGRAM [--update]: what the documents show is what happens.
+"""readme.py example LIBRARY... | table PROGRAM [--update] | code LIBRARY: what the documents show is what happens.
 
 example: the README's C program compiles without a warning, links with only the runtime and the heads, and prints
          what the README shows.
 table:   the arena table of docs/firmware.md is the output of `trim3r plan --markdown`; --update writes it there.
+code:    the shared library has the bytes of code that README states, within 5 %, the effect of another compiler.
 """
 import re
 import sys
@@ -54,6 +55,11 @@ def check_table(text, printed):
             printed]
 
 
+def check_code(text, size):
+    shown = int(re.search(r"^\| x86-64.*?\| ([\d,]+) bytes", text, flags=re.M)[1].replace(",", ""))
+    return [] if abs(shown / size - 1) < 0.05 else [f"libtrim3r.so has {size:,} bytes of code, the README says {shown:,}"]
+
+
 def main():
     what, *paths = [word for word in sys.argv[1:] if word != "--update"]
     if what == "example":
@@ -65,6 +71,11 @@ def main():
                 proof.must_find(check_example(wrong, paths, folder), offence, "the README's example")
             proof.verdict("the README's example builds, runs and prints what the README says",
                           check_example(text, paths, folder))
+        return
+    if what == "code":
+        size = int(proof.run(["size", paths[0]], check=True).stdout.splitlines()[1].split()[0])
+        proof.must_find(check_code(README.read_text(), 2 * size), "the README says", "the README's code of the library")
+        proof.verdict("the shared library has as much code as the README says", check_code(README.read_text(), size))
         return
     text, printed = FIRMWARE.read_text(), proof.run([paths[0], *PLAN], check=True).stdout
     if "--update" in sys.argv:
