@@ -5,6 +5,7 @@
 
 #include "core/camera.h"
 #include "core/fixed.h"
+#include "geometry/power_of_two.h"
 
 /* Depths up to NEAR units stay, and each doubling beyond adds a unit, for OCTAVES_MOST doublings. A Gaussian that is
  * seen is at most ASIDE_MOST depths away: its x and y are at most 16 depths. So all are within 1,024 units. */
@@ -12,19 +13,6 @@
 #define OCTAVES_MOST 34
 #define ASIDE_MOST 23.0
 #define DEPTH_MOST 0x1p300 /* its square is finite */
-
-/* Returns 2^exponent. */
-static double power_of_two(int exponent)
-{
-    double power = 1;
-    for (; exponent > 0; exponent--) {
-        power *= 2;
-    }
-    for (; exponent < 0; exponent++) {
-        power /= 2;
-    }
-    return power;
-}
 
 void view_frame_of(const t3r_camera *camera, const t3r_scene_frame *scene, uint32_t finer, view_frame *out)
 {

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "scene/seen_gaussian.h"
 
+#include "geometry/power_of_two.h"
+
 #define WIDENED 0.3 /* square pixels that the rasterizer adds; runtime/SPEC.md, "Raster" */
 #define HELD 1.3    /* bound of the Jacobian over the tangent to the picture's farther edge, as there */
 
@@ -21,19 +23,6 @@ static double held(double slope, double pixels, double centre, double focal)
     const double before = centre + 0.5, after = pixels - before; /* from the axis to the edges */
     const double most = HELD * (before > after ? before : after) / focal;
     return slope > most ? most : slope < -most ? -most : slope;
-}
-
-/* Returns 2^exponent, for -1,000 to 1,000. */
-static double power_of_two(int exponent)
-{
-    double power = 1;
-    for (; exponent > 0; exponent--) {
-        power *= 2;
-    }
-    for (; exponent < 0; exponent++) {
-        power /= 2;
-    }
-    return power;
 }
 
 /* Writes pixels per unit along the columns of the Gaussian's factor, of x or y in the picture. */
