@@ -27,11 +27,12 @@ bool scene_differs(const scene_file *scene, const seen_from *from)
 static t3r_status append_seen(t3r_runtime *runtime, const scene_file *scene, const seen_from *from, uint32_t *index)
 {
     const seen_traits traits = traits_of(scene);
-    const t3r_scene_far *far = scene->far, *end = scene->far + scene->far_count;
+    uint32_t far = 0;
     t3r_status status = t3r_scene_begin(runtime, &from->frame);
     for (*index = 0; *index < scene->count && status == T3R_OK; ++*index) {
         t3r_gaussian gaussian = scene->gaussians[*index];
-        const double times = far != end && far->index == *index ? far++->times : 1;
+        const bool is_far = far < scene->far_count && scene->far[far].index == *index;
+        const double times = is_far ? scene->far[far++].times : 1;
         status = seen_gaussian(&traits, times, scene->degree > 0 ? scene_file_harmonics(scene, *index) : NULL, from,
                                &gaussian);
         status = status == T3R_OK ? t3r_scene_append(runtime, &gaussian) : status;
