@@ -227,8 +227,8 @@ static void look_ahead(t3r_view *view)
     }
 }
 
-/* What falls on a pixel that is not measured, or up to 16 pixels beside the picture, keeps its fading. What is hidden
- * fades, and what lies elsewhere. */
+/* Gaussians on a pixel that is not measured, or up to 16 pixels beside the picture, keep their fading. Hidden ones and
+ * those elsewhere fade. */
 TEST(fades_where_its_surroundings_are_not_seen)
 {
     static site s;
