@@ -8,9 +8,14 @@
 #define T3R_ASSERT(condition) ((void)0)
 #endif
 
-/* Checks the bounds that the library's arithmetic relies on. The option T3R_CHECK_FIXED stops at them. */
+/* Checks the bounds that the library's arithmetic relies on. The option T3R_CHECK_FIXED stops at them; clang's static
+ * analyzer takes them as given. */
 #ifndef T3R_BOUND
+#ifdef __clang_analyzer__
+#define T3R_BOUND(condition) ((condition) ? (void)0 : __builtin_unreachable())
+#else
 #define T3R_BOUND(condition) ((void)0)
+#endif
 #endif
 
 #endif

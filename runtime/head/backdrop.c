@@ -70,6 +70,7 @@ static void make(const t3r_runtime *rt, const t3r_pointmap maps[T3R_MAX_VIEWS], 
     for (uint32_t v = 0; v < rt->views; v++) {
         add_border(&mean, &maps[v], rt->gain_q14[v], direction, length_q8);
     }
+    T3R_BOUND(mean.weight > 0); /* each border weighs at least 1 */
     const int64_t width = WIDTH_Q24(n), entry[9] = {width, 0, 0, 0, width, 0, 0, 0, width};
     *out = (t3r_gaussian){.view = T3R_NO_VIEW, .opacity_q15 = OPACITY_Q15};
     t3r_pack_factor(entry, 24, out);

@@ -60,6 +60,7 @@ static void fit(const t3r_plane_labels *labels, uint32_t cell)
         }
     }
     const uint32_t pixels = (at.right - at.left) * (at.bottom - at.top);
+    T3R_BOUND(pixels > 0); /* a square begins within the picture */
     labels->share_q8[cell] = (uint16_t)(256 * matched / pixels);
     for (uint32_t l = 0; l < labels->count; l++) {
         labels->cost[cell * labels->count + l] =
@@ -91,6 +92,7 @@ static void charge(const t3r_plane_labels *labels, uint32_t cell)
 static inline void offer(uint16_t *distance, const t3r_plane_labels *labels, uint32_t cell, int32_t dx, int32_t dy,
                          uint32_t step)
 {
+    T3R_BOUND(labels->columns > 0);
     const int32_t x = (int32_t)(cell % labels->columns) + dx, y = (int32_t)(cell / labels->columns) + dy;
     if (x >= 0 && y >= 0 && x < (int32_t)labels->columns && y < (int32_t)labels->rows) {
         const uint32_t other = distance[(uint32_t)y * labels->columns + (uint32_t)x] + step;

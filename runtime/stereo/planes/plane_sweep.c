@@ -186,7 +186,7 @@ void t3r_plane_sweep(const t3r_plane_labels *labels, const t3r_kernels *kernels,
                .luma_other = luma};
     relate(&s);
     for (uint32_t cell = 0; cell < labels->columns * labels->rows; cell++) {
-        int32_t differ[T3R_LABELS_MOST];
+        int32_t differ[T3R_LABELS_MOST] = {0};
         const int32_t least = compare(&s, cell, differ);
         const int32_t weight_q16 = 65536 - MATCHED_Q8 * labels->share_q8[cell];
         for (uint32_t l = 0; l < labels->count; l++) {
