@@ -10,14 +10,13 @@
 
 #define T3R_FOCAL_LEAST_Q16 (8 << 16)
 #define T3R_PIXELS_MOST_Q16 ((16384 << 16) - 1)
-#define T3R_COMPONENT_MOST_Q30 (INT32_C(3) << 29) /* 1.5 */
 
 static inline uint64_t t3r_square(int32_t x)
 {
     return (uint64_t)((int64_t)x * x);
 }
 
-/* Returns the squared norm, Q60. With every |component| <= 1.5 it is at most 9 x 2^60 and fits. */
+/* Returns the squared norm, Q60. Only four components of -2 reach 2^64, which wraps to 0. */
 static inline uint64_t t3r_norm2_q60(const int32_t q[4])
 {
     return t3r_square(q[0]) + t3r_square(q[1]) + t3r_square(q[2]) + t3r_square(q[3]);
@@ -35,12 +34,7 @@ static inline bool t3r_is_centre(int32_t c_q16)
 
 T3R_CONDITION t3r_is_rotation(const int32_t q[4])
 {
-    for (uint32_t i = 0; i < 4; i++) {
-        if (q[i] > T3R_COMPONENT_MOST_Q30 || q[i] < -T3R_COMPONENT_MOST_Q30) {
-            return false;
-        }
-    }
-    uint64_t norm2 = t3r_norm2_q60(q);
+    const uint64_t norm2 = t3r_norm2_q60(q);
     return norm2 >= UINT64_C(1) << 58 && norm2 <= UINT64_C(9) << 58;
 }
 

@@ -3,6 +3,7 @@
 #include "unit/unit.h"
 
 #include "core/camera.h"
+#include "core/fault.h"
 
 enum { W = 128, H = 96 };
 
@@ -55,6 +56,7 @@ TEST(ranges)
     GIVES(T3R_ERR_CAMERA, camera.rotation_q30[0] = 0);
     GIVES(T3R_ERR_CAMERA, memset(camera.rotation_q30, 0x80, sizeof camera.rotation_q30));
     GIVES(T3R_ERR_CAMERA, camera.rotation_q30[1] = INT32_MIN);
+    GIVES(T3R_ERR_CAMERA, for (int i = 0; i < 4; i++) camera.rotation_q30[i] = INT32_MIN);
     GIVES(T3R_ERR_CAMERA, camera.rotation_q30[1] = camera.rotation_q30[2] = camera.rotation_q30[3] = 1 << 30);
     GIVES(T3R_ERR_CAMERA, camera.rotation_q30[0] = 3 << 29; camera.rotation_q30[3] = 1 << 10);
     GIVES(T3R_OK, camera.distortion_q24[2] = INT32_MAX);
@@ -110,6 +112,32 @@ TEST(bounds)
     camera.distortion_q24[0] = INT32_MIN;
     camera.distortion_q24[1] = camera.distortion_q24[4] = INT32_MAX;
     assert_int_equal(t3r_camera_check(&camera, W, H), T3R_OK);
+}
+
+/* A sentence has the values that are refused, and the bounds. */
+TEST(sentences)
+{
+    const int64_t pixels = (16384 << 16) - 1;
+#define NAMES(change, first, second, third, fourth)                                                                    \
+    do {                                                                                                               \
+        t3r_camera camera = plain_camera();                                                                            \
+        t3r_fault fault = {0};                                                                                         \
+        change;                                                                                                        \
+        assert_int_equal(t3r_camera_fault(&camera, W, H, &fault), T3R_ERR_CAMERA);                                     \
+        const int64_t numbers[4] = {first, second, third, fourth};                                                     \
+        assert_memory_equal(fault.number, numbers, sizeof numbers);                                                    \
+    } while (0)
+    NAMES(camera.width = 7, 7, H, W, H);
+    NAMES(camera.fx_q16 = 5, 5, 8 << 16, pixels, 0);
+    NAMES(camera.fy_q16 = 6, 6, 8 << 16, pixels, 0);
+    NAMES(camera.cx_q16 = INT32_MAX, INT32_MAX, -pixels, pixels, 0);
+    NAMES(camera.cy_q16 = INT32_MIN, INT32_MIN, -pixels, pixels, 0);
+    NAMES(camera.distortion = (t3r_distortion)77, 77, T3R_DISTORTION_COUNT - 1, 0, 0);
+    NAMES(memcpy(camera.rotation_q30, ((int32_t[]){1, 2, 3, 4}), 16), 1, 2, 3, 4);
+    NAMES(camera.position_q32[2] = INT64_MIN, 2, INT64_MIN, T3R_MAX_POSITION_Q32, T3R_MAX_POSITION_Q32);
+    NAMES(camera.distortion = T3R_DISTORTION_RADTAN;
+          camera.distortion_q24[3] = INT32_MAX, 3, INT32_MAX, T3R_MAX_TANGENTIAL_Q24, T3R_MAX_TANGENTIAL_Q24);
+#undef NAMES
 }
 
 TEST(rotation)
