@@ -37,7 +37,7 @@ static void count_octaves(void *context, uint32_t begin, uint32_t end, uint32_t 
     const t3r_view view = *job->view;
     uint32_t *bins = bins_of(job, worker);
     for (size_t i = (size_t)begin * view.width; i < (size_t)end * view.width; i++) {
-        if (t3r_is_reliable(view.validity[i]) && view.depth[i] != 0) {
+        if (t3r_is_reliable(view.validity[i])) { /* so it has a depth */
             bins[octave(view.depth_unit_q40, view.depth[i])]++;
         }
     }
