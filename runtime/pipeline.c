@@ -12,6 +12,7 @@
 
 #include "budget/budget.h"
 #include "budget/cluster_texture.h"
+#include "core/fault.h"
 #include "core/features.h"
 #include "head/backdrop.h"
 #include "head/head_views.h"
@@ -127,17 +128,20 @@ static t3r_status superclusters(t3r_runtime *rt, t3r_view *views)
     return T3R_OK;
 }
 
-t3r_status t3r_analyse(t3r_runtime *rt)
+t3r_status t3r_find_points(t3r_runtime *rt, t3r_view *views)
 {
     rt->strips = (t3r_strips){0}; /* stages overwrite its sums */
+    begin_analysis(rt, views);
+    T3R_PASS(t3r_find_depth(rt, views, all_of(rt)));
+    rt->valid_points = count_measured(rt, views);
+    return t3r_choose_frame(rt, views);
+}
+
+t3r_status t3r_analyse(t3r_runtime *rt)
+{
     t3r_view views[T3R_MAX_VIEWS];
     t3r_views_of(rt, views);
-    begin_analysis(rt, views);
-    t3r_status status = t3r_find_depth(rt, views, all_of(rt));
-    if (status == T3R_OK) {
-        rt->valid_points = count_measured(rt, views);
-        status = t3r_choose_frame(rt, views);
-    }
+    t3r_status status = t3r_find_points(rt, views);
     if (status == T3R_OK) {
         status = align(rt, views);
     }

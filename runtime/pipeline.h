@@ -8,6 +8,8 @@
 #include "state/views.h"
 #include "trim3r.h"
 
+/* Runs the first part of the analysis: finds depth, counts points and chooses the scene's frame. */
+t3r_status t3r_find_points(t3r_runtime *rt, t3r_view *views);
 /* Runs depth, pointmap, wavelet and superclusters: everything that does not depend on the budget. */
 t3r_status t3r_analyse(t3r_runtime *rt);
 /* Runs budget, head and refinement. `importance`: for the allocation `given`, NULL for the others. */

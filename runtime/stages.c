@@ -32,9 +32,12 @@ static t3r_status fill_views(const t3r_runtime *rt, const t3r_view *views, t3r_v
 
 t3r_status t3r_find_depth(t3r_runtime *rt, t3r_view *views, t3r_view_span span)
 {
-    const t3r_status status = t3r_is_by_stereo(&rt->config) /* stereo fills its own holes */
-                                  ? t3r_stereo_views(rt, views)
-                                  : fill_views(rt, views, span);
+    t3r_status status = T3R_OK;
+    if (!t3r_is_by_stereo(&rt->config)) {
+        status = fill_views(rt, views, span);
+    } else if (!t3r_stereo_take(rt, views)) { /* stereo fills its own holes */
+        status = t3r_stereo_views(rt, views);
+    }
     if (status == T3R_OK) {
         t3r_hash_depth(rt, views, span.first, span.end);
     }

@@ -116,6 +116,7 @@ t3r_status t3r_attach_as(uint64_t digest, t3r_runtime **rt, void *arena, size_t 
     }
     memset(&state->hooks, 0, sizeof state->hooks);
     state->weights = NULL;
+    state->depth_of = NULL;
     state->strips = (t3r_strips){0}; /* its sums may be damaged */
     state->kernels = t3r_kernels_c;
     *rt = state;

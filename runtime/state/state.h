@@ -99,6 +99,7 @@ struct t3r_runtime {
     uint32_t follows;    /* 1 = the last analysis reused something */
     t3r_strips strips;   /* 0 unless a view arrives in strips */
     const void *weights;
+    const t3r_runtime *depth_of; /* has the views, too: the next analysis takes its depth by stereo. NULL: none */
     t3r_hooks hooks;
     t3r_kernels kernels; /* chosen by t3r_set_cpu(); plain C until then */
 };

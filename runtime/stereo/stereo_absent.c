@@ -10,6 +10,13 @@ void t3r_stereo_clear(const t3r_view *views, uint32_t count)
     (void)count;
 }
 
+bool t3r_stereo_take(t3r_runtime *rt, t3r_view *views)
+{
+    (void)rt;
+    (void)views;
+    return false;
+}
+
 t3r_status t3r_stereo_views(t3r_runtime *rt, t3r_view *views)
 {
     (void)rt;

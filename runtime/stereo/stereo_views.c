@@ -228,3 +228,45 @@ t3r_status t3r_stereo_views(t3r_runtime *rt, t3r_view *views)
     }
     return status;
 }
+
+/* Whether both have the same picture and camera as view v. */
+static bool is_same_view(const t3r_runtime *rt, const t3r_runtime *other, uint32_t v, const t3r_view *view)
+{
+    const t3r_view taken = t3r_view_of(other, v);
+    const size_t pixels = T3R_PIXELS_(view->width, view->height);
+    bool same = memcmp(&rt->camera[v], &other->camera[v], sizeof rt->camera[v]) == 0;
+    for (int c = 0; c < 3 && same; c++) {
+        same = memcmp(view->colour[c], taken.colour[c], pixels) == 0;
+    }
+    return same;
+}
+
+static bool is_same_stereo(const t3r_runtime *rt, const t3r_runtime *other, const t3r_view *views)
+{
+    const t3r_config *a = &rt->config, *b = &other->config;
+    bool same = t3r_is_by_stereo(b) && a->width == b->width && a->height == b->height && rt->views == other->views &&
+                a->fill_radius == b->fill_radius;
+    for (uint32_t v = 0; v < rt->views && same; v++) {
+        same = is_same_view(rt, other, v, &views[v]);
+    }
+    return same;
+}
+
+bool t3r_stereo_take(t3r_runtime *rt, t3r_view *views)
+{
+    const t3r_runtime *other = rt->depth_of;
+    rt->depth_of = NULL;
+    if (other == NULL || !is_same_stereo(rt, other, views)) {
+        return false;
+    }
+    for (uint32_t v = 0; v < rt->views; v++) {
+        const t3r_view taken = t3r_view_of(other, v);
+        const size_t pixels = T3R_PIXELS_(taken.width, taken.height);
+        memcpy(views[v].depth, taken.depth, pixels * sizeof *taken.depth);
+        memcpy(views[v].validity, taken.validity, pixels);
+        views[v].depth_unit_q40 = rt->depth_unit_q40[v] = other->depth_unit_q40[v];
+        rt->stereo_pair[v] = other->stereo_pair[v];
+        rt->stereo_partner[v] = other->stereo_partner[v];
+    }
+    return true;
+}

@@ -4,6 +4,8 @@
 #ifndef T3R_STEREO_VIEWS_H
 #define T3R_STEREO_VIEWS_H
 
+#include <stdbool.h>
+
 #include "state/views.h"
 #include "trim3r.h"
 
@@ -16,6 +18,10 @@ void t3r_stereo_clear(const t3r_view *views, uint32_t count);
 /* Computes depth planes, depth units and validity (as t3r_stereo_marks() does) of all views of the runtime, and records
  * which pair each came from. Returns T3R_ERR_STEREO when no pair can be matched, or T3R_ERR_CANCELLED. */
 t3r_status t3r_stereo_views(t3r_runtime *rt, t3r_view *views);
+
+/* Copies the results of t3r_stereo_views() from rt->depth_of, which has found points and done nothing since. Returns
+ * false, without copying, unless that runtime would compute the same bits: its views and settings of stereo agree. */
+bool t3r_stereo_take(t3r_runtime *rt, t3r_view *views);
 
 /* Fills view v, which was matched with view `other`, if the configuration says so, and sets its validity. work: that
  * of a pair. */

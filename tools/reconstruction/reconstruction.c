@@ -15,11 +15,14 @@
 #include "core/scene_frame.h"
 #include "head/head.h"
 #include "host/cpu.h"
+#include "pipeline.h"
 #include "reconstruction/developed_frame.h"
 #include "reconstruction/importance_pictures.h"
 #include "reconstruction/reconstruction_error.h"
 #include "reconstruction/scene_frames.h"
 #include "scene/scene_append.h"
+#include "state/state.h"
+#include "state/views.h"
 
 void reconstruction_defaults(reconstruction_options *options)
 {
@@ -231,35 +234,52 @@ static t3r_status make(reconstruction *r, const t3r_request *request)
     return status;
 }
 
-/* Counts points by stereo: only the analysis knows which points exist, so it runs one with as little else as
- * possible. */
-static int count_matched_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path,
-                                const reconstruction_options *options, reconstruction_points *points)
+/* Finds the points of the views that were added, in the time of `stages` and `build_seconds`. */
+static t3r_status find_points(reconstruction *r)
 {
-    reconstruction counted = {.context_count = r->context_count};
-    memcpy(counted.context, r->context, sizeof counted.context);
-    t3r_config *c = &counted.config;
+    t3r_view views[T3R_MAX_VIEWS];
+    t3r_views_of(r->runtime, views);
+    stage_times_begin(&r->stages, r->config.workers);
+    const double start = cli_now();
+    const t3r_status status = t3r_find_points(r->runtime, views);
+    r->build_seconds = cli_now() - start;
+    stage_times_end(&r->stages, T3R_STAGE_DEPTH);
+    if (status != T3R_OK) {
+        (void)t3r_reconstruct_error(status, r->runtime, NULL, &r->scene, r->reason, sizeof r->reason);
+    }
+    return status;
+}
+
+/* Counts points by stereo, which needs the depth: `counted`, which is all 0, keeps it for the build. The caller closes
+ * it. */
+static int count_matched_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path,
+                                const reconstruction_options *options, reconstruction_points *points,
+                                reconstruction *counted)
+{
+    counted->context_count = r->context_count;
+    memcpy(counted->context, r->context, sizeof counted->context);
+    t3r_config *c = &counted->config;
     *c = t3r_default_config(r->config.width, r->config.height, r->context_count, 1);
     c->depth = T3R_DEPTH_STEREO;
     c->flying = c->redundancy = c->exposure = c->refine = c->cluster_batches = 0;
     c->wavelet = T3R_WAVELET_HAAR;
     c->levels = c->clusters = c->render_width = c->render_height = 1;
-    int code = open_arena(&counted, &(reconstruction_options){.arena = ARENA_MIN, .processor = options->processor});
+    c->fill_radius = options->config.fill_radius;
+    int code = open_arena(counted, &(reconstruction_options){.arena = ARENA_MIN, .processor = options->processor});
     t3r_status status = T3R_OK;
     for (uint32_t v = 0; v < r->context_count && code == CLI_OK; v++) {
-        status = t3r_add_view(counted.runtime, &frames[v].frame, &frames[v].camera);
+        status = t3r_add_view(counted->runtime, &frames[v].frame, &frames[v].camera);
         code = status == T3R_OK ? CLI_OK
-                                : reconstruction_view_error(status, counted.runtime, path, r->context[v], &frames[v]);
+                                : reconstruction_view_error(status, counted->runtime, path, r->context[v], &frames[v]);
     }
     if (code == CLI_OK) {
-        status = make(&counted, NULL);
-        code = status == T3R_OK ? CLI_OK : reconstruction_make_error(&counted, status, path);
+        status = find_points(counted);
+        code = status == T3R_OK ? CLI_OK : reconstruction_make_error(counted, status, path);
     }
     if (code == CLI_OK) {
-        *points = (reconstruction_points){.valid = counted.scene.valid_points,
-                                          .depth = ldexp(1.5, counted.scene.frame.exponent)};
+        *points = (reconstruction_points){.valid = counted->runtime->valid_points,
+                                          .depth = ldexp(1.5, counted->runtime->frame.exponent)};
     }
-    reconstruction_close(&counted);
     return code;
 }
 
@@ -286,10 +306,11 @@ static int count_measured_points(const reconstruction *r, const t3r_capture_fram
 }
 
 static int count_points(const reconstruction *r, const t3r_capture_frame *frames, const char *path,
-                        const reconstruction_options *options, reconstruction_points *points)
+                        const reconstruction_options *options, reconstruction_points *points, reconstruction *counted)
 {
-    int code = options->config.depth == T3R_DEPTH_STEREO ? count_matched_points(r, frames, path, options, points)
-                                                         : count_measured_points(r, frames, path, points);
+    int code = options->config.depth == T3R_DEPTH_STEREO
+                   ? count_matched_points(r, frames, path, options, points, counted)
+                   : count_measured_points(r, frames, path, points);
     return code == CLI_OK && points->valid == 0
                ? cli_error(CLI_BAD_INPUT, "%s: the context frames hold no valid depth", path)
                : code;
@@ -349,11 +370,13 @@ static int need_depth(const reconstruction *r, const char *path, const t3r_captu
 int reconstruction_count(reconstruction_points *points, const t3r_recording *recording, const char *path,
                          const reconstruction_options *options)
 {
-    reconstruction r = {.context_count = 0};
+    reconstruction r = {.context_count = 0}, counted = {.context_count = 0};
     t3r_capture_frame frames[T3R_MAX_VIEWS];
     int code = choose_context(&r, recording, path, options, frames);
     code = code == CLI_OK ? need_depth(&r, path, frames, options->config.depth) : code;
-    return code == CLI_OK ? count_points(&r, frames, path, options, points) : code;
+    code = code == CLI_OK ? count_points(&r, frames, path, options, points, &counted) : code;
+    reconstruction_close(&counted);
+    return code;
 }
 
 static int bind_head(reconstruction *r, const reconstruction_options *options)
@@ -435,9 +458,9 @@ void reconstruction_request(reconstruction *r, const reconstruction_options *opt
 }
 
 /* Prepares head, settings, budget and arena, for a stream with `keyframes` live keyframes, or for the context frames
- * (0). */
+ * (0). `counted` is as with count_matched_points(). */
 static int prepare(reconstruction *r, const char *path, const reconstruction_options *options,
-                   const t3r_capture_frame *frames, uint32_t keyframes)
+                   const t3r_capture_frame *frames, uint32_t keyframes, reconstruction *counted)
 {
     int code = chosen_head_open(&r->head, options->head);
     if (code == CLI_OK && options->hide_mask) {
@@ -459,7 +482,7 @@ static int prepare(reconstruction *r, const char *path, const reconstruction_opt
     }
 
     reconstruction_points points;
-    code = count_points(r, frames, path, options, &points);
+    code = count_points(r, frames, path, options, &points, counted);
     if (code != CLI_OK) {
         return code;
     }
@@ -475,14 +498,16 @@ static int prepare(reconstruction *r, const char *path, const reconstruction_opt
 
 /* Builds from the chosen frames; `planes` are the importance for the allocation `given`, else NULL. */
 static int build_from(reconstruction *r, const char *path, const reconstruction_options *options,
-                      const t3r_capture_frame *frames, const uint16_t *const *planes)
+                      const t3r_capture_frame *frames, const uint16_t *const *planes, reconstruction *counted)
 {
-    int code = prepare(r, path, options, frames, 0);
+    int code = prepare(r, path, options, frames, 0, counted);
     if (code != CLI_OK) {
         return code;
     }
     double start = cli_now();
     stage_times_begin(&r->stages, options->processor.threads);
+    r->stages.seconds[T3R_STAGE_DEPTH] = counted->stages.seconds[T3R_STAGE_DEPTH];
+    r->runtime->depth_of = counted->runtime;
     for (uint32_t v = 0; v < r->context_count; v++) {
         t3r_status status = t3r_add_view(r->runtime, &frames[v].frame, &frames[v].camera);
         if (status != T3R_OK) {
@@ -492,7 +517,7 @@ static int build_from(reconstruction *r, const char *path, const reconstruction_
     double added = cli_now();
     r->add_views_seconds += added - start;
     t3r_status status = reconstruction_make(r, options, planes);
-    r->build_seconds = cli_now() - added;
+    r->build_seconds = counted->build_seconds + cli_now() - added;
     cli_progress_end();
     return status == T3R_OK ? CLI_OK : reconstruction_make_error(r, status, path);
 }
@@ -502,6 +527,7 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
                  const reconstruction_options *options)
 {
     t3r_capture_frame frames[T3R_MAX_VIEWS];
+    reconstruction counted = {0};
     scene_frames made = {0};
     importance_pictures pictures = {0};
     const uint16_t *const *planes = NULL;
@@ -521,8 +547,9 @@ static int build(reconstruction *r, const t3r_recording *recording, const char *
         planes = (const uint16_t *const *)pictures.planes;
     }
     if (code == CLI_OK) {
-        code = build_from(r, path, options, frames, planes);
+        code = build_from(r, path, options, frames, planes, &counted);
     }
+    reconstruction_close(&counted);
     importance_pictures_free(&pictures);
     scene_frames_free(&made);
     return code;
@@ -543,11 +570,13 @@ int reconstruction_stream(reconstruction *r, const t3r_recording *recording, con
                           const reconstruction_options *options, uint32_t keyframes)
 {
     *r = (reconstruction){0};
+    reconstruction counted = {0};
     t3r_capture_frame frames[T3R_MAX_VIEWS];
     int code = choose_context(r, recording, path, options, frames);
     if (code == CLI_OK) {
-        code = prepare(r, path, options, frames, keyframes);
+        code = prepare(r, path, options, frames, keyframes, &counted);
     }
+    reconstruction_close(&counted);
     if (code != CLI_OK) {
         reconstruction_close(r);
     }

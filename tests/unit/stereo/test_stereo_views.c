@@ -6,6 +6,7 @@
 
 #include "core/fixed.h"
 #include "core/hash.h"
+#include "pipeline.h"
 #include "room/room.h"
 #include "state/state.h"
 #include "stereo/planes/plane_fill.h"
@@ -179,6 +180,56 @@ TEST(colours_alone)
     rt->stereo_pair[1] = T3R_PAIR_COUNT;
     assert_int_equal(t3r_attach(&rt, moved, b.bytes), T3R_ERR_EPOCH);
     free(moved);
+    free(b.arena);
+    shots_free(&s);
+}
+
+/* Depth that another runtime found is taken, once and for the same views alone. */
+TEST(taken_from_another)
+{
+    shots s = room_shots((const uint32_t[]){0, 2, 1}, 3);
+    bench b = open_bench(3), from = open_bench(3);
+    t3r_scene scene;
+    t3r_view views[T3R_MAX_VIEWS];
+    add_all(&b, &s);
+    assert_int_equal(reconstruct(&b, &scene), T3R_OK);
+    const uint64_t hash = b.hash;
+    const int calls = b.calls;
+    add_all(&from, &s);
+    t3r_views_of(from.rt, views);
+    assert_int_equal(t3r_find_points(from.rt, views), T3R_OK);
+    assert_int_equal(from.rt->valid_points, scene.valid_points);
+    b.rt->depth_of = from.rt;
+    assert_int_equal(reconstruct(&b, &scene), T3R_OK);
+    assert_int_equal(b.hash, hash);
+    assert_int_equal(b.calls, 0); /* of stage depth */
+    for (uint32_t v = 0; v < 3; v++) {
+        uint32_t partner, found;
+        assert_int_equal(t3r_stereo_pair(b.rt, v, &partner), t3r_stereo_pair(from.rt, v, &found));
+        assert_int_equal(partner, found);
+    }
+    assert_int_equal(reconstruct(&b, &scene), T3R_OK); /* finds its own */
+    assert_int_equal(b.calls, calls);
+    t3r_view other = t3r_view_of(from.rt, 1);
+    for (int difference = 0; difference < 4; difference++) {
+        other.colour[2][PIXELS - 1] ^= difference == 0;
+        from.rt->camera[1].fx_q16 += difference == 1;
+        from.rt->config.fill_radius -= difference == 2;
+        from.rt->views -= difference == 3;
+        b.rt->depth_of = from.rt;
+        assert_int_equal(reconstruct(&b, &scene), T3R_OK);
+        assert_int_equal(b.hash, hash);
+        assert_int_equal(b.calls, calls);
+        other.colour[2][PIXELS - 1] ^= difference == 0;
+        from.rt->camera[1].fx_q16 -= difference == 1;
+        from.rt->config.fill_radius += difference == 2;
+        from.rt->views += difference == 3;
+    }
+    b.rt->depth_of = from.rt; /* an arena that moved has no other */
+    t3r_runtime *rt;
+    assert_int_equal(t3r_attach(&rt, b.arena, b.bytes), T3R_OK);
+    assert_null(rt->depth_of);
+    free(from.arena);
     free(b.arena);
     shots_free(&s);
 }
