@@ -21,7 +21,9 @@ typedef struct walk {
     uint64_t limit;    /* end of the records: at the end magic, or where the file was cut */
     bool cut;          /* the file has no end magic */
     uint64_t data_end; /* where the summary starts; 0 while in the data section */
-    bool damaged;      /* a chunk of a cut file is corrupt: reading ends before it */
+    uint32_t crc;      /* CRC-32 of the bytes before crc_end */
+    uint64_t crc_end;
+    bool damaged; /* a chunk of a cut file is corrupt: reading ends before it */
     char *error;
     size_t error_bytes;
 } walk;
@@ -260,6 +262,31 @@ static const char *unpack_chunk(walk *w, const chunk *c, t3r_mcap_place place, u
                                                                : wrong;
 }
 
+/* Returns the CRC-32 of the file's bytes before `end`; a file in the spill is not brought into memory as a whole. */
+static uint32_t crc_before(walk *w, uint64_t end)
+{
+    while (w->crc_end < end) {
+        const uint64_t count = end - w->crc_end < REST_BYTES ? end - w->crc_end : REST_BYTES;
+        w->crc = (uint32_t)crc32_z(w->crc, w->bytes + w->crc_end, (size_t)count);
+        w->crc_end += count;
+        if (w->chunks->spill != NULL) {
+            t3r_spill_rest(w->chunks->spill);
+        }
+    }
+    return w->crc;
+}
+
+/* Whether the CRC of a chunk's records is right. That of records in the file is a part of the data section's. */
+static bool is_crc_right(walk *w, const chunk *c, const uint8_t *records, size_t count)
+{
+    const uint32_t crc = (uint32_t)crc32_z(0, records, count);
+    if (records == c->packed) {
+        w->crc = (uint32_t)crc32_combine(crc_before(w, (uint64_t)(records - w->bytes)), crc, (z_off_t)count);
+        w->crc_end += count;
+    }
+    return crc == c->record.crc;
+}
+
 static int walk_packed(walk *w, const chunk *c, t3r_mcap_place place)
 {
     unpacked own = {.bytes = NULL};
@@ -267,7 +294,7 @@ static int walk_packed(walk *w, const chunk *c, t3r_mcap_place place)
     int status = 0;
     const char *wrong = c->record.compression.count > 0 ? unpack_chunk(w, c, place, &own, &count, &status) : NULL;
     const uint8_t *records = own.bytes != NULL ? own.bytes : c->packed;
-    if (status == 0 && wrong == NULL && !c->cut && c->record.crc != 0 && c->record.crc != crc32_z(0, records, count)) {
+    if (status == 0 && wrong == NULL && !c->cut && c->record.crc != 0 && !is_crc_right(w, c, records, count)) {
         wrong = "its CRC does not match its records";
     }
     w->damaged = status == 0 && wrong != NULL && w->cut && !c->cut;
@@ -301,26 +328,13 @@ static int read_chunk(walk *w, t3r_mcap_fields *in, t3r_mcap_place place, uint64
 
 /* ---- the file ---- */
 
-/* Returns a CRC-32; a file in the spill is not brought into memory as a whole. */
-static uint32_t crc_of(const walk *w, const uint8_t *bytes, uint64_t count)
-{
-    uint32_t crc = 0;
-    for (uint64_t at = 0; at < count; at += REST_BYTES) {
-        crc = (uint32_t)crc32_z(crc, bytes + at, (size_t)(count - at < REST_BYTES ? count - at : REST_BYTES));
-        if (w->chunks->spill != NULL) {
-            t3r_spill_rest(w->chunks->spill);
-        }
-    }
-    return crc;
-}
-
 static int read_data_end(walk *w, t3r_mcap_fields *in, t3r_mcap_place place)
 {
     uint32_t crc = t3r_mcap_take_u32(in);
     if (in->failed) {
         return malformed(w, T3R_MCAP_DATA_END, place, short_fields);
     }
-    if (crc != 0 && crc != crc_of(w, w->bytes, place.offset)) {
+    if (crc != 0 && crc != crc_before(w, place.offset)) {
         return malformed(w, T3R_MCAP_DATA_END, place, "the data section's CRC does not match its bytes");
     }
     w->data_end = place.offset + T3R_MCAP_RECORD_HEAD_BYTES + in->count;
