@@ -29,16 +29,17 @@ static inline __attribute__((always_inline)) bool touches(const t3r_splat *s, in
     const int64_t width = (T3R_LANES - 1) << spread, height = (T3R_TILE_SIDE - 1) << spread;
     int64_t right = left + (width << 12), bottom = top + (height << 12);
     int64_t a = s->a_q30 >> 12, c = s->c_q30 >> 12;
-    int64_t least = INT64_MAX;
+    const int64_t most = (int64_t)LEVEL_MOST << 18;
     for (int corner = 0; corner < 2; corner++) { /* top left, then bottom right */
         int64_t dx = corner == 0 ? left : right, dy = corner == 0 ? top : bottom;
         int64_t hx = (s->a_q30 * dx + s->b_q30 * dy) >> 24, hy = (s->b_q30 * dx + s->c_q30 * dy) >> 24;
         int64_t q = (hx * dx + hy * dy) >> 12;
         int64_t sign = corner == 0 ? 1 : -1;
-        least = T3R_MIN(least, least_along(q, sign * hx, a, width));
-        least = T3R_MIN(least, least_along(q, sign * hy, c, height));
+        if (q < most || least_along(q, sign * hx, a, width) < most || least_along(q, sign * hy, c, height) < most) {
+            return true;
+        }
     }
-    return least < (int64_t)LEVEL_MOST << 18;
+    return false;
 }
 
 /* Computes the quadratic from the group's first pixel, dx and dy from the centre. If the columns are touched it is
