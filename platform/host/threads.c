@@ -2,7 +2,8 @@
 /* parallel_for on POSIX threads, which draw indices from one shared counter.
  *
  * A build has hundreds of jobs of a few hundred microseconds. Waking a thread takes about a tenth of that, far more in
- * a virtual machine. So a waiting thread spins for a while before it sleeps. */
+ * a virtual machine. So a waiting thread spins for a while before it sleeps, and a job waits only for the helpers that
+ * have joined it: on a busy machine the others come too late to help. */
 #include "trim3r_host.h"
 
 #include <pthread.h>
@@ -13,8 +14,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#define LOOK_NS 200000 /* how long a thread spins before it sleeps */
-#define LOOKS 64       /* tests between two looks at the clock */
+#define LOOK_NS 200000  /* how long a thread spins before it sleeps */
+#define LOOKS 64        /* tests between two looks at the clock */
+#define OPEN (1u << 31) /* in t3r_threads.busy: helpers may join the job */
 
 /* A started thread; worker 0 is the caller. */
 typedef struct helper {
@@ -30,7 +32,7 @@ struct t3r_threads {
     uint32_t helper_count;
     pid_t process;         /* the helpers' */
     bool looks;            /* spins: there are processors for all threads */
-    _Atomic uint32_t busy; /* helpers that have not finished the current job */
+    _Atomic uint32_t busy; /* helpers that have joined the current job and not finished, and OPEN */
     _Atomic uint64_t job;  /* number of the current job; it changes under the mutex */
     _Atomic bool stop;     /* likewise */
     t3r_thread_task *task;
@@ -81,6 +83,19 @@ static bool look(const t3r_threads *threads, bool (*is_so)(const t3r_threads *, 
     return false;
 }
 
+/* Joins the current job, whichever it is, unless all its indices are drawn. Acquires the job's fields. */
+static bool join_job(t3r_threads *threads)
+{
+    uint32_t busy = atomic_load_explicit(&threads->busy, memory_order_relaxed);
+    while ((busy & OPEN) != 0) {
+        if (atomic_compare_exchange_weak_explicit(&threads->busy, &busy, busy + 1, memory_order_acquire,
+                                                  memory_order_relaxed)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static void draw_indices(t3r_threads *threads, uint32_t worker)
 {
     for (;;) {
@@ -108,6 +123,9 @@ static void *work(void *argument)
             return NULL;
         }
         last_job = atomic_load_explicit(&threads->job, memory_order_acquire);
+        if (!join_job(threads)) {
+            continue;
+        }
         draw_indices(threads, self->worker);
         /* Releases this thread's writes to the thread that sees busy = 0. */
         if (atomic_fetch_sub_explicit(&threads->busy, 1, memory_order_acq_rel) == 1) {
@@ -201,12 +219,13 @@ void t3r_threads_run(void *pool, uint32_t count, t3r_thread_task *task, void *co
     threads->context = context;
     threads->count = count;
     atomic_store_explicit(&threads->next, 0, memory_order_relaxed);
-    atomic_store_explicit(&threads->busy, threads->helper_count, memory_order_relaxed);
+    atomic_store_explicit(&threads->busy, OPEN, memory_order_release);
     atomic_fetch_add_explicit(&threads->job, 1, memory_order_release);
     pthread_cond_broadcast(&threads->job_posted);
     pthread_mutex_unlock(&threads->mutex);
 
     draw_indices(threads, 0);
+    atomic_fetch_and_explicit(&threads->busy, ~OPEN, memory_order_relaxed);
 
     if (!look(threads, is_done, 0)) {
         pthread_mutex_lock(&threads->mutex);
