@@ -48,23 +48,36 @@ uint32_t t3r_exp2_q16(int32_t x_q16)
     return (uint32_t)t3r_scale64(mantissa_q20, exponent - 4);
 }
 
-/* Newton's iteration from above, which squares the relative error. The start, 2^(log2(x) / 2) plus an error bound, is
- * too large by at most 2^-11 and 1. One step leaves an error of 2^-23 of the root and less than 3/4: the floor, or one
- * more, if the root is below 2^21. A second step suffices for any root. */
+/* floor(sqrt(256 (64 + i) + 255)): within 1 of the roots of all numbers of 16 bits whose upper byte is 64 + i. */
+static const uint8_t first_roots[192] = {
+    128, 129, 130, 131, 132, 133, 134, 135, 136, 137, 138, 139, 140, 141, 142, 143, 143, 144, 145, 146, 147, 148,
+    149, 150, 150, 151, 152, 153, 154, 155, 155, 156, 157, 158, 159, 159, 160, 161, 162, 163, 163, 164, 165, 166,
+    167, 167, 168, 169, 170, 170, 171, 172, 173, 173, 174, 175, 175, 176, 177, 178, 178, 179, 180, 181, 181, 182,
+    183, 183, 184, 185, 185, 186, 187, 187, 188, 189, 189, 190, 191, 191, 192, 193, 193, 194, 195, 195, 196, 197,
+    197, 198, 199, 199, 200, 201, 201, 202, 203, 203, 204, 204, 205, 206, 206, 207, 207, 208, 209, 209, 210, 211,
+    211, 212, 212, 213, 214, 214, 215, 215, 216, 217, 217, 218, 218, 219, 219, 220, 221, 221, 222, 222, 223, 223,
+    224, 225, 225, 226, 226, 227, 227, 228, 229, 229, 230, 230, 231, 231, 232, 232, 233, 234, 234, 235, 235, 236,
+    236, 237, 237, 238, 238, 239, 239, 240, 241, 241, 242, 242, 243, 243, 244, 244, 245, 245, 246, 246, 247, 247,
+    248, 248, 249, 249, 250, 250, 251, 251, 252, 252, 253, 253, 254, 254, 255, 255,
+};
+
+/* Heron's iteration, which doubles the bits that are right: from a number within 1 of the root of a number's upper
+ * half, to one within 1 of its root (Dickinson's integer square root in CPython, Modules/mathmodule.c). Divisors have 8
+ * and 17 bits, so divisions of 32 bits are enough. */
 uint32_t t3r_isqrt64(uint64_t x)
 {
     if (x == 0) {
         return 0;
     }
-    /* x = top 4^half: sqrt x = sqrt(top) 2^half with top in [2^30, 2^32) */
-    int32_t half = (int32_t)t3r_msb64(x) / 2 - 15;
-    uint32_t top = (uint32_t)(half >= 0 ? x >> (2 * half) : x << (-2 * half));
-    uint64_t root_q15 = t3r_exp2_q16(t3r_log2_q16(top) / 2 - (1 << 16)); /* sqrt(top), Q15: at most 2^16 */
-    root_q15 += root_q15 >> 12;
-    uint64_t root = (half >= 15 ? root_q15 << (half - 15) : root_q15 >> (15 - half)) + 1;
-    for (int step = half > 5 ? 2 : 1; step > 0; step--) { /* a root below 2^(half + 16) */
-        root = (root + x / root) >> 1;
-    }
-    root = T3R_MIN(root, (uint64_t)UINT32_MAX);
+    const uint32_t up = (63 - t3r_msb64(x)) / 2;
+    const uint64_t top = x << (2 * up); /* 2^62..2^64 - 1 */
+    const uint32_t high = (uint32_t)(top >> 32);
+    uint32_t near = first_roots[(high >> 24) - 64];
+    near = (near << 7) + (high >> 9) / near; /* 2^15..2^16 */
+    /* top / 2^17 / near, by halves: the remainder is below 2^16 */
+    const uint32_t upper = (high >> 1) / near, rest = (high >> 1) % near;
+    const uint32_t lower = (rest << 16 | (uint32_t)(top >> 17 & 0xffff)) / near;
+    const uint64_t of_top = ((uint64_t)near << 15) + ((uint64_t)upper << 16) + lower;
+    const uint64_t root = T3R_MIN(of_top >> up, (uint64_t)UINT32_MAX);
     return (uint32_t)(root - (root * root > x));
 }
