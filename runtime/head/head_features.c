@@ -21,8 +21,8 @@ static int8_t slope(uint16_t before, uint16_t here, uint16_t after)
     if (before == 0 || here == 0 || after == 0) {
         return 0;
     }
-    int64_t rise = ((int64_t)after - before) * SLOPE_GAIN;
-    return held((int32_t)t3r_clamp64(t3r_round_div64(rise, 2 * (int64_t)here), -127, 127));
+    const int32_t rise = ((int32_t)after - before) * SLOPE_GAIN; /* below 2^28 */
+    return held(t3r_round_div32(rise, 2 * (int32_t)here));
 }
 
 void t3r_head_features_at(const t3r_head_input *input, uint32_t x, uint32_t y, int8_t features[T3R_FEATURES])
