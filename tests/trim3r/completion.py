@@ -42,6 +42,10 @@ def bash_completes():
                         ("build", "--poses", "e"): {"estimate", "estimate-colour"},
                         ("build", "--arena", ""): {"min", "full"},
                         ("build", "--head", "s"): {"small", "s.t3w", "scans"}, ("replay", "--stream", "--lines", "s"): {"scans"},
+                        ("eval", "--heads", "s"): {"small", "s.t3w", "scans"},
+                        ("eval", "--heads", "none,t"): {"none,tiny"},
+                        ("eval", "--heads", "none,tiny,s"): {f"none,tiny,{name}" for name in ("small", "s.t3w", "scans")},
+                        ("build", "--importance", "a,sco"): {"a,scores.csv"},
                         ("convert", "--up", "-"): {"-x", "-y", "-z"},
                         ("room", "--compression", "z"): {"zstd"},
                         ("build", "--color", "a"): {"auto", "always"}}.items():
@@ -64,7 +68,10 @@ def fish_completes():
         return
     for line, found in {"bu": {"build"}, "help bu": {"build"}, "plan --sv": {"--svg"}, "build --poses given": {"given"},
                         "info scen": {"scene.ply", "scene.spz"}, "import --pointmaps scen": {"scene.npz"},
-                        "build --gaussians sc": set(), "build --head s": {"small", "s.t3w", "scans/"}}.items():
+                        "build --gaussians sc": set(), "build --head s": {"small", "s.t3w", "scans/"},
+                        "eval --heads s": {"small", "s.t3w", "scans/"}, "eval --heads none,t": {"none,tiny"},
+                        "eval --heads none,s": {"none,small", "none,s.t3w", "none,scans/"},
+                        "build --importance a,sco": {"a,scores.csv"}}.items():
         check(in_fish(f"trim3r {line}") == found, f"fish, {line}: {in_fish('trim3r ' + line)}")
 
 

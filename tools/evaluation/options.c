@@ -183,7 +183,7 @@ static const struct argp_option options[] = {
      "of the "
      "scene's means",
      0},
-    {"heads", KEY_HEADS, "H,H,...", OPTION_READS | OPTION_LIST | OPTION_OR_WORD,
+    {"heads", KEY_HEADS, CHOSEN_HEAD_VALUES ",...", OPTION_READS | OPTION_LIST | OPTION_OR_WORD,
      "heads to compare, as --head takes them: rows of the method trim3r for each", 0},
     {"planar", OPTION_TO(evaluation_options, planar), NULL, 0,
      "take images as arguments: each is one view on a plane of constant depth, drawn again from the same camera", 0},

@@ -2,7 +2,7 @@
 # Completion of trim3r in bash. The program itself says which commands and options it has.
 _trim3r() {
     local program=${COMP_WORDS[0]} command=${COMP_WORDS[1]} word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}
-    local IFS=$'\n' name kind about names=() wanted= others= ending
+    local IFS=$'\n' name kind about names=() wanted= others= ending head=
     if ((COMP_CWORD == 1)) || { ((COMP_CWORD == 2)) && [[ $command == help ]]; }; then
         while IFS=$'\t' read -r name about; do names+=("$name"); done < <("$program" --commands 2>/dev/null)
         COMPREPLY=($(compgen -W "${names[*]}" -- "$word"))
@@ -17,17 +17,21 @@ _trim3r() {
         return
     fi
     wanted=${wanted:-$others} COMPREPLY=()
+    if [[ $wanted == files* ]]; then # the words before the last comma stay
+        wanted=file${wanted#files}
+        if [[ $word == *,* ]]; then head=${word%,*}, word=${word##*,}; fi
+    fi
     case $wanted in
     file:*)
         compopt -o filenames 2>/dev/null
         wanted=${wanted#file:}
         for ending in ${wanted//|/$IFS}; do
-            if [[ $ending == .* ]]; then COMPREPLY+=($(compgen -f -X "!*$ending" -- "$word"))
-            else COMPREPLY+=($(compgen -W "$ending" -- "$word")); fi
+            if [[ $ending == .* ]]; then COMPREPLY+=($(compgen -P "$head" -f -X "!*$ending" -- "$word"))
+            else COMPREPLY+=($(compgen -P "$head" -W "$ending" -- "$word")); fi
         done
-        COMPREPLY+=($(compgen -d -- "$word"))
+        COMPREPLY+=($(compgen -P "$head" -d -- "$word"))
         ;;
-    file) compopt -o filenames 2>/dev/null; COMPREPLY=($(compgen -f -- "$word")) ;;
+    file) compopt -o filenames 2>/dev/null; COMPREPLY=($(compgen -P "$head" -f -- "$word")) ;;
     value) ;;
     *) COMPREPLY=($(compgen -W "${wanted//|/$IFS}" -- "$word")) ;;
     esac

@@ -16,17 +16,25 @@ function __trim3r_kind
 end
 function __trim3r_values
     set -l kind (__trim3r_kind)
+    set -l word (commandline -ct)
+    set -l before ''
+    if string match -q 'files*' -- $kind
+        # the words before the last comma stay
+        set kind (string replace files file -- $kind)
+        set before (string replace -r '[^,]*$' '' -- $word)
+        set word (string replace -r '.*,' '' -- $word)
+    end
     if string match -q 'file:*' -- $kind
         for ending in (string split '|' -- (string replace 'file:' '' -- $kind))
             if string match -q '.*' -- $ending
-                __fish_complete_suffix $ending | string match -- "*$ending"
+                complete -C "__fish_command_without_completions $word" | string match -- "*$ending" | string replace -r '^' -- "$before"
             else
-                echo $ending
+                echo $before$ending
             end
         end
-        __fish_complete_directories (commandline -ct)
+        __fish_complete_directories $word | string replace -r '^' -- "$before"
     else if test "$kind" = file
-        __fish_complete_path (commandline -ct)
+        __fish_complete_path $word | string replace -r '^' -- "$before"
     else if test "$kind" != value
         string split '|' -- $kind
     end

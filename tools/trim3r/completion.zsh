@@ -19,6 +19,10 @@ _trim3r() {
         return
     fi
     wanted=${wanted:-$others}
+    if [[ $wanted == files* ]]; then # the words before the last comma stay
+        wanted=file${wanted#files}
+        compset -P '*,'
+    fi
     case $wanted in
     file:*)
         rows=("${(@s:|:)wanted#file:}")

@@ -22,12 +22,13 @@ static void append(char kind[KIND_BYTES], const char *word, size_t length)
     }
 }
 
-/* Collects the values that a placeholder lists: min and full of "BYTES[K|M|G]|min|full". */
+/* Collects the values that a placeholder lists: min and full of "BYTES[K|M|G]|min|full", tiny and none of
+ * "tiny|FILE.t3w|none,...". */
 static void add_words(const char *placeholder, char kind[KIND_BYTES])
 {
     bool outside = true;
     for (const char *at = placeholder; *at != '\0';) {
-        const size_t length = strcspn(at, "|[]");
+        const size_t length = strcspn(at, "|[],");
         if (outside && length > 0 && strspn(at, WORD) == length && at[length] != '[') {
             append(kind, at, length);
         }
@@ -68,7 +69,8 @@ static void add_endings(const char *placeholders, char kind[KIND_BYTES])
     }
 }
 
-/* Writes the kind of a file: "file", or "file:" and the endings, then the words that may stand for one. */
+/* Writes the kind of a file: "file", or "file:" and the endings, then the words that may stand for one; "files" for
+ * several with commas between them. */
 static void file_text(const char *placeholders, int flags, char kind[KIND_BYTES])
 {
     char endings[KIND_BYTES] = "";
@@ -80,7 +82,8 @@ static void file_text(const char *placeholders, int flags, char kind[KIND_BYTES]
     if ((flags & OPTION_OR_WORD) != 0) {
         add_words(placeholders, endings);
     }
-    snprintf(kind, KIND_BYTES, "file%s%.*s", endings[0] != '\0' ? ":" : "", KIND_BYTES - 8, endings);
+    snprintf(kind, KIND_BYTES, "file%s%s%.*s", (flags & OPTION_LIST) != 0 ? "s" : "", endings[0] != '\0' ? ":" : "",
+             KIND_BYTES - 8, endings);
 }
 
 static void value_text(const struct argp_option *o, char kind[KIND_BYTES])
