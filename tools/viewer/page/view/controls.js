@@ -13,6 +13,7 @@ function showOverlays() {
 
 function markFrames() {
   [...$("frames").querySelectorAll("button")].forEach((button, i) => button.setAttribute("aria-pressed", camera.frame === i));
+  markPlace();
   showOverlays();
 }
 

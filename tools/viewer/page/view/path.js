@@ -7,11 +7,24 @@ function showPath(poses) {
   path.poses = poses;
   $("path-controls").hidden = poses.length < 2;
   along.max = Math.max(0, poses.length - 1);
-  describePlace();
+  markPlace();
 }
 
-function describePlace() {
-  const text = `${Number(along.value) + 1} of ${path.poses.length}`;
+const TURN = 1e-3, THERE = 1e-9; /* of the scene's unit, squared: a half turn, and what counts as no way at all */
+
+/* Returns how far away a place of the path is. The turn from it decides between places at one point. */
+function wayTo({ position, rotation }, turned) {
+  const apart = add(position, camera.position, -1), same = Math.abs(rotation.reduce((sum, q, i) => sum + q * turned[i], 0));
+  return dot(apart, apart) + TURN * sceneUnit ** 2 * (1 - same);
+}
+
+/* Moves the slider to the place that is nearest to the camera. */
+function markPlace() {
+  if (path.poses.length === 0) return;
+  const turned = quaternionOf(camera.axes), ways = path.poses.map((pose) => wayTo(pose, turned));
+  const least = ways.reduce((best, way, i) => (way < ways[best] ? i : best), Number(along.value));
+  along.value = least;
+  const text = `${least + 1} of ${path.poses.length}${ways[least] < THERE * sceneUnit ** 2 ? "" : ", the nearest"}`;
   $("along-text").textContent = text;
   along.setAttribute("aria-valuetext", text);
 }
@@ -20,7 +33,6 @@ function describePlace() {
 function travelTo(index) {
   const pose = path.poses[index];
   along.value = index;
-  describePlace();
   Object.assign(camera, { position: [...pose.position], axes: axesOf(pose.rotation), distance: 1.5 * sceneUnit, frame: null });
   moved();
 }
