@@ -22,6 +22,7 @@ import zipfile
 import browser
 from checks import check, done, run, skip
 from common import need_page
+from hostile import formats
 
 TRIM3R = os.path.abspath(sys.argv[1])
 looks = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else None
@@ -38,6 +39,7 @@ FIRST = """(async () => { const image = new Image(), c = document.createElement(
     c.getContext('2d').drawImage(image, 0, 0);
     const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
     let h = 2166136261; for (let i = 0; i < d.length; i++) h = Math.imul(h ^ d[i], 16777619); return h >>> 0; })()"""
+REMARK = "document.getElementById('remark').textContent"
 STATUS = "document.getElementById('status').textContent"
 STAGES = "Object.fromEntries([...document.querySelectorAll('#stages tbody tr')].map((r) => [r.cells[0].textContent, r.cells[2].textContent]))"
 
@@ -149,7 +151,7 @@ def keys_are_listed(page):
 
 
 def along_the_recording(page):
-    """The slider stands at each recorded place; playing goes on to the last one."""
+    """The slider stands at each recorded place, and where the camera goes; playing goes on to the last one."""
     count = page.value("data.path.length")
     check(count > 2 and page.value("document.getElementById('along').max") == str(count - 1), f"{count} places")
     at = "(() => { const p = data.path[PLACE]; return camera.position.every((x, i) => x === p[i]); })()"
@@ -158,6 +160,14 @@ def along_the_recording(page):
     plain = drawn(page, lambda: page.value("approach(3), moved()"))
     check(drawn(page, lambda: page.click("#trace")) != plain, "the path is drawn")
     page.click("#trace")
+    told = "document.getElementById('along-text').textContent"
+    for frame in (2, 1, 0):  # of the page: frames 1, 2 and 0 of the recording
+        page.value(f"goTo({frame})")
+        place = int(page.value(f"data.frames[{frame}].name").split()[1])
+        stands = page.value("Number(document.getElementById('along').value)"), page.value(told)
+        check(stands == (place, f"{place + 1} of {count}"), f"the slider follows the camera to frame {place}: {stands}")
+    page.value("move(.01, 0, 0), moved()")
+    check(page.value(told) == f"1 of {count}, the nearest", f"beside a place: {page.value(told)}")
     page.click("#play")
     page.wait("path.playing === 0")
     check(page.value(at.replace("PLACE", f"{count - 1}")), "played to the last place")
@@ -380,7 +390,7 @@ def opens(page, scene, folder):
                         (f"{folder}/broken.spz", "invalid zstd data"), (f"{folder}/vast.spz", "unpacks to more than"),
                         *bad_archives(sog, folder), (f"{folder}/odd.glb", "not JSON"),
                         (f"{folder}/none.glb", "no primitive with"),
-                        (f"{folder}/room.mcap", "trim3r view room.mcap"), (f"{folder}/cut.ply", "byte "),
+                        (f"{folder}/cut.ply", "byte "),
                         (f"{folder}/bomb.spz", "unpacks to more than")):
         choose(page, path)
         page.wait(f"document.getElementById('status').textContent.includes({json.dumps(words)})")
@@ -395,6 +405,124 @@ def opens(page, scene, folder):
     page.wait("isStill()")
     check(page.value(PICTURE) == dropped, "a scene that is dropped is seen as the native program shows it")
     faint_archive(page, folder)
+
+
+def type_frames(page, context, compared):
+    """Builds the recording's scene from other frames."""
+    for field, text in (("context", context), ("compared", compared)):
+        page.value(f"document.getElementById('{field}').value = {json.dumps(text)}")
+    page.click("#rebuild")
+
+
+def as_natively(page, path, context, target):
+    """Checks that the page built what the program does, from these frames, and scores it likewise."""
+    page.wait(f"document.title.startsWith({json.dumps(os.path.basename(path))}) && document.body.dataset.hash && isStill() && {STATUS}.includes('dB')")
+    gaussians = page.value("document.body.dataset.gaussians")
+    native = json.loads(run(TRIM3R, "replay", path, "--context", context, "--gaussians", gaussians, "--json").stdout)["stages"]
+    stages = page.value(STAGES)
+    check(len(stages) > 2 and all(native[stage] == digits for stage, digits in stages.items()), f"{path}, {context}: {stages}, natively {native}")
+    shown = float(re.search(rf"frame\s{target}\s([0-9.]+)\sdB", page.value(STATUS))[1])
+    row = json.loads(run(TRIM3R, "eval", path, "--context", context, "--target", target, "--gaussians", gaussians, "--json").stdout)["rows"][0]
+    check(abs(shown - row["psnr_all"]) <= 0.005, f"{path}: {shown} dB in the page, {row['psnr_all']} dB by eval")
+    return page.value(PICTURE)
+
+
+def opens_recordings(page, folder):
+    """A recording that is opened is built as the program builds it: from frames that are chosen, then from others."""
+    room = f"{folder}/walk.mcap"
+    run(TRIM3R, "room", "--size", "64x48", "-o", room)
+    opened(page, f"{folder}/page.html")
+    choose(page, room)
+    chosen = json.loads(run(TRIM3R, "build", room, "--context", "auto", "--keep", "10", "-o", f"{folder}/auto.ply", "--json").stdout)
+    frames = [str(frame) for frame in chosen["context"]]
+    middle = (chosen["context"][0] + chosen["context"][1]) // 2
+    first = as_natively(page, room, ",".join(frames), middle)
+    check(page.value("document.body.dataset.gaussians") == str(chosen["gaussians"]), "a tenth of the points")
+    check(page.value("data.frames.map((frame) => frame.name.slice(6)).join()") == ",".join([*frames, str(middle)]), "the frames to look from")
+    check(page.value("document.getElementById('context').value") == ",".join(frames), "the frames that were chosen are named")
+    type_frames(page, "0, 2", "1,4")
+    page.wait("data.views === 2")
+    second = as_natively(page, room, "0,2", 4)
+    check(second != first and page.value("data.frames.length") == 4, "another scene, and two frames to compare with")
+    before = page.value("document.body.dataset.hash")
+    slide(page, page.value("sliderAt(2)"))
+    page.wait(f"document.body.dataset.hash !== {json.dumps(before)} && isStill()")
+    as_natively(page, room, "0,2", 1)
+    pictures = {drawn(page, lambda: page.value(f"document.querySelector('input[name=show][value={show}]').click()"))
+                for show in ("frame", "error", "mask", "clusters", "texture", "picture")}
+    check(len(pictures) == 6, f"{len(pictures)} pictures of a frame")
+    browser.look(page, looks, "view-recording")
+    for compression in ("zstd", "lz4"):
+        packed = f"{folder}/{compression}.mcap"
+        run(TRIM3R, "room", "--size", "64x48", "--compression", compression, "-o", packed)
+        choose(page, packed)
+        check(as_natively(page, packed, ",".join(frames), middle) == first, f"the same of {compression}")
+    for context, compared, words in (("0;2", "", '"0;2" is no list of frames'), ("0,9", "", "there is no frame 9: the recording holds 6"),
+                                     ("0,2,0", "", "frame 0 is named twice"), (",".join(map(str, range(17))), "", "at most 16 frames"),
+                                     ("0", "1," * 31 + "1", "at most 32 frames")):
+        type_frames(page, context, compared)
+        refused(page, words)
+    choose(page, f"{folder}/scene.ply")
+    page.wait("document.title.startsWith('scene') && isStill()")
+    check(page.value("document.getElementById('recording').hidden"), "a scene has no frames to choose")
+    bad_recordings(page, room, folder)
+
+
+def refused(page, words):
+    page.wait(f"{STATUS}.includes({json.dumps(words)})")
+    page.wait("document.getElementById('status').classList.contains('bad')")
+
+
+def bad_recordings(page, room, folder):
+    """Damaged recordings, and those that a page cannot show, are refused with the command that shows them."""
+    with open(room, "rb") as file:
+        whole = file.read()
+    packed = {}
+    for compression in ("zstd", "lz4"):
+        with open(f"{folder}/{compression}.mcap", "rb") as file:
+            packed[compression] = file.read()
+    cases = [("none.mcap", b"?" * 100, "none.mcap: "), ("empty.mcap", whole[:40], "empty.mcap: ")]
+    for compression, data in packed.items():
+        at = data.index(compression.encode()) - 4  # the chunk's compression, after its size unpacked and its CRC
+        first = at + 4 + len(compression) + 8
+        cases += [(f"vast_{compression}.mcap", data[:at - 12] + struct.pack("<Q", 1 << 40) + data[at - 4:], "byte "),
+                  (f"short_{compression}.mcap", data[:at - 12] + struct.pack("<Q", 100) + data[at - 4:], "longer than its uncompressed_size"),
+                  (f"torn_{compression}.mcap", data[:first] + bytes(1000) + data[first + 1000:], "byte ")]
+    for name, data, words in cases:
+        with open(f"{folder}/{name}", "wb") as file:
+            file.write(data)
+        choose(page, f"{folder}/{name}")
+        refused(page, words)
+        refused(page, f"trim3r view {name}")
+    with open(f"{folder}/huge.mcap", "wb") as file:
+        file.truncate((1 << 30) + 1)
+    choose(page, f"{folder}/huge.mcap")
+    refused(page, "more than a page reads")
+    os.remove(f"{folder}/huge.mcap")
+    choose(page, f"{folder}/bent.mcap")
+    refused(page, "its frames have no depth")
+    with open(f"{folder}/jpeg.mcap", "wb") as file:
+        file.write(bag_of_jpeg())
+    choose(page, f"{folder}/jpeg.mcap")
+    refused(page, "trim3r import jpeg.mcap")
+    with open(f"{folder}/cut.mcap", "wb") as file:
+        file.write(whole[:len(whole) * 3 // 4])
+    choose(page, f"{folder}/cut.mcap")
+    page.wait(f"document.title.startsWith('cut') && isStill() && {STATUS}.includes('dB')")
+    check("cut off" in page.value(REMARK), f"a cut: {page.value(REMARK)}")
+
+
+def bag_of_jpeg():
+    """Returns a bag whose colour is in JPEG, which import decodes."""
+    names = ("image/compressed", "depth", "camera_info", "pose")
+    kinds = ("sensor_msgs/msg/CompressedImage", *(formats.TYPES[name] for name in names[1:]))
+    records = [formats.channel(i + 1, f"/camera/{name}", kind) for i, (name, kind) in enumerate(zip(names, kinds))]
+    for i in range(3):
+        stamp = i * 33 * 10**6 + 10**9
+        messages = (formats.compressed(stamp, "jpeg", formats.jpeg(16)), formats.image(stamp, encoding="16UC1", data=struct.pack("<H", 1500) * 256),
+                    formats.camera_info(stamp), formats.pose(stamp, (0.01 * i, 0, 0)))
+        records += [formats.message(channel + 1, stamp, data) for channel, data in enumerate(messages)]
+    return formats.mcap(*records)
 
 
 def bad_archives(path, folder):
@@ -563,6 +691,7 @@ with tempfile.TemporaryDirectory() as scratch:
         beyond_the_lens(page, scratch)
         narrower_than_the_recording(page, scratch)
         opens(page, scene, scratch)
+        opens_recordings(page, scratch)
         check(all(url.startswith(("file:", "blob:", "data:")) for url in page.requested), f"requests: {page.requested}")
         in_threads(page, recording)
         check(page.logged == [], f"nothing on the console: {page.logged}")

@@ -60,13 +60,23 @@ if(wasm_found)
   foreach(name viewer/bundle viewer/start_view scene/summary/scene_box scene/formats/splat scene/formats/spz/spz_read
                scene/formats/sog/sog_read scene/formats/glb/glb_read scene/formats/glb/glb_nodes
                scene/formats/glb/glb_attributes cli/tables/json_array scene/store/scene_formats scene/store/scene_read
-               scene/store/scene_remark scene/store/scene_write import/viewpoint_angle geometry/quaternion)
+               scene/store/scene_remark scene/store/scene_write import/viewpoint_angle geometry/quaternion
+               viewer/viewpoints viewer/camera_path cli/files/recorded_frame reconstruction/developed_frame
+               reconstruction/reconstruction_error reconstruction/context/context_choice
+               reconstruction/context/view_surface reconstruction/context/pinhole)
     list(APPEND file_sources ${CMAKE_CURRENT_SOURCE_DIR}/${name}.c)
   endforeach()
-  foreach(name reason text)
-    list(APPEND file_sources ${PROJECT_SOURCE_DIR}/platform/host/${name}.c)
+  # The reader of recordings, and the head that builds from them.
+  foreach(name host/reason host/text host/cpu host/fixed_text mcap/crc32 mcap/mcap_reader mcap/mcap_records messages/cdr
+               messages/fixed_camera messages/fixed_double messages/message_frame messages/pixel_layout
+               messages/ros_messages messages/ros_schemas recording/recording_choice recording/recording_frame recording/recording_info
+               recording/recording_inspect recording/recording_names recording/recording_note recording/recording_pairing
+               recording/recording_reader)
+    list(APPEND file_sources ${PROJECT_SOURCE_DIR}/platform/${name}.c)
   endforeach()
-  t3r_wasm_objects(file_objects BY ${wasi} -std=gnu11 -O2 -mbulk-memory -DT3R_BARE_FORMATS -I${viewer}/module/files
+  list(APPEND file_sources ${PROJECT_SOURCE_DIR}/quant/heads/small.c)
+  t3r_wasm_objects(file_objects BY ${wasi} -std=gnu11 -O2 -mbulk-memory -DT3R_BARE_FORMATS -ftls-model=local-exec
+                  -I${viewer}/module/files -I${PROJECT_SOURCE_DIR}/quant/heads
                   SOURCES ${file_sources})
   add_custom_command(
     OUTPUT viewer_files.wasm
@@ -83,13 +93,13 @@ else()
   endforeach()
 endif()
 
-set(scripts vectors camera runtime picture scene controls crop path files input start)
+set(scripts vectors camera runtime picture scene controls crop path files recording input start)
 list(TRANSFORM scripts REPLACE "(.+)" "${viewer}/page/view/\\1.js")
 string(REPLACE ";" "|" script "${scripts}")
 set(names viewer_html viewer_css viewer_js viewer_follow_js viewer_worker_js viewer_files_js viewer_wasm
           viewer_threads_wasm viewer_files_wasm)
 set(files ${viewer}/page/view.html ${viewer}/page/view.css ${script} ${viewer}/page/follow.js ${viewer}/page/worker.js
-          "${viewer}/page/fzstd/fzstd.js|${viewer}/page/files_json.js|${viewer}/page/files_archive.js|${viewer}/page/files_worker.js")
+          "${viewer}/page/fzstd/fzstd.js|${viewer}/page/files_json.js|${viewer}/page/files_archive.js|${viewer}/page/files_chunks.js|${viewer}/page/files_worker.js")
 foreach(name viewer viewer_threads viewer_files)
   list(APPEND files ${CMAKE_CURRENT_BINARY_DIR}/${name}.wasm)
 endforeach()

@@ -41,6 +41,12 @@ int viewpoints_add(viewpoints *v, const t3r_recording *recording, const char *pa
                                 : cli_error(CLI_BAD_INPUT, "out of memory");
 }
 
+bool viewpoints_middle(const uint32_t *context, uint32_t count, uint32_t *middle)
+{
+    *middle = count > 1 ? (context[0] + context[1]) / 2 : 0;
+    return count > 1 && *middle != context[0] && *middle != context[1];
+}
+
 int viewpoints_add_before(viewpoints *v, const scene_file *scene, uint32_t width, uint32_t height)
 {
     t3r_camera start;

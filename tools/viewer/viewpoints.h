@@ -5,6 +5,9 @@
 
 #include <stdint.h>
 
+#include <stdbool.h>
+#include <stdint.h>
+
 #include "recording/recording.h"
 #include "viewer/bundle.h"
 #include "viewer/bundle_layout.h"
@@ -20,6 +23,9 @@ typedef struct viewpoints {
  * a message; viewpoints_free() is due either way. */
 int viewpoints_add(viewpoints *v, const t3r_recording *recording, const char *path, uint32_t index, uint32_t width,
                    uint32_t height, bool with_depth);
+
+/* Finds the frame in the middle of the first two context frames. Returns false if there is none between them. */
+bool viewpoints_middle(const uint32_t *context, uint32_t count, uint32_t *middle);
 
 /* Adds a viewpoint in front of the scene that frames it, with up as the file names it, else -y. Returns an exit status
  * of cli.h after a message. */

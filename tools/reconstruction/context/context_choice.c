@@ -7,8 +7,8 @@
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
+#include "reconstruction/context/context_depth.h"
 #include "reconstruction/context/view_surface.h"
-#include "reconstruction/reconstruction.h"
 
 #define POINTS_OF_FRAME (SURFACE_CELLS / 4) /* every second cell of every second row */
 #define GAIN_LEAST 0.01                     /* of what all points could gain, for one more frame */
@@ -86,62 +86,6 @@ static int look(candidates *c, const t3r_recording *recording, const char *path,
                            c->count, least, why);
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
-}
-
-/* Returns the median depth of a scene's Gaussians before a camera; 0 if none is before it. */
-static double median_depth(const t3r_scene *scene, const pinhole *camera)
-{
-    double *depths = malloc((scene->count + 1) * sizeof *depths), median = 0;
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < scene->count && depths != NULL; i++) {
-        double place[3], pixel[2];
-        for (int k = 0; k < 3; k++) {
-            place[k] = ldexp((double)scene->frame.origin_q32[k], -32) +
-                       ldexp(scene->gaussians[i].position_q20[k], scene->frame.exponent - 20);
-        }
-        count += pinhole_project(camera, place, pixel, &depths[count]);
-    }
-    if (count > 0) {
-        qsort(depths, count, sizeof *depths, ascending);
-        median = depths[count / 2];
-    }
-    free(depths);
-    return median;
-}
-
-/* Measures the scene's depth by stereo of two candidates, in a small and coarse scene; 0 if they give none. */
-static double depth_of_pair(const candidates *c, uint32_t a, uint32_t b, const t3r_recording *recording,
-                            const char *path)
-{
-    enum { LONGEST = 192, GAUSSIANS = 500 };
-    reconstruction_options options;
-    reconstruction r;
-    const view_surface *s = &c->surfaces[a];
-    const uint32_t longest = s->width > s->height ? s->width : s->height;
-    reconstruction_defaults(&options);
-    options.config.depth = T3R_DEPTH_STEREO;
-    options.config.width = longest > LONGEST ? s->width * LONGEST / longest : s->width;
-    options.config.height = longest > LONGEST ? s->height * LONGEST / longest : s->height;
-    options.config.allocate = T3R_ALLOCATE_UNIFORM;
-    options.config.refine = 0;
-    options.head = "analytic";
-    options.hash = false;
-    options.gaussians = GAUSSIANS;
-    options.context_count = 2;
-    options.context[0] = c->frames[a];
-    options.context[1] = c->frames[b];
-    if (reconstruction_build(&r, recording, path, &options) != CLI_OK) {
-        return 0;
-    }
-    const double depth = median_depth(&r.scene, &s->camera);
-    reconstruction_close(&r);
-    return depth;
-}
-
 /* Assumes for all frames the depth that the first two neighbours that can be matched have. */
 static int assume_depth(candidates *c, const t3r_recording *recording, const char *path)
 {
@@ -150,7 +94,7 @@ static int assume_depth(candidates *c, const t3r_recording *recording, const cha
     cli_keep_errors(why, sizeof why);
     for (uint32_t apart = 1; apart < c->count && apart <= 8 && depth <= 0; apart *= 2) {
         for (uint32_t a = 0; a + apart < c->count && depth <= 0; a += apart) {
-            depth = depth_of_pair(c, a, a + apart, recording, path);
+            depth = context_depth_of_pair(recording, path, &c->surfaces[a], c->frames[a], c->frames[a + apart]);
         }
     }
     cli_keep_errors(NULL, 0);

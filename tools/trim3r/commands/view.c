@@ -136,9 +136,8 @@ static int add_frames(viewpoints *v, const view_options *o, const t3r_recording 
     for (uint32_t i = 0; i < o->compare_count && code == CLI_OK; i++) {
         code = viewpoints_add(v, recording, o->recording, o->compare[i], width, height, false);
     }
-    const uint32_t middle = r->context_count > 1 ? (r->context[0] + r->context[1]) / 2 : r->context[0];
-    const bool apart = r->context_count > 1 && middle != r->context[0] && middle != r->context[1];
-    if (code == CLI_OK && o->compare_count == 0 && apart) {
+    uint32_t middle;
+    if (code == CLI_OK && o->compare_count == 0 && viewpoints_middle(r->context, r->context_count, &middle)) {
         code = viewpoints_add(v, recording, o->recording, middle, width, height, false);
     }
     return code;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 "use strict";
-/* Reads or writes one scene file by the program's own C code. */
+/* Reads or writes one scene file, or reads a recording, by the program's own C code. */
 const ENOSYS = 52;
 /* The C library asks for files that do not exist here: all that is read or written is in memory. */
 const system = new Proxy({}, { get: () => () => ENOSYS, has: () => true });
@@ -9,7 +9,7 @@ let files;
 const bytesAt = (at, count) => new Uint8Array(files.memory.buffer, at, count);
 
 function place(bytes) {
-  const at = files.room(bytes.length) >>> 0;
+  const at = files.room(Math.max(1, bytes.length)) >>> 0;
   if (at === 0) throw new Error("out of memory");
   bytesAt(at, bytes.length).set(bytes);
   return at;
@@ -76,10 +76,25 @@ async function read({ name, bytes: buffer }) {
   const bytes = isGzip(given) ? await unpacked(given, "gzip", most) : isSpz4(given) ? withoutZstandard(given) : given;
   if (isZip(given)) await openArchive(given);
   need(files.read(placeText(name), place(bytes), bytes.length));
-  const numbers = Array.from({ length: 13 }, (_, i) => files.start(i));
-  const start = { focal: numbers.slice(0, 2), centre: numbers.slice(2, 4), position: numbers.slice(4, 7), rotation: numbers.slice(7, 11),
-                  width: numbers[11], height: numbers[12] };
-  return { bundle: result().buffer, start, text: text(), gaussians: files.gaussians() };
+  return { bundle: result().buffer, start: cameraFrom(files.start), text: text(), gaussians: files.gaussians() };
+}
+
+/* Returns a camera whose numbers the module gives one by one. */
+function cameraFrom(number) {
+  const numbers = Array.from({ length: 13 }, (_, i) => number(i));
+  return { focal: numbers.slice(0, 2), centre: numbers.slice(2, 4), position: numbers.slice(4, 7), rotation: numbers.slice(7, 11),
+           width: numbers[11], height: numbers[12] };
+}
+
+/* Reads a recording, to build scenes from the frames of `context`, and to compare them with those of `compared`; of
+ * empty lists the module chooses the frames. */
+function record({ name, bytes, context, compared }) {
+  const list = (frames) => [place(new Uint8Array(Uint32Array.from(frames).buffer)), frames.length];
+  need(files.record(placeText(name), place(new Uint8Array(bytes)), bytes.byteLength, ...list(context), ...list(compared)));
+  const frames = Array.from({ length: files.viewpoints() }, (_, i) => ({ name: textAt(files.viewpoint_name(i)), recorded: true,
+                                                                         ...cameraFrom((number) => files.viewpoint(i, number)) }));
+  const path = Array.from({ length: files.places() }, (_, i) => Array.from({ length: 7 }, (__, number) => files.place(i, number + 4)));
+  return { bundle: result().buffer, frames, path, views: files.views(), valid: files.valid(), gaussians: files.gaussians(), text: text() };
 }
 
 function write({ name, scene }) {
@@ -87,10 +102,10 @@ function write({ name, scene }) {
   return { bytes: result(), text: text() };
 }
 
-const answers = { read, write };
+const answers = { read, record, write };
 onmessage = async ({ data }) => {
   try {
-    files = (await WebAssembly.instantiate(data.wasm, { wasi_snapshot_preview1: system, page: { json: placeJson, member: placeMember } })).instance.exports;
+    files = (await WebAssembly.instantiate(data.wasm, { wasi_snapshot_preview1: system, page: { json: placeJson, member: placeMember, unpack: unpackChunk } })).instance.exports;
     files._initialize();
     postMessage(await answers[data.kind](data));
   } catch (error) {

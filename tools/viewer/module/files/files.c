@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "answer.h"
 #include "bundle.h"
 #include "host/reason.h"
 #include "host/whole_file.h"
@@ -13,16 +14,8 @@
 #include "scene/store/scene_store.h"
 #include "start_view.h"
 
-#define EXPORT(name) __attribute__((export_name(#name)))
-
-static struct {
-    char text[1024]; /* remarks, or the reason of a failure */
-    size_t length;
-    char *bytes; /* the bundle of a file that was read, or the file that was written */
-    size_t count;
-    t3r_camera start;
-    uint32_t gaussians;
-} answer;
+page_answer answer;
+static t3r_camera start;
 
 /* Returns memory for bytes that the page passes in; 0: there is none. */
 EXPORT(room) void *files_room(uint32_t bytes)
@@ -53,12 +46,17 @@ EXPORT(unpacked_most) double files_unpacked_most(double packed)
 
 /* ---- files in memory --------------------------------------------------------------------------------------------- */
 
-static void add_remark(void *user, const char *text)
+void answer_remark(const char *text)
 {
-    (void)user;
     const int length = snprintf(answer.text + answer.length, sizeof answer.text - answer.length, "%s%s",
                                 answer.length > 0 ? "; " : "", text);
     answer.length += length > 0 && (size_t)length < sizeof answer.text - answer.length ? (size_t)length : 0;
+}
+
+static void add_remark(void *user, const char *text)
+{
+    (void)user;
+    answer_remark(text);
 }
 
 static int begin(t3r_whole_file *file, const char *path, char *error, size_t error_bytes)
@@ -96,7 +94,7 @@ EXPORT(read) int32_t files_read(const char *name, const uint8_t *bytes, uint32_t
     const bundle data = {.config = t3r_default_config(START_VIEW_WIDTH, START_VIEW_HEIGHT, 0, scene.count),
                          .scene = &scene};
     answer.bytes = (char *)bundle_bytes(&data, &answer.count);
-    return answer.bytes != NULL && start_view(&scene, START_VIEW_WIDTH, START_VIEW_HEIGHT, &answer.start) == 0
+    return answer.bytes != NULL && start_view(&scene, START_VIEW_WIDTH, START_VIEW_HEIGHT, &start) == 0
                ? 0
                : t3r_reason(answer.text, sizeof answer.text, "out of memory for %u Gaussians", (unsigned)scene.count);
 }
@@ -106,17 +104,20 @@ EXPORT(gaussians) uint32_t files_gaussians(void)
     return answer.gaussians;
 }
 
-/* Returns a number of the camera from which a file that was read is first seen: focal lengths and centre in pixels,
- * position, rotation w x y z, width and height in pixels. */
-EXPORT(start) double files_start(uint32_t index)
+double answer_camera(const t3r_camera *c, uint32_t index)
 {
-    const t3r_camera *c = &answer.start;
     const int32_t pixels[] = {c->fx_q16, c->fy_q16, c->cx_q16, c->cy_q16};
     return index < 4     ? pixels[index] / 65536.0
            : index < 7   ? (double)c->position_q32[index - 4] / 4294967296.0
            : index < 11  ? c->rotation_q30[index - 7] / 1073741824.0
            : index == 11 ? c->width
                          : c->height;
+}
+
+/* Returns a number of the camera from which a scene that was read is first seen: answer_camera(). */
+EXPORT(start) double files_start(uint32_t index)
+{
+    return answer_camera(&start, index);
 }
 
 /* Writes a carried scene as a file in the format of the name's suffix. Returns 0, or -1 with the reason as text. */

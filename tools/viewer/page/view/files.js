@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Scene files that are opened in the page, and those that it saves. The program's own readers and writers do it, in a
+/* Files that are opened in the page, and scenes that it saves. The program's own readers and writers do it, in a
  * worker of its own for each file. */
 const filesSource = sourceOf("files");
 
@@ -14,38 +14,50 @@ function withFile(request) {
   });
 }
 
+const isRecording = (name) => /\.mcap$/i.test(name);
+
 /* Returns the command that does what the page did not; "" where there is none. */
 function remedyFor(name, reason) {
-  if (/\.mcap$/i.test(name)) return ` A recording is shown by: trim3r view ${quoted(name)}`;
+  if (/trim3r import/.test(reason)) return ""; /* it names the remedy itself */
+  if (isRecording(name)) return ` The program shows what the page does not: trim3r view ${quoted(name)}`;
   return /ImageDecoder/.test(reason) ? ` Convert it: trim3r convert ${quoted(name)} -o ${quoted(name.replace(/\.[^.]*$/, ".ply"))}` : "";
 }
 
-async function openFile(file) {
+/* Reads a file; says what is wrong with it, and the remedy. */
+async function reading(file, read, remedy = (reason) => remedyFor(file.name, reason)) {
   say(`Reading ${file.name}`);
   try {
-    if (/\.mcap$/i.test(file.name)) throw new Error("the page does not read such files");
-    const { bundle, start, gaussians, text } = await withFile({ kind: "read", name: file.name, bytes: await file.arrayBuffer() });
-    showScene({ title: file.name, gaussians, start }, bundle);
-    $("remark").textContent = text;
-  } catch (error) {
-    say(`${file.name}: ${error.message}.${remedyFor(file.name, error.message)}`, true);
+    await read();
+  } catch ({ message }) {
+    const of = `${file.name}: `;
+    say(`${message.startsWith(of) ? "" : of}${message}.${remedy(message)}`, true);
   }
 }
 
-/* Shows a scene in place of what the page showed before. */
-function showScene({ title, gaussians, start }, bundle) {
+const openFile = (file) => reading(file, () => (isRecording(file.name) ? openRecording(file, [], []) : openScene(file)));
+
+async function openScene(file) {
+  const { bundle, start, gaussians, text } = await withFile({ kind: "read", name: file.name, bytes: await file.arrayBuffer() });
   const { focal, centre, position, rotation, width, height } = start;
-  data = { title, width, height, views: 0, valid: 0, gaussians, file: true, served: data.served, hash: null, stages: data.stages,
-           frames: [{ name: "the start", recorded: false, focal, centre, position, rotation }], path: [] };
+  recording = null;
+  show({ title: file.name, width, height, views: 0, valid: 0, gaussians, file: true, path: [],
+         frames: [{ name: "the start", recorded: false, focal, centre, position, rotation }] }, bundle);
+  $("remark").textContent = text;
+  document.querySelector("input[name=source][value=file]").checked = true;
+  load();
+}
+
+/* Shows another scene, or builds from other frames, in place of what the page showed before. */
+function show(shown, bundle) {
+  data = { ...shown, served: data.served, hash: null, stages: data.stages };
+  firstBundle = bundle;
   builder?.end();
   builder = built = null;
   settled = false;
-  document.querySelector("input[name=source][value=file]").checked = true;
   uncrop();
   canvas.style.backgroundImage = "none"; /* the first picture was of another scene */
   present();
   drawer.open(bundle);
-  load();
 }
 
 $("choose").onclick = () => $("open").click();

@@ -51,6 +51,7 @@ function drawing({ coarse }) {
 }
 
 function draw(coarse = false) {
+  if (!settled) return; /* there is no scene yet */
   (OF_VIEW.includes(chosen("show")) ? builder : drawer).ask("draw", { coarse });
 }
 

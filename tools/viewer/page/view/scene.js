@@ -89,7 +89,7 @@ slider.oninput = () => {
 /* ---- loading and building ------------------------------------------------------------------------------------------ */
 
 let drawer = null, builder = null, built = null, settled = false;
-const firstBundle = bytesOf("bundle");
+let firstBundle = bytesOf("bundle"); /* of what is shown; builds start from it */
 
 const load = () => drawer.ask("load");
 
@@ -116,13 +116,14 @@ done.take = ({ origin }) => settle({ ...built, origin });
 done.load = (answer) => settle({ ...answer, valid: data.file ? 0 : data.valid, stages: [], hash: null });
 
 function settle(answer) {
+  const isFirst = !settled;
+  settled = true;
   sceneUnit = 2 ** answer.exponent;
-  if (!settled && camera.frame !== null) lookFrom(camera.frame);
+  if (isFirst && camera.frame !== null) lookFrom(camera.frame);
   showResult(answer);
   showOverlays();
   measureCrop(answer);
   draw();
   if (scored().length > 0) drawer.ask("score", { frames: scored() });
-  if (!settled && data.hash !== null) build(); /* to compare its bits with the native program's */
-  settled = true;
+  if (isFirst && data.hash !== null) build(); /* to compare its bits with the native program's */
 }

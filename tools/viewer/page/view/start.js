@@ -5,6 +5,7 @@ function present() {
   $("title").textContent = data.title;
   $("remark").textContent = "";
   $("bits").hidden = true;
+  $("recording").hidden = recording === null;
   $("budget").hidden = data.valid === 0;
   $("source").hidden = !(data.file && data.valid > 0);
   if (data.valid > 0) {
