@@ -86,6 +86,7 @@ def budget(page, room):
     shown = float(re.search(r"frame\s1\s([0-9.]+)\sdB", page.value(STATUS))[1])
     row = json.loads(run(TRIM3R, "eval", room, "--context", "0,2", "--target", "1", "--gaussians", count, "--json").stdout)["rows"][0]
     check(abs(shown - row["psnr_all"]) <= 0.005, f"built here: {shown} dB in the page, {row['psnr_all']} dB by eval")
+    check("; new views: frame" in page.value(STATUS), f"the frame between the context frames is a new view: {page.value(STATUS)}")
 
 
 def shows(page):
@@ -588,8 +589,7 @@ def old_spz(count):
 
 
 def on_a_phone(page):
-    page.size(390, 844, True)
-    check(page.value("document.documentElement.scrollWidth") <= 390, "nothing is wider than a phone")
+    check(browser.on_a_phone(page) == [], f"on a phone: {browser.on_a_phone(page)}")
     check(page.value("document.getElementById('picture').clientWidth") > 300, "the picture is as wide")
     browser.look(page, looks, "view-phone")
     page.size(1200, 1000)

@@ -60,9 +60,11 @@ function showResult({ gaussians, valid, stages, hash }) {
 const scored = () => data.frames.filter((f) => f.recorded).map((f) => cameraOf(f, data.width));
 
 done.score = ({ psnr }) => {
-  const scores = psnr.map((dB, i) => unbroken(`${data.frames[i].name} ${dB.toFixed(2)} dB`)).join(", ");
   if (builder?.busy) return; /* its progress is shown */
-  say(`${$("status").textContent} PSNR: ${scores}.`);
+  const scores = psnr.map((dB, i) => unbroken(`${data.frames[i].name} ${dB.toFixed(2)} dB`));
+  const parted = data.file && chosen("source") === "file" ? scores.length : data.views; /* what a file was built from is not known */
+  const known = scores.slice(0, parted).join(", "), fresh = scores.slice(parted).join(", ");
+  say(`${$("status").textContent} PSNR: ${known}${fresh ? `; new views: ${fresh}` : ""}.`);
 };
 
 /* ---- the budget ---------------------------------------------------------------------------------------------------- */
