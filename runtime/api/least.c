@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Builds as few Gaussians as draw the context views well enough: tries numbers of them, and measures each. */
+#include "api/least.h"
+
 #include "api/build_checks.h"
 #include "core/fixed.h"
 #include "state/state.h"
@@ -10,28 +12,38 @@
 /* 10 log10(2), in 1/256 dB an octave, over 2^6: octaves are Q16, below 2^22 */
 #define DECIBEL_Q6 49321
 
-static uint64_t squared_error(const t3r_view *view, const t3r_target *picture)
+typedef struct difference {
+    uint64_t error;  /* squared: below 3 x 2^24 x 2^16 */
+    uint64_t values; /* that were compared */
+} difference;
+
+/* Compares a view with a picture where counted is not 0; NULL: everywhere. */
+static difference compare(const t3r_view *view, const t3r_target *picture, const uint8_t *counted)
 {
-    uint64_t sum = 0; /* below 3 x 2^24 x 2^16 */
+    difference d = {0};
     for (uint32_t y = 0; y < view->height; y++) {
         const uint8_t *row = picture->rgb + (size_t)y * picture->rgb_stride_bytes;
         for (uint32_t x = 0; x < view->width; x++) {
             const size_t pixel = (size_t)y * view->width + x;
+            if (counted != NULL && counted[pixel] == 0) {
+                continue;
+            }
             for (int c = 0; c < 3; c++) {
                 const int32_t off = row[3 * x + (uint32_t)c] - view->colour[c][pixel];
-                sum += (uint32_t)(off * off);
+                d.error += (uint32_t)(off * off);
             }
+            d.values += 3;
         }
     }
-    return sum;
+    return d;
 }
 
-static uint32_t psnr_q8(uint64_t error, uint64_t values)
+static uint32_t psnr_q8(difference d)
 {
-    if (error == 0) {
+    if (d.error == 0) {
         return T3R_MAX_PSNR_Q8;
     }
-    const int64_t octaves_q16 = t3r_log2_wide_q16(values * (255 * 255)) - t3r_log2_wide_q16(error);
+    const int64_t octaves_q16 = t3r_log2_wide_q16(d.values * (255 * 255)) - t3r_log2_wide_q16(d.error);
     return (uint32_t)t3r_clamp64(octaves_q16 * DECIBEL_Q6 >> 22, 0, T3R_MAX_PSNR_Q8);
 }
 
@@ -40,6 +52,7 @@ typedef struct search {
     t3r_request request;
     uint32_t psnr_q8; /* wanted */
     const t3r_target *picture;
+    const uint8_t *const *counted;
     t3r_scene *scene;
     t3r_least *found;
     uint32_t best, best_psnr_q8; /* the number that drew them best, the smallest of several */
@@ -56,7 +69,7 @@ static t3r_status try_number(search *s, uint32_t gaussians)
         const t3r_view view = t3r_view_of(s->rt, v);
         status = t3r_render(s->rt, &s->rt->camera[v], s->picture);
         if (status == T3R_OK) {
-            const uint32_t drawn = psnr_q8(squared_error(&view, s->picture), 3 * T3R_PIXELS_(view.width, view.height));
+            const uint32_t drawn = psnr_q8(compare(&view, s->picture, s->counted != NULL ? s->counted[v] : NULL));
             s->found->psnr_q8 = T3R_MIN(s->found->psnr_q8, drawn);
         }
     }
@@ -93,13 +106,21 @@ static t3r_status find_least(search *s, uint32_t most)
     return status == T3R_OK && tried != taken ? try_number(s, taken) : status;
 }
 
-t3r_status t3r_rebuild_least(t3r_runtime *rt, const t3r_request *request, uint32_t least_psnr_q8,
-                             const t3r_target *picture, t3r_scene *scene, t3r_least *found)
+t3r_status t3r_rebuild_least_counted(t3r_runtime *rt, const t3r_request *request, uint32_t least_psnr_q8,
+                                     const t3r_target *picture, const uint8_t *const *counted, t3r_scene *scene,
+                                     t3r_least *found)
 {
     T3R_PASS(t3r_least_checks(rt, request, least_psnr_q8, picture, scene, found, NULL));
     *found = (t3r_least){0};
-    search s = {.rt = rt, .psnr_q8 = least_psnr_q8, .picture = picture, .scene = scene, .found = found};
+    search s = {
+        .rt = rt, .psnr_q8 = least_psnr_q8, .picture = picture, .counted = counted, .scene = scene, .found = found};
     s.request = request != NULL ? *request : (t3r_request){0};
     const uint32_t budget = s.request.gaussians != 0 ? s.request.gaussians : rt->config.gaussians;
     return find_least(&s, T3R_MIN(budget, T3R_MAX(rt->valid_points, 1u)));
+}
+
+t3r_status t3r_rebuild_least(t3r_runtime *rt, const t3r_request *request, uint32_t least_psnr_q8,
+                             const t3r_target *picture, t3r_scene *scene, t3r_least *found)
+{
+    return t3r_rebuild_least_counted(rt, request, least_psnr_q8, picture, NULL, scene, found);
 }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "api/least.h"
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
 #include "core/camera.h"
@@ -192,6 +193,9 @@ void reconstruction_close(reconstruction *r)
 {
     cli_progress_end();
     t3r_threads_stop(r->threads);
+    for (uint32_t v = 0; v < T3R_MAX_VIEWS; v++) {
+        free(r->shown[v]);
+    }
     free(r->arena);
     chosen_head_close(&r->head);
     scene_file_free(&r->loaded);
@@ -406,7 +410,8 @@ static t3r_status make_least(reconstruction *r, const reconstruction_options *op
     }
     if (status == T3R_OK) {
         const uint32_t psnr_q8 = (uint32_t)(options->min_psnr * 256 + 0.5);
-        status = t3r_rebuild_least(r->runtime, &request, psnr_q8, &picture, &r->scene, &r->least);
+        status = t3r_rebuild_least_counted(r->runtime, &request, psnr_q8, &picture, (const uint8_t *const *)r->shown,
+                                           &r->scene, &r->least);
         (void)t3r_rebuild_least_error(status, r->runtime, &request, psnr_q8, &picture, &r->scene, &r->least, r->reason,
                                       sizeof r->reason);
     }
@@ -496,11 +501,27 @@ static int prepare(reconstruction *r, const char *path, const reconstruction_opt
     return code == CLI_OK ? bind_head(r, options) : code;
 }
 
+/* Marks the pixels beyond the lenses of the context views, which no score counts. */
+static int find_shown(reconstruction *r, const char *path, const t3r_capture_frame *frames)
+{
+    const uint32_t width = r->config.width, height = r->config.height;
+    int code = CLI_OK;
+    for (uint32_t v = 0; v < r->context_count && code == CLI_OK; v++) {
+        if (frames[v].camera.distortion != T3R_DISTORTION_NONE) {
+            r->shown[v] = malloc((size_t)width * height);
+            code = r->shown[v] != NULL ? developed_shown(&frames[v], path, r->context[v], width, height, r->shown[v])
+                                       : cli_error(CLI_BAD_INPUT, "out of memory");
+        }
+    }
+    return code;
+}
+
 /* Builds from the chosen frames; `planes` are the importance for the allocation `given`, else NULL. */
 static int build_from(reconstruction *r, const char *path, const reconstruction_options *options,
                       const t3r_capture_frame *frames, const uint16_t *const *planes, reconstruction *counted)
 {
     int code = prepare(r, path, options, frames, 0, counted);
+    code = code == CLI_OK && options->min_psnr > 0 ? find_shown(r, path, frames) : code;
     if (code != CLI_OK) {
         return code;
     }

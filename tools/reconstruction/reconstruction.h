@@ -107,9 +107,10 @@ typedef struct reconstruction {
     double add_views_seconds; /* time of the image stage */
     double build_seconds;     /* time of t3r_reconstruct() */
     t3r_least least;          /* for min_psnr; else all zero */
-    measured_loss loss;       /* for max_loss; else all zero */
-    stage_times stages;       /* of both, if hashes are collected */
-    double give_up_at;        /* cli_now() at which the run is cancelled; 0 = never */
+    uint8_t *shown[T3R_MAX_VIEWS]; /* for min_psnr: developed_shown() of the context views; NULL = all pixels count */
+    measured_loss loss;            /* for max_loss; else all zero */
+    stage_times stages;            /* of both, if hashes are collected */
+    double give_up_at;             /* cli_now() at which the run is cancelled; 0 = never */
     uint64_t stage_hash[T3R_STAGE_COUNT]; /* the reports of a stage that reports several times are chained */
     bool stage_hashed[T3R_STAGE_COUNT];
     bool uncounted;               /* hashes reported now are left out */

@@ -25,8 +25,9 @@ static const struct argp_option settings[] = {
     {"max-loss", KEY_MAX_LOSS, "DB", 0,
      "decibels that --auto may lose on new views, against a scene of all valid points; 0.01..10 (0.5)", 0},
     {"min-psnr", KEY_MIN_PSNR, "DB", 0,
-     "take the fewest Gaussians that draw each context view at so many decibels, measured over the whole picture, and "
-     "at most the budget (all valid points); 0.01..100",
+     "take the fewest Gaussians that draw each context view at so many decibels, measured over all pixels that its "
+     "lens "
+     "shows, and at most the budget (all valid points); 0.01..100",
      0},
     {"importance", OPTION_TO(reconstruction_options, importance), "PNG,PNG,...",
      OPTION_READS | OPTION_LIST | OPTION_FOLDER,
