@@ -86,7 +86,7 @@ def budget(page, room):
     shown = float(re.search(r"frame\s1\s([0-9.]+)\sdB", page.value(STATUS))[1])
     row = json.loads(run(TRIM3R, "eval", room, "--context", "0,2", "--target", "1", "--gaussians", count, "--json").stdout)["rows"][0]
     check(abs(shown - row["psnr_all"]) <= 0.005, f"built here: {shown} dB in the page, {row['psnr_all']} dB by eval")
-    check("; new views: frame" in page.value(STATUS), f"the frame between the context frames is a new view: {page.value(STATUS)}")
+    check("PSNR of new views: frame\u00a01" in page.value(STATUS), f"the frame between the context frames is a new view: {page.value(STATUS)}")
 
 
 def shows(page):
@@ -453,6 +453,7 @@ def opens_recordings(page, folder):
                 for show in ("frame", "error", "mask", "clusters", "texture", "picture")}
     check(len(pictures) == 6, f"{len(pictures)} pictures of a frame")
     browser.look(page, looks, "view-recording")
+    on_a_phone(page)
     for compression in ("zstd", "lz4"):
         packed = f"{folder}/{compression}.mcap"
         run(TRIM3R, "room", "--size", "64x48", "--compression", compression, "-o", packed)

@@ -64,7 +64,7 @@ done.score = ({ psnr }) => {
   const scores = psnr.map((dB, i) => unbroken(`${data.frames[i].name} ${dB.toFixed(2)} dB`));
   const parted = data.file && chosen("source") === "file" ? scores.length : data.views; /* what a file was built from is not known */
   const known = scores.slice(0, parted).join(", "), fresh = scores.slice(parted).join(", ");
-  say(`${$("status").textContent} PSNR: ${known}${fresh ? `; new views: ${fresh}` : ""}.`);
+  say(`${$("status").textContent} PSNR${fresh ? ` of new views: ${fresh}; of those that it is built from` : ""}: ${known}.`);
 };
 
 /* ---- the budget ---------------------------------------------------------------------------------------------------- */
