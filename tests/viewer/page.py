@@ -415,15 +415,15 @@ def type_frames(page, context, compared):
     page.click("#rebuild")
 
 
-def as_natively(page, path, context, target):
+def as_natively(page, path, context, target, *settings):
     """Checks that the page built what the program does, from these frames, and scores it likewise."""
     page.wait(f"document.title.startsWith({json.dumps(os.path.basename(path))}) && document.body.dataset.hash && isStill() && {STATUS}.includes('dB')")
     gaussians = page.value("document.body.dataset.gaussians")
-    native = json.loads(run(TRIM3R, "replay", path, "--context", context, "--gaussians", gaussians, "--json").stdout)["stages"]
+    native = json.loads(run(TRIM3R, "replay", path, "--context", context, "--gaussians", gaussians, *settings, "--json").stdout)["stages"]
     stages = page.value(STAGES)
     check(len(stages) > 2 and all(native[stage] == digits for stage, digits in stages.items()), f"{path}, {context}: {stages}, natively {native}")
     shown = float(re.search(rf"frame\s{target}\s([0-9.]+)\sdB", page.value(STATUS))[1])
-    row = json.loads(run(TRIM3R, "eval", path, "--context", context, "--target", target, "--gaussians", gaussians, "--json").stdout)["rows"][0]
+    row = json.loads(run(TRIM3R, "eval", path, "--context", context, "--target", target, "--gaussians", gaussians, *settings, "--json").stdout)["rows"][0]
     check(abs(shown - row["psnr_all"]) <= 0.005, f"{path}: {shown} dB in the page, {row['psnr_all']} dB by eval")
     return page.value(PICTURE)
 
@@ -464,6 +464,13 @@ def opens_recordings(page, folder):
                                      ("0", "1," * 31 + "1", "at most 32 frames")):
         type_frames(page, context, compared)
         refused(page, words)
+    large = f"{folder}/large.mcap"
+    run(TRIM3R, "room", "--size", "1500x1000", "--frames", "4", "-o", large, "--force")
+    choose(page, large)
+    page.wait(f"{REMARK}.includes('750x500')")
+    frames = page.value("data.frames.map((frame) => Number(frame.name.slice(6)))")
+    views = page.value("data.views")
+    as_natively(page, large, ",".join(map(str, frames[:views])), frames[views], "--working", "750x500")
     choose(page, f"{folder}/scene.ply")
     page.wait("document.title.startsWith('scene') && isStill()")
     check(page.value("document.getElementById('recording').hidden"), "a scene has no frames to choose")

@@ -69,9 +69,9 @@ if(wasm_found)
   # The reader of recordings, and the head that builds from them.
   foreach(name host/reason host/text host/cpu host/fixed_text mcap/crc32 mcap/mcap_reader mcap/mcap_records messages/cdr
                messages/fixed_camera messages/fixed_double messages/message_frame messages/pixel_layout
-               messages/ros_messages messages/ros_schemas recording/recording_choice recording/recording_frame recording/recording_info
-               recording/recording_inspect recording/recording_names recording/recording_note recording/recording_pairing
-               recording/recording_reader)
+               messages/ros_messages messages/ros_schemas recording/recording_choice recording/recording_frame
+               recording/recording_info recording/recording_inspect recording/recording_names recording/recording_note
+               recording/recording_pairing recording/recording_reader)
     list(APPEND file_sources ${PROJECT_SOURCE_DIR}/platform/${name}.c)
   endforeach()
   list(APPEND file_sources ${PROJECT_SOURCE_DIR}/quant/heads/small.c)
@@ -96,10 +96,13 @@ endif()
 set(scripts vectors camera runtime picture scene controls crop path files recording input start)
 list(TRANSFORM scripts REPLACE "(.+)" "${viewer}/page/view/\\1.js")
 string(REPLACE ";" "|" script "${scripts}")
+set(files_scripts fzstd/fzstd files_json files_archive files_chunks files_worker)
+list(TRANSFORM files_scripts REPLACE "(.+)" "${viewer}/page/\\1.js")
+string(REPLACE ";" "|" files_script "${files_scripts}")
 set(names viewer_html viewer_css viewer_js viewer_follow_js viewer_worker_js viewer_files_js viewer_wasm
           viewer_threads_wasm viewer_files_wasm)
 set(files ${viewer}/page/view.html ${viewer}/page/view.css ${script} ${viewer}/page/follow.js ${viewer}/page/worker.js
-          "${viewer}/page/fzstd/fzstd.js|${viewer}/page/files_json.js|${viewer}/page/files_archive.js|${viewer}/page/files_chunks.js|${viewer}/page/files_worker.js")
+          "${files_script}")
 foreach(name viewer viewer_threads viewer_files)
   list(APPEND files ${CMAKE_CURRENT_BINARY_DIR}/${name}.wasm)
 endforeach()

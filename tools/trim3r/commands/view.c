@@ -116,8 +116,7 @@ const struct argp view_argp = {
            "The page builds scenes of a recording itself: a slider changes the budget, and mask, SuperClusters, "
            "texture and error are drawn over the frames. The first scene is built here as well, and the page "
            "compares the hashes. A scene file is drawn as it is; with a recording as well, the page does both. Scene "
-           "files "
-           "can be dropped on the page, cropped, and saved as .ply.\n"
+           "files and recordings can be dropped on the page, and scenes cropped, and saved as .ply.\n"
            "\n"
            "With -o the page is one file that fetches nothing. Without, it is served on 127.0.0.1 until Ctrl-C.",
     .children = children,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 "use strict";
 /* The chunks of a recording, which the reader in C passes in. What they unpack to has the room that the reader allows. */
-const WINDOW_LOG_MOST = 26; /* 64 MiB, as in the program */
+const WINDOW_LOG_MOST = 26; /* 64 MiB, as in the program; checked of a chunk's first frame */
 const TOO_LONG = "its data are longer than its uncompressed_size", CUT_SHORT = "its compressed data are cut short";
 
 /* Unpacks Zstandard into `out`; returns how many bytes it filled. */
@@ -27,18 +27,18 @@ function unpackBlock(block, out, count) {
     for (let byte = 255; length >= 15 && byte === 255; length += byte) if ((byte = block[at++]) === undefined) throw new Error(CUT_SHORT);
     return length;
   };
-  const need = (length) => { if (length > out.length - count) throw new Error(TOO_LONG); };
+  const fit = (length) => { if (length > out.length - count) throw new Error(TOO_LONG); };
   while (at < block.length) {
     const token = block[at++], literals = more(token >> 4);
     if (literals > block.length - at) throw new Error(CUT_SHORT);
-    need(literals);
+    fit(literals);
     out.set(block.subarray(at, at + literals), count);
     at += literals;
     count += literals;
     if (at === block.length) break; /* the last sequence has no match */
     const back = block[at++] | block[at++] << 8, length = more(token & 15) + 4;
     if (back === 0 || back > count) throw new Error("a match lies before its data");
-    need(length);
+    fit(length);
     for (const end = count + length; count < end; count++) out[count] = out[count - back];
   }
   return count;

@@ -14,7 +14,8 @@
 #include "trim3r_heads.h"
 #include "viewpoints.h"
 
-#define FIRST_PART 10u /* of the valid points in the first scene: one in so many */
+#define FIRST_PART 10u                  /* of the valid points in the first scene: one in so many */
+#define MOST_POINTS (UINT32_C(4) << 20) /* of all context views */
 
 /* Frames by their number in the recording. */
 typedef struct frame_list {
@@ -45,15 +46,37 @@ static int choose(const t3r_recording *recording, const char *name, const frame_
     return views > 0 ? CLI_OK : context_choose(recording, name, T3R_DEPTH_SENSOR, UINT32_MAX, chosen, &views);
 }
 
+/* Takes the size of the frames, or halves it until a page has memory for all of them. Returns an exit status of cli.h.
+ */
+static int choose_size(const t3r_recording *recording, const char *name, uint32_t chosen, t3r_config *config)
+{
+    t3r_capture_frame first;
+    const int code = recorded_frame_read(recording, name, chosen, &first);
+    if (code != CLI_OK) {
+        return code;
+    }
+    uint32_t width = first.frame.width, height = first.frame.height;
+    while ((uint64_t)width * height * views > MOST_POINTS) {
+        width /= 2;
+        height /= 2;
+    }
+    if (width < first.frame.width) {
+        char remark[160];
+        snprintf(remark, sizeof remark,
+                 "%" PRIu32 " frames are more than a page has memory for: they are built at %" PRIu32 "x%" PRIu32
+                 " (--working)",
+                 views, width, height);
+        answer_remark(remark);
+    }
+    *config = t3r_default_config(width, height, views, 1);
+    return CLI_OK;
+}
+
 /* Adds the frames that the scene is built from, then those that it is compared with. */
 static int add_frames(const t3r_recording *recording, const char *name, const uint32_t *chosen,
                       const frame_list *compared, t3r_config *config)
 {
-    t3r_capture_frame first;
-    int code = recorded_frame_read(recording, name, chosen[0], &first);
-    if (code == CLI_OK) {
-        *config = t3r_default_config(first.frame.width, first.frame.height, views, 1);
-    }
+    int code = choose_size(recording, name, chosen[0], config);
     for (uint32_t i = 0; i < views && code == CLI_OK; i++) {
         code = viewpoints_add(&shown, recording, name, chosen[i], config->width, config->height, true);
         if (code == CLI_OK && shown.frames[i].depth == NULL) {

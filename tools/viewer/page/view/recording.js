@@ -26,3 +26,4 @@ async function openRecording(file, context, compared) {
 }
 
 $("rebuild").onclick = () => reading(recording, () => openRecording(recording, listed("context"), listed("compared")), () => "");
+for (const id of ["context", "compared"]) $(id).onkeydown = (event) => { if (event.key === "Enter") $("rebuild").click(); };
