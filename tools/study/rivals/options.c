@@ -5,7 +5,6 @@
 
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
-#include "reconstruction/chosen_head.h"
 #include "reconstruction/options/option_names.h"
 
 #define ITERATIONS_MOST 100000u
@@ -61,7 +60,8 @@ void rival_check_settings(struct argp_state *state, const reconstruction_options
 static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "Rivals:", 15},
     {"finetune-iterations", KEY_ITERATIONS, "N", 0, "iterations of the methods with +finetune, 1..100000 (200)", 0},
-    {"mask-head", KEY_MASK_HEAD, CHOSEN_HEAD_VALUES, OPTION_READS | OPTION_OR_WORD,
+    /* CHOSEN_HEAD_VALUES, shortened to 79 columns of help */
+    {"mask-head", KEY_MASK_HEAD, "tiny|small|H.t3w|analytic|none", OPTION_READS | OPTION_OR_WORD,
      "head whose unpruned scene rivals with +head rank (the one of --head); so --head can be one that was retrained "
      "for their points",
      0},
