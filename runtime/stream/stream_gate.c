@@ -183,7 +183,7 @@ void t3r_gate_measure(const t3r_runtime *rt, const t3r_view *view, t3r_stream_re
 #define HIDDEN_Q8 160u         /* 5/8 of what the last keyframe saw */
 #define HIDDEN_LIKENESS_Q8 80u /* 5/16 */
 #define IN_VIEW_Q8 128u        /* half of it */
-#define DISAGREEMENT_Q8 168u   /* good poses: at most 147; 0.7 m off: at least 180 */
+#define DISAGREEMENT_Q8 244u   /* good poses: at most 209; 0.7 m off: at least 279 */
 #define EXPOSURE_MOST_Q8 256   /* an octave either way, as far as gains reach */
 
 #define STEP_MOST_Q20 (1 << 19) /* half a scene unit along each axis, from frame to frame */
@@ -200,7 +200,7 @@ static const uint8_t patience[T3R_REFUSAL_COUNT] = {
 
 static uint32_t disagreement_q8(const t3r_stream_report *f)
 {
-    return 2 * f->contradicted_q8 + 256 - f->likeness_q8;
+    return 4 * f->contradicted_q8 + 256 - f->likeness_q8;
 }
 
 static bool is_comparable(const t3r_stream_report *f)

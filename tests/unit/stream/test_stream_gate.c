@@ -484,9 +484,14 @@ TEST(figures_that_agree)
     assert_false(t3r_gate_agrees(&good, &other));
     other.compared = 31; /* the frame missed the map from there */
     assert_true(t3r_gate_agrees(&good, &other));
-    figures.likeness_q8 = 256 - 167;
+    figures.likeness_q8 = 256 - 243;
     assert_true(t3r_gate_agrees(&figures, &other));
     figures.likeness_q8--;
+    assert_false(t3r_gate_agrees(&figures, &other));
+    figures = good;
+    figures.contradicted_q8 = 35; /* 4 times 35, and 100, is 240 */
+    assert_true(t3r_gate_agrees(&figures, &other));
+    figures.contradicted_q8++;
     assert_false(t3r_gate_agrees(&figures, &other));
     figures = good;
     figures.compared--;
