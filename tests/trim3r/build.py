@@ -121,11 +121,11 @@ def through_a_lens():
     lens_recording("lens.mcap")
     line = ["lens.mcap", "--context", "0,1", "--exposure", "off", "--align", "off"]  # eval draws the poses as recorded
     for bound in (24, 30):
-        told = expect_json("build", *line, "--min-psnr", bound, "-o", "lens.ply", "--force")
-        rows = [expect_json("eval", *line, "--gaussians", told["gaussians"], "--target", frame)["rows"][0] for frame in (0, 1)]
+        report = expect_json("build", *line, "--min-psnr", bound, "-o", "lens.ply", "--force")
+        rows = [expect_json("eval", *line, "--gaussians", report["gaussians"], "--target", frame)["rows"][0] for frame in (0, 1)]
         scored = [row["psnr_all"] for row in rows]
-        check(told["context_psnr"] >= bound and abs(min(scored) - told["context_psnr"]) < 0.01,
-              f"--min-psnr {bound}: {told['gaussians']} Gaussians, {told['context_psnr']} dB, by eval {scored}")
+        check(report["context_psnr"] >= bound and abs(min(scored) - report["context_psnr"]) < 0.01,
+              f"--min-psnr {bound}: {report['gaussians']} Gaussians, {report['context_psnr']} dB, by eval {scored}")
 
 
 in_scratch(refused, built, through_a_lens)

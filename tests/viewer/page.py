@@ -161,14 +161,14 @@ def along_the_recording(page):
     plain = drawn(page, lambda: page.value("approach(3), moved()"))
     check(drawn(page, lambda: page.click("#trace")) != plain, "the path is drawn")
     page.click("#trace")
-    told = "document.getElementById('along-text').textContent"
+    label = "document.getElementById('along-text').textContent"
     for frame in (2, 1, 0):  # of the page: frames 1, 2 and 0 of the recording
         page.value(f"goTo({frame})")
         place = int(page.value(f"data.frames[{frame}].name").split()[1])
-        stands = page.value("Number(document.getElementById('along').value)"), page.value(told)
+        stands = page.value("Number(document.getElementById('along').value)"), page.value(label)
         check(stands == (place, f"{place + 1} of {count}"), f"the slider follows the camera to frame {place}: {stands}")
     page.value("move(.01, 0, 0), moved()")
-    check(page.value(told) == f"1 of {count}, the nearest", f"beside a place: {page.value(told)}")
+    check(page.value(label) == f"1 of {count}, the nearest", f"beside a place: {page.value(label)}")
     page.click("#play")
     page.wait("path.playing === 0")
     check(page.value(at.replace("PLACE", f"{count - 1}")), "played to the last place")

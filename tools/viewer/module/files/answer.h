@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What an instance of the module answers: it reads or writes one file. */
+/* Gives the answers of an instance of the module, which reads or writes one file. */
 #ifndef TRIM3R_TOOLS_VIEWER_ANSWER_H
 #define TRIM3R_TOOLS_VIEWER_ANSWER_H
 

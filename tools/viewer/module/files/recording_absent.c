@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a page's recordings do without: depth by stereo, folders and files on a disk. */
+/* Stands for what a page's recordings do without: depth by stereo, folders and files on a disk. */
 #include "host/reason.h"
 #include "mcap/spill.h"
 #include "reconstruction/context/context_depth.h"
