@@ -215,6 +215,7 @@ typedef struct slice_job {
     t3r_refine_slice slice;
     const t3r_projection *projection; /* of the view being drawn */
     t3r_gaussian *scene;
+    const t3r_viewpoints *from;    /* cameras that no Gaussian may move through */
     const t3r_map_record *records; /* NULL: all Gaussians change */
     uint32_t idle_most;
     bool remembers;                 /* a stream that remembers keyframes */
@@ -276,10 +277,10 @@ static void apply_chunk(void *context, uint32_t index, uint32_t worker)
             continue;
         }
         if (!T3R_FEATURE_STREAMS || job->records == NULL) {
-            t3r_refine_apply(correction, &job->scene[i]);
+            t3r_refine_apply(correction, job->from, &job->scene[i]);
         } else if (job->records[i].idle < job->idle_most) {
             const t3r_correction part = settled(correction, job->records[i].fitted, job->remembers);
-            t3r_refine_apply(&part, &job->scene[i]);
+            t3r_refine_apply(&part, job->from, &job->scene[i]);
         }
     }
 }
@@ -420,14 +421,34 @@ static t3r_status find_structure(const t3r_runtime *rt, const t3r_refine_layout 
     return rt->views > 1 && pass < T3R_LEVELLED_PASSES ? measure_levels(rt, w, views, done, total, structure) : T3R_OK;
 }
 
+static t3r_status find_viewpoints(const t3r_runtime *rt, t3r_viewpoints *from)
+{
+    from->count = rt->views;
+    for (uint32_t v = 0; v < rt->views; v++) {
+        t3r_pose pose;
+        t3r_status status = t3r_pose_in_scene(&rt->camera[v], &rt->frame, &pose);
+        if (status != T3R_OK) {
+            return status;
+        }
+        memcpy(from->position_q20[v], pose.position_q20, sizeof pose.position_q20);
+    }
+    return T3R_OK;
+}
+
 t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes passes, const t3r_map_record *records)
 {
     const t3r_refine_layout w = t3r_refine_layout_of(rt);
     const t3r_workers workers = t3r_workers_of(rt);
+    t3r_viewpoints from;
+    t3r_status found = find_viewpoints(rt, &from);
+    if (found != T3R_OK) {
+        return found;
+    }
     slice_job job = {.kernels = &rt->kernels,
                      .work = &w,
                      .slice = {w.sums, 0, 0},
                      .scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE),
+                     .from = &from,
                      .records = records,
                      .idle_most = rt->config.views,
                      .remembers = rt->config.remember > 0};

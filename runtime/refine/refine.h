@@ -10,8 +10,14 @@
 #include "kernels/solve.h"
 #include "state/views.h"
 
-/* Applies a correction to a Gaussian. */
-void t3r_refine_apply(const t3r_correction *correction, t3r_gaussian *gaussian);
+/* Where the cameras of the live views are, in scene units. */
+typedef struct t3r_viewpoints {
+    uint32_t count;
+    int32_t position_q20[T3R_MAX_VIEWS][3];
+} t3r_viewpoints;
+
+/* Applies a correction to a Gaussian, which comes no nearer to a camera than 7/8 of its distance. */
+void t3r_refine_apply(const t3r_correction *correction, const t3r_viewpoints *from, t3r_gaussian *gaussian);
 
 /* The passes of a refinement. The first `parts` of `count` compare one pixel in 2 x 2, another one in each pass and
  * view; the others compare every pixel. parts <= count. */

@@ -182,6 +182,7 @@ TEST_WITH(black_stays_as_it_is, NULL, draw_room)
 }
 
 static const t3r_correction still;
+static const t3r_viewpoints origin = {.count = 1};
 
 TEST(nothing_missing_changes_nothing)
 {
@@ -199,7 +200,7 @@ TEST(nothing_missing_changes_nothing)
                                .colour_q7 = {0, 128, 32640},
                                .opacity_q15 = (uint16_t)unit_between(&seed, 0, 32767)};
         t3r_gaussian after = before;
-        t3r_refine_apply(&correction, &after);
+        t3r_refine_apply(&correction, &origin, &after);
         assert_memory_equal(&before, &after, sizeof before);
     }
 }
@@ -237,12 +238,33 @@ TEST(extremes_stay_in_range)
             g.position_q20[k] = (int32_t)unit_between(&seed, -(1 << 30), 1 << 30);
             g.colour_q7[k] = (uint16_t)unit_between(&seed, 0, 32640);
         }
-        t3r_refine_apply(&c, &g);
+        t3r_refine_apply(&c, &origin, &g);
         assert_true(g.opacity_q15 <= 32767 && g.factor_exponent >= -60 && g.factor_exponent <= 15);
         for (int k = 0; k < 3; k++) {
             assert_true(abs(g.position_q20[k]) <= 1 << 30 && g.colour_q7[k] <= 32640);
         }
     }
+}
+
+/* A long Gaussian that points to a camera comes no nearer in a pass than 7/8 of its distance. */
+TEST(none_moves_through_a_camera)
+{
+    const t3r_viewpoints from = {.count = 2, .position_q20 = {{0, 0, -(9 << 20)}, {0, 0, 1 << 20}}};
+    const t3r_correction towards = {.step_q16 = {0, -32767, 0, 0, 0, 0}};
+    for (int32_t ahead = 1 << 10; ahead <= 9 << 20; ahead *= 2) {
+        t3r_gaussian g = {.position_q20 = {3, -ahead / 4, (1 << 20) + ahead},
+                          .factor = {0, 0, 0, 1 << 10, 0, 0, 16 << 10, 0, 0},
+                          .factor_exponent = -10,
+                          .opacity_q15 = 32000};
+        t3r_refine_apply(&towards, &from, &g);
+        const int32_t nearer = (1 << 20) + ahead - g.position_q20[2];
+        assert_true(nearer > ahead / 16 && nearer <= ahead / 8);
+        assert_true(16 * abs(-ahead / 4 - g.position_q20[1]) <= nearer + 16); /* along its axis */
+    }
+    t3r_gaussian g = {.position_q20 = {0, 0, 9 << 20}, .factor = {1 << 10}, .factor_exponent = -10};
+    const t3r_correction across = {.step_q16 = {0, 6554, 0, 0, 0, 0}};
+    t3r_refine_apply(&across, &from, &g);
+    assert_int_equal(g.position_q20[0], 6554 << 4); /* within its reach it moves as the solution says */
 }
 
 /* Without residuals only a share of the previous pass is repeated. */
