@@ -70,7 +70,7 @@ extern "C" {
 #define T3R_TEXT_(number) T3R_QUOTE_(number)
 #define T3R_QUOTE_(number) #number
 /* Raised by every change of any output bit; recordings and scenes carry the epoch that made them. */
-#define T3R_BITS_EPOCH 16
+#define T3R_BITS_EPOCH 17
 
 #define T3R_MAX_SIDE 4096         /* largest width or height of working size, frame or target, in pixels */
 #define T3R_MIN_SIDE 8            /* smallest working width or height, in pixels */
