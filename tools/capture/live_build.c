@@ -8,6 +8,7 @@
 
 #include "cli/cli.h"
 #include "messages/pixel_layout.h"
+#include "reconstruction/context/lens_masks.h"
 #include "reconstruction/reconstruction_error.h"
 
 /* Returns the bytes of all rows without padding. */
@@ -200,6 +201,9 @@ int live_build_make(live_build *build, const t3r_capture_frame *newest)
     int code = count_valid_points(build, frames);
     if (code == CLI_OK) {
         code = start_runtime(build);
+    }
+    for (uint32_t v = 0; v < r->context_count && code == CLI_OK; v++) {
+        code = lens_mask_find(r, &build->options, "capture", v, frames[v]);
     }
     if (code != CLI_OK) {
         return code;

@@ -107,10 +107,10 @@ typedef struct reconstruction {
     double add_views_seconds; /* time of the image stage */
     double build_seconds;     /* time of t3r_reconstruct() */
     t3r_least least;          /* for min_psnr; else all zero */
-    uint8_t *shown[T3R_MAX_VIEWS]; /* for min_psnr: developed_shown() of the context views; NULL = all pixels count */
-    measured_loss loss;            /* for max_loss; else all zero */
-    stage_times stages;            /* of both, if hashes are collected */
-    double give_up_at;             /* cli_now() at which the run is cancelled; 0 = never */
+    uint8_t *shown[T3R_MAX_VIEWS];        /* for min_psnr: lens_masks.h */
+    measured_loss loss;                   /* for max_loss; else all zero */
+    stage_times stages;                   /* of both, if hashes are collected */
+    double give_up_at;                    /* cli_now() at which the run is cancelled; 0 = never */
     uint64_t stage_hash[T3R_STAGE_COUNT]; /* the reports of a stage that reports several times are chained */
     bool stage_hashed[T3R_STAGE_COUNT];
     bool uncounted;               /* hashes reported now are left out */
@@ -155,6 +155,8 @@ int reconstruction_attach(reconstruction *r, const reconstruction_options *optio
 void reconstruction_configure(reconstruction *r, const reconstruction_options *options);
 /* Allocates an arena of the size that the options request for r->config, and starts their threads. */
 int reconstruction_allocate(reconstruction *r, const reconstruction_options *options);
+/* The same, with the runtime initialised in it and hooks bound, among them a progress line. */
+int reconstruction_open_arena(reconstruction *r, const reconstruction_options *options);
 /* Sets the budget that the options request, relative to r->valid_points. */
 void reconstruction_request(reconstruction *r, const reconstruction_options *options);
 /* Builds from the views added to r->scene; `planes` are the importance for the allocation `given`, else NULL. */
@@ -173,20 +175,6 @@ int reconstruction_load(reconstruction *r, scene_file *scene, uint32_t width, ui
 int reconstruction_look_from(reconstruction *r, const t3r_camera *camera, uint32_t width, uint32_t height);
 /* Returns a depth that t3r_render() drew, in world units. */
 double reconstruction_depth(const reconstruction *r, uint32_t depth_q20);
-
-/* Contents of a scene's frames before it is built: valid points, and by stereo the scene's depth in world units, a
- * power of two times 1.5 (0 by sensor). */
-typedef struct reconstruction_points {
-    uint32_t valid;
-    double depth;
-} reconstruction_points;
-
-int reconstruction_count(reconstruction_points *points, const t3r_recording *recording, const char *path,
-                         const reconstruction_options *options);
-
-/* Chooses and checks the context frames of a scene from a file: `context` and the working size in `config`. */
-int reconstruction_views(reconstruction *r, const t3r_recording *recording, const char *path,
-                         const reconstruction_options *options);
 
 void reconstruction_close(reconstruction *r);
 

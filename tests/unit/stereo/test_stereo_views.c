@@ -211,11 +211,14 @@ TEST(taken_from_another)
     assert_int_equal(reconstruct(&b, &scene), T3R_OK); /* finds its own */
     assert_int_equal(b.calls, calls);
     t3r_view other = t3r_view_of(from.rt, 1);
-    for (int difference = 0; difference < 4; difference++) {
+    for (int difference = 0; difference < 7; difference++) {
         other.colour[2][PIXELS - 1] ^= difference == 0;
         from.rt->camera[1].fx_q16 += difference == 1;
         from.rt->config.fill_radius -= difference == 2;
         from.rt->views -= difference == 3;
+        from.rt->config.width -= difference == 4;
+        from.rt->config.height -= difference == 5;
+        from.rt->config.depth = difference == 6 ? T3R_DEPTH_SENSOR : T3R_DEPTH_STEREO;
         b.rt->depth_of = from.rt;
         assert_int_equal(reconstruct(&b, &scene), T3R_OK);
         assert_int_equal(b.hash, hash);
@@ -224,6 +227,8 @@ TEST(taken_from_another)
         from.rt->camera[1].fx_q16 -= difference == 1;
         from.rt->config.fill_radius += difference == 2;
         from.rt->views += difference == 3;
+        from.rt->config.width += difference == 4;
+        from.rt->config.height += difference == 5;
     }
     b.rt->depth_of = from.rt; /* an arena that moved has no other */
     t3r_runtime *rt;

@@ -5,9 +5,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "api/adding.h"
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
 #include "cli/tables/json_output.h"
+#include "reconstruction/context/lens_masks.h"
 #include "reconstruction/reconstruction_error.h"
 #include "reconstruction/replay/hash_report.h"
 
@@ -24,6 +26,10 @@ static int add_frame(slide_run *s, uint32_t frame)
 {
     t3r_capture_frame captured;
     int code = recorded_frame_read(s->recording, s->path, frame, &captured);
+    if (code != CLI_OK) {
+        return code;
+    }
+    code = lens_mask_find(&s->r, s->options, s->path, t3r_slot_of_next(s->r.runtime), &captured);
     if (code != CLI_OK) {
         return code;
     }
