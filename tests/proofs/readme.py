@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""readme.py example LIBRARY... | table PROGRAM [--update] | code LIBRARY: what the documents show is what happens.
+"""readme.py example LIBRARY... | table PROGRAM [--update] | code LIBRARY | study [--update]: what the documents show is what
+happens.
 
 example: the README's C program compiles without a warning, links with only the runtime and the heads, and prints
          what the README shows.
 table:   the arena table of docs/firmware.md is the output of `trim3r plan --markdown`; --update writes it there.
 code:    the shared library has the bytes of code that README states, within 5 %, the effect of another compiler.
+study:   README's microcontrollers have the figures of docs/study/boards.md, and the views of README and docs/rivals.md those
+         of docs/study/paper.md; --update writes them there.
 """
 import re
 import sys
@@ -14,6 +17,14 @@ import proof
 
 README = proof.ROOT / "README.md"
 FIRMWARE = proof.ROOT / "docs" / "firmware.md"
+RIVALS = proof.ROOT / "docs" / "rivals.md"
+BOARDS = proof.ROOT / "docs" / "study" / "boards.md"
+PAPER = proof.ROOT / "docs" / "study" / "paper.md"
+COLUMNS = {"Cortex-M7 with DSP": ("AN500), DSP", 480), "Cortex-M55 with Helium": ("Helium", 400)}  # its title's end, MHz
+METHODS = {  # rows of README and docs/rivals.md, and of the last table of docs/study/paper.md
+    "trim3r, `--preset fast`": "trim3r, fast", "trim3r, `--preset balanced` (default)": "trim3r",
+    "trim3r, `--preset best`": "trim3r, best", "random points, 200 iterations of fine-tuning": "random+finetune",
+    "trim3r, `fast`": "trim3r, fast", "trim3r, `balanced`": "trim3r", "trim3r, `best`": "trim3r, best"}
 PLAN = ["plan", "--size", "256x256", "--views", "2", "--gaussians", "13107", "--markdown"]
 STRICT = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror"]
 
@@ -60,6 +71,55 @@ def check_code(text, size):
     return [] if abs(shown / size - 1) < 0.05 else [f"libtrim3r.so has {size:,} bytes of code, the README says {shown:,}"]
 
 
+def measured(text, title):
+    """Returns the figures of a board's column in the first table of docs/study/boards.md."""
+    rows = [[cell.strip() for cell in line.strip("|").split("|")]
+            for line in re.search(r"<!-- small:begin -->\n(.*?)\n\n", text, flags=re.S)[1].splitlines()]
+    column = next(i for i, cell in enumerate(rows[0]) if cell.endswith(title))
+    return {row[0]: row[column] for row in rows}
+
+
+def with_boards(readme, boards):
+    """Returns README with the figures that docs/study/boards.md has."""
+    for name, (title, megahertz) in COLUMNS.items():
+        found = measured(boards, title)
+        millions = found["all stages, M"]
+        ms = round(int(millions) * 1000 / megahertz)
+        cells = [f"{found[row]} bytes" for row in ("flash, bytes", "arena, bytes", "stack, bytes")]
+        cells.append(f"{millions} M instructions: {ms} ms at {megahertz} MHz")
+        readme = re.sub(rf"^(\| {name} \|[^|]*\|).*$", lambda match: f"{match[1]} {' | '.join(cells)} |", readme, flags=re.M)
+    return readme
+
+
+def means_of(paper):
+    """Returns the means of the scenes by method: PSNR / SSIM at 20, 10, 5 and 2 % kept."""
+    tuned = re.search(r"<!-- tuned:begin -->\n(.*?)<!-- tuned:end -->", paper, flags=re.S)[1]
+    rows = tuned[tuned.index("| mean of the scenes |"):].splitlines()
+    cells = [[cell.strip() for cell in row.strip("|").split("|")] for row in rows]
+    return {row[1]: [" / ".join(cell.split(" / ")[:2]) for cell in row[2:]] for row in cells}
+
+
+def with_views(text, paper, ssim):
+    """Returns a text with the means that docs/study/paper.md has, as PSNR / SSIM or as PSNR alone."""
+    means = means_of(paper)
+    for name in {**METHODS, **{name: name for name in means if name.endswith("+finetune")}}:
+        cells = [mean if ssim else mean.split(" / ")[0] for mean in means[METHODS.get(name, name)]]
+        text = re.sub(rf"^\| {re.escape(name)} \|( [^|]* \|){{4}}$", f"| {name} | {' | '.join(cells)} |",
+                      text, flags=re.M)
+    return text
+
+
+def with_study(texts):
+    """Returns README and docs/rivals.md with the figures of the study's pages."""
+    boards, paper = BOARDS.read_text(), PAPER.read_text()
+    return [with_views(with_boards(texts[0], boards), paper, False), with_views(texts[1], paper, True)]
+
+
+def check_study(texts):
+    return [f"{name} has figures of an older study; tests/proofs/readme.py study --update"
+            for name, text, right in zip(("README.md", "docs/rivals.md"), texts, with_study(texts)) if text != right]
+
+
 def main():
     what, *paths = [word for word in sys.argv[1:] if word != "--update"]
     if what == "example":
@@ -76,6 +136,18 @@ def main():
         size = int(proof.run(["size", paths[0]], check=True).stdout.splitlines()[1].split()[0])
         proof.must_find(check_code(README.read_text(), 2 * size), "the README says", "the README's code of the library")
         proof.verdict("the shared library has as much code as the README says", check_code(README.read_text(), size))
+        return
+    if what == "study":
+        texts = [README.read_text(), RIVALS.read_text()]
+        if "--update" in sys.argv:
+            for path, text in zip((README, RIVALS), with_study(texts)):
+                path.write_text(text)
+            return
+        for old, new in ((" M instructions", "0 M instructions"), ("fast` | ", "fast` | 1")):
+            for text in [text for text in texts if old in text]:
+                proof.must_find(check_study([text.replace(old, new) if text is t else t for t in texts]), "of an older study",
+                                "a document")
+        proof.verdict("README and docs/rivals.md have the study's figures", check_study(texts))
         return
     text, printed = FIRMWARE.read_text(), proof.run([paths[0], *PLAN], check=True).stdout
     if "--update" in sys.argv:
