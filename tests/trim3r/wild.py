@@ -114,12 +114,19 @@ def files_of_the_kernel():
 
 def kinds_that_are_not_read():
     """Every command that takes a scene or a recording names what makes one of such a file."""
-    for name, remedy in (("a.ksplat", "splat-transform"), ("a.GLTF", "gltf-transform"), ("a.ckpt", "ns-export"), ("a.las", "point cloud"), ("a.obj", "a mesh")):
+    for name, remedy in (("a.ksplat", "splat-transform"), ("a.GLTF", "gltf-transform"), ("a.ckpt", "ns-export"), ("a.las", "point cloud"), ("a.obj", "a mesh"),
+                         ("a.npz", "trim3r import PHOTOS --pointmaps FILE.npz")):
         write(name, b"\x07" * 300)
         for line in (("info", name), ("convert", name, "-o", "n.ply"), ("view", name, "-o", "n.html"), ("diff", name, name),
                      ("render", name, "room.mcap", "--view", 0, "-o", "n.png"), ("import", name, "-o", "n.mcap"), ("build", name, "--keep", 10, "-o", "n.ply")):
             expect(1, *line, err=remedy)
     expect(1, "info", "absent.ksplat", err="No such file")
+    for name, start, remedy in (("a.jpg", b"\xff\xd8\xff\xe0", "a JPEG picture, not a scene: trim3r scene FOLDER"), ("a.heic", b"0000ftypheic", "a HEIC picture"),
+                                ("a.mp4", b"0000ftypisom", "a video, not a scene: ffmpeg"), ("a.png", b"\x89PNG\r\n", "a PNG picture"),
+                                ("a.bin", b"\x89MCAP0\r\n", "a recording, not a scene: trim3r scene")):
+        write(name, start + b"\x07" * 300)
+        for line in (("convert", name, "-o", "n.ply"), ("render", name, "--orbit", 1, "-o", "n.png")):
+            expect(1, *line, err=f"{name}: {remedy}")
     ply("scene.pt", rows())
     check(expect_json("info", "scene.pt")["scenes"][0]["gaussians"] == COUNT, "a scene of another suffix")
 

@@ -28,10 +28,14 @@ bool scene_file_is_one(const char *path)
     return kind == FILE_SCENE || (kind != FILE_RECORDING && kind != FILE_PICTURE && is_named);
 }
 
-/* Names what makes a scene of a file that was not read, if its suffix is that of such a kind. Returns `status`. */
+/* Names what makes a scene of a file that was not read, if its suffix or its first bytes are those of such a kind.
+ * Returns `status`. */
 static int explained(int status, const char *path, char *error, size_t error_bytes)
 {
     const char *advice = foreign_scene_of_name(path);
+    if (status != 0 && advice == NULL) {
+        advice = foreign_scene_of_start(path);
+    }
     if (status != 0 && advice != NULL && access(path, R_OK) == 0) {
         (void)t3r_reason(error, error_bytes, "%s: %s", path, advice);
     }
