@@ -51,6 +51,9 @@ def crop():
     cropped("grid.ply", "--crop", "1,-4,100,1,-4,100", wanted=lambda x, y, z: (x, y, z) == (1, -4, 100))
     cropped("grid.ply", "--min-opacity", "0", wanted=lambda *place: True)
     check("part.ply: 6 of 24 Gaussians" in run("convert", "grid.ply", "--crop", "3,,,,,", "-o", "part.ply")[1], "the count of both")
+    for all_kept in (("--crop", ",,,9,9,999"), ("--min-opacity", "0")):
+        expect(0, "convert", "grid.ply", *all_kept, "-o", "part.ply", "--force", out="part.ply: 24 of 24 Gaussians")
+    expect(0, "convert", "grid.ply", "-o", "part.ply", "--force", out="part.ply: 24 Gaussians")
     for box in ("1,2,3", "1,2,3,4,5", "1,2,3,4,5,6,7", "1,1,1,0,2,2", "a,,,,,", "nan,,,,,", ",,,,,inf", "1 ,,,,,"):
         expect(2, "convert", "grid.ply", "--crop", box, "-o", "no.ply", err="--crop takes two corners")
     expect(2, "convert", "grid.ply", "--min-opacity", "20", "-o", "no.ply", err="--min-opacity")

@@ -56,6 +56,13 @@ def a_jump_that_lasts(recording, clean):
     check(new_piece >= ghostly - MOST_LOST, "the jump costs more with the gate")
 
 
+def frames_are_named(recording):
+    for trouble, at, count, frames in (("hand", 6, 3, "frames 6 to 8"), ("gap", 6, 1, "frame 6"), ("jump", 6, 3, "from frame 6 on"),
+                                       ("black", FRAMES - 3, 3, f"from frame {FRAMES - 3} on")):
+        expect(0, "trouble", recording, "--with", trouble, "--at", at, "--for", count, "-o", "named.mcap", "--force",
+               out=f"named.mcap: {trouble}, {frames}\n")
+
+
 def exposure_is_measured(recording):
     for trouble in ("step", "ramp"):
         expect(0, "trouble", recording, "--with", trouble, "--at", FIRST, "--for", COUNT, "-o", "bright.mcap")
@@ -71,6 +78,7 @@ def troubles():
     a_bad_frame_ends_nothing(recording, clean)
     a_jump_that_lasts(recording, clean)
     exposure_is_measured(recording)
+    frames_are_named(recording)
     expect(0, "trouble", recording, "--with", "hand", "-o", "hand.mcap")
     expect(0, "replay", "hand.mcap", *BASE, out="skipped frames: covered 3")
     expect(2, "trouble", recording, "--with", "rain", "-o", "rain.mcap", err="--with does not know 'rain'")

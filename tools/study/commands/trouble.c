@@ -231,6 +231,19 @@ static int write_recording(const options *o, const t3r_recording *recording)
     return code;
 }
 
+/* Prints which frames have the trouble, some or all to the end. */
+static void report(const options *o, uint32_t frames)
+{
+    printf("%s: %s, ", o->output, o->what->name);
+    if (o->what->lasts || o->count >= frames - o->first) {
+        printf("from frame %" PRIu32 " on\n", o->first);
+    } else if (o->count == 1) {
+        printf("frame %" PRIu32 "\n", o->first);
+    } else {
+        printf("frames %" PRIu32 " to %" PRIu32 "\n", o->first, o->first + o->count - 1);
+    }
+}
+
 int command_trouble(int argc, char **argv)
 {
     options o = {.first = 10, .count = 3};
@@ -242,9 +255,9 @@ int command_trouble(int argc, char **argv)
     const int code = o.first < t3r_recording_frame_count(recording)
                          ? write_recording(&o, recording)
                          : cli_error(CLI_BAD_INPUT, "%s has no frame %" PRIu32, o.recording, o.first);
-    t3r_recording_close(recording);
     if (code == CLI_OK) {
-        printf("%s: %s from frame %" PRIu32 " on\n", o.output, o.what->name, o.first);
+        report(&o, t3r_recording_frame_count(recording));
     }
+    t3r_recording_close(recording);
     return code;
 }

@@ -135,7 +135,7 @@ static void report(const options *o, const scene_conversion *done)
         return;
     }
     printf("%s: %" PRIu32, o->output, done->count);
-    if (done->count < done->count_read) {
+    if (o->crops || done->count < done->count_read) {
         printf(" of %" PRIu32, done->count_read);
     }
     printf(" Gaussians, harmonics of degree %" PRIu32, done->degree);
