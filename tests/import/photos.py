@@ -270,6 +270,9 @@ def scene_of_others():
     expect(1, "scene", "absent", "-o", "no.ply", err="No such file")
     expect(2, "scene", "plain", "-o", "no.txt", err="no.txt")
     expect(2, "scene", "plain", "--keep", 5, "--gaussians", 5, "-o", "no.ply", err="exclude each other")
+    for option, value in (("--keep", "0"), ("--keep", "ten"), ("--gaussians", "0"), ("--min-psnr", "400"), ("--intrinsics", "9,9")):
+        code, _, error = run("scene", "absent", option, value, "-o", "no.ply") # before the input is read
+        check(code == 2 and error.startswith(f"trim3r scene: {option}") and "trim3r scene --help" in error, f"{option} {value}: {error}")
     expect(0, "scene", "room.mcap", "--min-psnr", 20, "-o", "few.ply")
     check(not glob.glob("no.*"), f"files are left: {glob.glob('no.*')}")
 

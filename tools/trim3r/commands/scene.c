@@ -12,6 +12,7 @@
 #include "cli/options/file_kind.h"
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
+#include "import/poses/intrinsics.h"
 #include "scene/scene_options.h"
 #include "trim3r/commands/build.h"
 #include "trim3r/commands/commands.h"
@@ -33,8 +34,28 @@ typedef struct scene_request {
 
 enum { KEY_SIZE = 0x100 };
 
+/* Checks the values that import and build parse again, before any of them runs. */
+static void check_values(struct argp_state *state, const scene_request *o)
+{
+    double numbers[INTRINSICS_NUMBERS];
+    uint32_t count;
+    if (o->gaussians != NULL) {
+        option_number(state, "gaussians", o->gaussians, 1, T3R_MAX_GAUSSIANS);
+    }
+    if (o->keep != NULL) {
+        option_percents(state, "keep", o->keep, numbers, 1, &count);
+    }
+    if (o->min_psnr != NULL) {
+        option_decimal(state, "min-psnr", o->min_psnr, 0.01, 100);
+    }
+    if (o->intrinsics != NULL && intrinsics_of_text(o->intrinsics, numbers) == 0) {
+        argp_error(state, "--intrinsics %s: not " INTRINSICS_FORM, o->intrinsics);
+    }
+}
+
 static void check_options(struct argp_state *state, const scene_request *o)
 {
+    check_values(state, o);
     if (o->input == NULL) {
         argp_error(state, "PHOTOS, a folder, a bag or a recording is missing");
     } else if (o->output == NULL) {
