@@ -50,8 +50,9 @@ KINDS = {
     "an unpacked scene": (["meta.json", "means_l.webp"], ["an unpacked .sog"]),
     "a video": (["film.mp4"], ["ffmpeg -i IN"]),
     "WebP": (["1.webp", "2.webp"], ["dwebp"]),
-    "pictures in images": (["images/0.png"], ["trim3r import {0}/images", ESTIMATE]),
-    "pictures in rgb": (["rgb/0.jpeg"], ["trim3r import {0}/rgb", ESTIMATE]),
+    "pictures in images": (["images/0.png"], ["trim3r scene {0}/images", "trim3r import {0}/images", ESTIMATE]),
+    "pictures in rgb": (["rgb/0.jpeg"], ["trim3r scene {0}/rgb", "trim3r import {0}/rgb", ESTIMATE]),
+    "pictures in a folder below": (["notes/a.txt", "photos/0.JPG", "zoo/1.png"], ["no pictures, but {0}/photos has some: name that folder"]),
     "nothing": ([], ["transforms.json", "rgb.txt"]),
 }
 

@@ -11,6 +11,7 @@
 #define HOLE "DIR" /* in a remedy, stands for the folder */
 #define IMPORT ", then trim3r import OUT -o REC.mcap"
 #define PICTURES(folder) "trim3r import " folder " --poses estimate --intrinsics fx,fy,cx,cy -o REC.mcap"
+#define PHOTOS(folder) "trim3r scene " folder " -o SCENE.ply, or trim3r import " folder " --poses estimate -o REC.mcap"
 #define FILES "trim3r render, view and convert take one of its files, "
 
 /* All kinds, the more special ones first. A folder is of a kind if it has entries for all its signs, which are patterns
@@ -61,8 +62,8 @@ static const struct known {
     {"a folder of scenes, as Scaniverse exports them,", {"*.spz"}, FILES "DIR/NAME.spz"},
     {"a folder of scenes", {"*.ply"}, FILES "DIR/NAME.ply"},
     {"a folder of meshes", {"*.usdz"}, "export the scan's photos, or its Gaussians as .ply or .spz"},
-    {"a folder with pictures in images", {"images/*.[jp]*g"}, PICTURES("DIR/images")},
-    {"a folder with pictures in rgb", {"rgb/*.[jp]*g"}, PICTURES("DIR/rgb")},
+    {"a folder with pictures in images", {"images/*.[jp]*g"}, PHOTOS("DIR/images")},
+    {"a folder with pictures in rgb", {"rgb/*.[jp]*g"}, PHOTOS("DIR/rgb")},
 };
 
 static bool has(const char *directory, const char *sign)

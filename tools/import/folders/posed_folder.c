@@ -126,6 +126,23 @@ posed_folder_options posed_folder_look(const char *directory)
                                   .without_intrinsics = kind == NULL || kind->lens_given};
 }
 
+/* Writes what a folder without pictures holds, and what makes a recording of that. False: nothing that is known. */
+static bool name_what_is_there(const char *directory, char *error, size_t error_bytes)
+{
+    char advice[ERROR_BYTES];
+    if (known_folder_advice(directory, advice, sizeof advice) != NULL) {
+        (void)t3r_reason(error, error_bytes, "%s: %s", directory, advice);
+        return true;
+    }
+    char *below = picture_folder_below(directory);
+    if (below == NULL) {
+        return false;
+    }
+    (void)t3r_reason(error, error_bytes, "%s: no pictures, but %s has some: name that folder", directory, below);
+    free(below);
+    return true;
+}
+
 int posed_folder_open(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                       size_t error_bytes)
 {
@@ -156,9 +173,8 @@ int posed_folder_open(const char *directory, const posed_folder_options *options
         return t3r_reason(error, error_bytes, "%s: an unpacked .sog; it is a scene once its files are zipped",
                           directory);
     }
-    char advice[ERROR_BYTES];
-    if (!picture_folder_is(directory) && known_folder_advice(directory, advice, sizeof advice) != NULL) {
-        return t3r_reason(error, error_bytes, "%s: %s", directory, advice);
+    if (!picture_folder_is(directory) && name_what_is_there(directory, error, error_bytes)) {
+        return -1;
     }
     if (options != NULL && options->without_poses) {
         return picture_folder_read(directory, options, out, error, error_bytes);

@@ -86,6 +86,31 @@ char *picture_folder_bag(const char *directory)
     return picture_folder_is(directory) ? NULL : first_of(directory, is_bag);
 }
 
+static int is_visible(const struct dirent *entry)
+{
+    return entry->d_name[0] != '.';
+}
+
+char *picture_folder_below(const char *directory)
+{
+    struct dirent **entries;
+    char *found = NULL;
+    const int count = scandir(directory, &entries, is_visible, versionsort);
+    for (int i = 0; i < count; i++) {
+        char *path = found == NULL ? posed_path(directory, entries[i]->d_name) : NULL;
+        if (path != NULL && picture_folder_is(path)) {
+            found = path;
+        } else {
+            free(path);
+        }
+        free(entries[i]);
+    }
+    if (count >= 0) {
+        free(entries);
+    }
+    return found;
+}
+
 int picture_folder_read(const char *directory, const posed_folder_options *options, posed_folder *out, char *error,
                         size_t error_bytes)
 {
@@ -103,10 +128,11 @@ int picture_folder_read(const char *directory, const posed_folder_options *optio
     out->frames = calloc((size_t)count + 1, sizeof *out->frames);
     int status = 0;
     if (count == 0 || count > T3R_LIMIT_FRAMES) {
-        status = t3r_reason(error, error_bytes, "%s: %s", directory,
-                            count == 0 && out->left_out.frames.count > 0 ? out->left_out.frames.lines[0]
-                            : count == 0 ? "no transforms.json, no rgb.txt and groundtruth.txt, no pictures"
-                                         : T3R_LIMIT_TEXT("more than ", T3R_LIMIT_FRAMES, " pictures"));
+        status = t3r_reason(
+            error, error_bytes, "%s: %s", directory,
+            count == 0 && out->left_out.frames.count > 0 ? out->left_out.frames.lines[0]
+            : count == 0 ? "no pictures, no transforms.json, no rgb.txt and groundtruth.txt: name a folder of photos"
+                         : T3R_LIMIT_TEXT("more than ", T3R_LIMIT_FRAMES, " pictures"));
     }
     for (int i = 0; i < count; i++) {
         if (status == 0 && out->frames != NULL) {

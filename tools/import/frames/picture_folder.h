@@ -21,6 +21,9 @@ int picture_folder_foreign(const char *directory, left_out *out);
 /* Returns the name of a bag in a folder without pictures, on the heap; NULL: there is none. */
 char *picture_folder_bag(const char *directory);
 
+/* Returns the path of the first folder in DIR that holds pictures, on the heap; NULL: there is none. */
+char *picture_folder_below(const char *directory);
+
 /* Adds to out->left_out.frames, with the reason, every picture in DIR/PLACE that is no frame's image: pictures that the
  * folder's lists omit. Returns 0, or -1 with a reason in error[]. */
 int picture_folder_rest(const char *directory, const char *place, const char *why, posed_folder *out, char *error,
