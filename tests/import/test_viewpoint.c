@@ -182,7 +182,7 @@ TEST(turns_about_a_centre)
     viewpoint_list list;
     char error[256] = "";
     assert_int_equal(viewpoint_from_angle(60, 64, 48, &start), 0);
-    assert_int_equal(viewpoint_turn(&start, centre, axis, 5, &list, error, sizeof error), 0);
+    assert_int_equal(viewpoint_turn(&start, centre, axis, 5, 0, &list, error, sizeof error), 0);
     assert_int_equal(list.count, 5);
     assert_memory_equal(&list.items[0], &start, sizeof start);
     double first[2], last[2], pixel[2];
@@ -198,8 +198,27 @@ TEST(turns_about_a_centre)
     viewpoint_list_free(&list);
     start.position_q32[0] = start.position_q32[1] =
         (INT64_C(1) << 62) - 1; /* farther along one axis, after an eighth */
-    assert_int_equal(viewpoint_turn(&start, centre, (const double[3]){0, 0, 1}, 8, &list, error, sizeof error), -1);
+    assert_int_equal(viewpoint_turn(&start, centre, (const double[3]){0, 0, 1}, 8, 0, &list, error, sizeof error), -1);
     assert_null(list.items);
+}
+
+TEST(turns_by_an_arc)
+{
+    static const double centre[3] = {0, 0, 4}, axis[3] = {0, 1, 0};
+    t3r_camera start;
+    viewpoint_list list;
+    char error[256] = "";
+    assert_int_equal(viewpoint_from_angle(60, 64, 48, &start), 0);
+    assert_int_equal(viewpoint_turn(&start, centre, axis, 3, 60, &list, error, sizeof error), 0);
+    for (int i = 0; i < 3; i++) { /* a quarter turn would be 4 to the side */
+        const double side = ldexp((double)list.items[i].position_q32[0], -32);
+        assert_true(fabs(side - 4 * sin((1 - i) * M_PI / 6)) < 1e-4);
+    }
+    assert_memory_equal(&list.items[1], &start, sizeof start);
+    viewpoint_list_free(&list);
+    assert_int_equal(viewpoint_turn(&start, centre, axis, 1, 60, &list, error, sizeof error), 0);
+    assert_memory_equal(&list.items[0], &start, sizeof start);
+    viewpoint_list_free(&list);
 }
 
 ALL_TESTS_WITH(make_path, scratch_teardown)

@@ -69,6 +69,12 @@ def turntables():
     check(found["views"] == 4 and os.path.exists("o_0003.png"), f"{found}")
     check((read("o_0000.png") == read("v.png")).all(), "a turntable from a view begins elsewhere")
     check(expect_json("render", "scene.ply", "room.mcap", "--view", 1, "--orbit", 1, "-o", "o.png")["hash"] == seen, "one view is the view")
+    found = expect_json("render", "scene.ply", "room.mcap", "--view", 1, "--orbit", 3, "--arc", 10, "-o", "arc.png")
+    check(found["views"] == 3 and (read("arc_0001.png") == read("v.png")).all(), "a view is not in the middle of its arc")
+    near = [numpy.abs(read(f"{name}.png").astype(int) - read("v.png")).mean() for name in ("arc_0000", "arc_0002", "o_0001")]
+    check(0 < max(near[:2]) < near[2], f"an arc is no part of a turn: {near}")
+    expect(2, "render", "scene.ply", "--pose", "pose.json", "--arc", 10, "-o", "w.png", err="--arc belongs to --orbit")
+    expect(2, "render", "scene.ply", "--orbit", 3, "--arc", 361, "-o", "w.png", err="--arc")
     # around and from above, the scene stays in the picture
     alone = expect_json("render", "scene.ply", "--orbit", 3, "--alpha", "a.png", "-o", "t.png")
     check((alone["width"], alone["height"]) == (640, 480), f"{alone}")

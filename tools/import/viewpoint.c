@@ -225,7 +225,14 @@ static rigid turned(const rigid *pose, const double centre[3], const double axis
     return rigid_compose(&turn, pose);
 }
 
-int viewpoint_turn(const t3r_camera *start, const double centre[3], const double axis[3], uint32_t count,
+/* Returns the angle of a view of a whole turn, or of an arc in degrees. */
+static double angle_of(uint32_t index, uint32_t count, double arc)
+{
+    return arc > 0 ? (count > 1 ? arc * M_PI / 180 * ((double)index / (count - 1) - 0.5) : 0)
+                   : 2 * M_PI * index / count;
+}
+
+int viewpoint_turn(const t3r_camera *start, const double centre[3], const double axis[3], uint32_t count, double arc,
                    viewpoint_list *out, char *error, size_t error_bytes)
 {
     *out = (viewpoint_list){.items = calloc(count, sizeof *out->items)};
@@ -240,9 +247,10 @@ int viewpoint_turn(const t3r_camera *start, const double centre[3], const double
         pose.rotation[i] = ldexp(start->rotation_q30[i], -30);
     }
     for (; out->count < count; out->count++) {
-        const rigid view = turned(&pose, centre, axis, 2 * M_PI * out->count / count);
+        const double angle = angle_of(out->count, count, arc);
+        const rigid view = turned(&pose, centre, axis, angle);
         out->items[out->count] = *start;
-        if (out->count > 0 && viewpoint_place(&out->items[out->count], &view) != 0) {
+        if (angle != 0 && viewpoint_place(&out->items[out->count], &view) != 0) {
             viewpoint_list_free(out);
             return t3r_reason(error, error_bytes, "a view is out of range: positions are below 2^30");
         }

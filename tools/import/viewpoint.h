@@ -36,8 +36,9 @@ int viewpoint_from_angle(double degrees, uint32_t width, uint32_t height, t3r_ca
 /* Sets the pose of a camera. Returns 0, or -1 when it is out of the runtime's range. */
 int viewpoint_place(t3r_camera *camera, const rigid *pose);
 /* Turns a view about the axis through `centre` with the direction `axis`, a unit vector: `count` views, evenly around,
- * the first being `start`. Returns 0, or -1 with a reason in error[]. */
-int viewpoint_turn(const t3r_camera *start, const double centre[3], const double axis[3], uint32_t count,
+ * the first being `start`; or evenly on an arc above 0 degrees, with `start` in its middle. Returns 0, or -1 with a
+ * reason in error[]. */
+int viewpoint_turn(const t3r_camera *start, const double centre[3], const double axis[3], uint32_t count, double arc,
                    viewpoint_list *out, char *error, size_t error_bytes);
 
 void viewpoint_list_free(viewpoint_list *list);

@@ -31,6 +31,7 @@ enum {
     KEY_SIZE,
     KEY_FOV,
     KEY_ORBIT,
+    KEY_ARC,
     KEY_UP,
     KEY_RATE,
     KEY_DEPTH_UNIT,
@@ -49,6 +50,8 @@ static const struct argp_option options[] = {
      "the same, for a camera path as nerfstudio's viewer saves it", 0},
     {"orbit", KEY_ORBIT, "N", 0,
      "turntable: N views around the middle of the scene, from above, or from --view or --pose on", 0},
+    {"arc", KEY_ARC, "DEGREES", 0,
+     "part of a turn that --orbit draws, with --view or --pose in its middle (360, from there on)", 0},
     {"up", KEY_UP, "x|-x|y|-y|z|-z", 0,
      "axis of the scene that points up, about which it turns (that of the file, else -y)", 0},
     {"trajectory", OPTION_TO(render_options, trajectory), "FILE", OPTION_READS,
@@ -109,6 +112,8 @@ static void check_options(struct argp_state *state, const render_options *o)
         argp_error(state, "REC.mcap and --view N go together");
     } else if (o->orbit > 0 && o->trajectory != NULL) {
         argp_error(state, "--orbit and --trajectory exclude each other");
+    } else if (o->orbit == 0 && o->arc > 0) {
+        argp_error(state, "--arc belongs to --orbit");
     } else if (o->orbit == 0 && o->up != T3R_UP_UNKNOWN) {
         argp_error(state, "--up belongs to --orbit");
     } else if (lenses > 1 || (lenses == 0 && o->orbit == 0)) {
@@ -148,6 +153,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_ORBIT:
         o->orbit = option_number(state, "orbit", arg, 1, 100000);
+        return 0;
+    case KEY_ARC:
+        o->arc = parse_positive(state, "arc", arg, 360);
         return 0;
     case KEY_UP:
         o->up = scene_up_option(state, arg);
@@ -194,6 +202,7 @@ static const struct argp argp = {
         "  trim3r render scene.ply --trajectory t.txt --fov 60 --size 640x480 -o v.png\n"
         "  trim3r render scene.ply --orbit 120 -o turn.mp4\n"
         "  trim3r render scene.ply room.mcap --view 1 --orbit 36 -o turn.png\n"
+        "  trim3r render scene.ply room.mcap --view 1 --orbit 9 --arc 10 -o near.png\n"
         "  trim3r render splat.ply --path camera_path.json -o path.mp4\n\n"
         "A pose file holds the fields of one frame of transforms.json, or is a transforms.json:\n"
         "  {\"fl_x\": 220, \"fl_y\": 220, \"cx\": 128, \"cy\": 128, \"w\": 256, \"h\": 256,\n"

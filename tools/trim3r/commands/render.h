@@ -18,6 +18,7 @@ typedef struct render_options {
     bool has_view, has_size, has_fov, strict, json;
     uint32_t view;
     uint32_t orbit; /* views of a turntable; 0 = none */
+    double arc;     /* degrees of a part of a turn; 0 = the whole */
     scene_up up;    /* of the turntable; T3R_UP_UNKNOWN = as the scene names it */
     uint32_t width, height;
     double fov_degrees;

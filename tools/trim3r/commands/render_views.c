@@ -105,7 +105,7 @@ static int turn_about(const render_options *o, const scene_file *scene, viewpoin
     double centre[3];
     scene_box_world(&box, scene, box.middle, centre);
     viewpoint_list_free(views);
-    return viewpoint_turn(&start, centre, box.upright.matrix + 3, o->orbit, views, error, sizeof error) == 0
+    return viewpoint_turn(&start, centre, box.upright.matrix + 3, o->orbit, o->arc, views, error, sizeof error) == 0
                ? CLI_OK
                : cli_error(CLI_BAD_INPUT, "%s", error);
 }
