@@ -18,7 +18,7 @@ def the_map_in_a_file(recording, base):
     expect(0, *base, "--gaussians", 500, "-o", "map.ply", out="map.ply: 500 Gaussians")
     expect(2, *base, "-o", "map.txt", err="scenes are written as")
     expect(2, *base, "-o", recording, err="one file")
-    expect(2, "replay", recording, "-o", "map.ply", err="--output belongs to --stream")
+    expect(2, "replay", recording, "-o", "map.ply", err="--output belongs to --stream; trim3r build -o writes")
 
 
 def stream():
@@ -34,6 +34,11 @@ def stream():
     check(all(k["added"] == k["removed"] + k["crowded"] for k in keyframes[1:]), "a full map is to stay full")
     check(found["live_psnr"] > 18 and found["final_psnr"] > 18, f"held-back views are poor: {found['live_psnr']}")
     check(all(os.path.exists(f"held/{what}_00001.png") for what in ("frame", "mask", "live", "final")), "no pictures")
+    text = expect(0, *base, "--gaussians", 500)
+    for when, name in (("drawn after the next keyframe", "live"), ("drawn from the final map", "final")):
+        row = [f"{found[key]:.2f}" for key in (f"{name}_psnr", f"{name}_psnr_all")]
+        check(any(line.startswith(when) and line.split()[-2:] == row for line in text.splitlines()), f"no {when} {row}: {text}")
+    check(max(map(len, text.splitlines())) <= 80, f"a line of over 80 columns: {text}")
     the_map_in_a_file(recording, base)
     write("stream.json", json.dumps(found))
     base += ["--gaussians", 500]

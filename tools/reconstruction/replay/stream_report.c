@@ -211,17 +211,23 @@ static void print_skipped(const stream_run *s)
     printf("%s", any ? "\n" : "");
 }
 
+/* Prints a row: the mean of pixels that have a depth, and of all. */
+static void print_mean(const char *when, uint32_t frames, double with_depth, double everywhere)
+{
+    printf("%-33s  %7" PRIu32 "  %10.2f  %10.2f\n", when, frames, with_depth, everywhere);
+}
+
 static void print_means(const stream_run *s)
 {
     const means m = means_of(s);
     if (m.final_count == 0) {
         return;
     }
-    printf("held-back frames, mean PSNR where they have a depth | everywhere:\n");
+    printf("held-back frames, mean PSNR in dB   frames  with depth  everywhere\n");
     if (m.live_count > 0) {
-        printf("after the next keyframe %.2f | %.2f dB (%" PRIu32 "), ", m.live, m.live_all, m.live_count);
+        print_mean("drawn after the next keyframe", m.live_count, m.live, m.live_all);
     }
-    printf("in the end %.2f | %.2f dB (%" PRIu32 ")\n", m.final, m.final_all, m.final_count);
+    print_mean("drawn from the final map", m.final_count, m.final, m.final_all);
 }
 
 void stream_print(const stream_run *s, uint64_t hash)

@@ -87,7 +87,8 @@ static void check_stream(struct argp_state *state, const replay_options *o)
             : live->scene != NULL      ? "output"
                                        : given;
     if (!o->streams && given != NULL) {
-        argp_error(state, "--%s belongs to --stream", given);
+        argp_error(state, "--%s belongs to --stream%s", given,
+                   live->scene != NULL ? "; trim3r build -o writes a scene of some frames" : "");
     }
     scene_output_option(state, "-o", live->scene);
     live_options_check(state, live);
