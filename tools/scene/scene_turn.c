@@ -107,6 +107,11 @@ void scene_turn_origin(const scene_turn *turn, const int64_t origin_q32[3], int6
     }
 }
 
+const char *scene_up_name(scene_up up)
+{
+    return ups[up].name;
+}
+
 scene_up scene_up_named(const char *name)
 {
     for (int i = T3R_UP_X; i <= T3R_UP_MZ; i++) {

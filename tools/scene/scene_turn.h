@@ -48,5 +48,7 @@ void scene_turn_apply(const scene_turn *turn, double position[3], double rotatio
 void scene_turn_origin(const scene_turn *turn, const int64_t origin_q32[3], int64_t turned_q32[3]);
 /* Returns the axis of a name from SCENE_UP_NAMES; T3R_UP_UNKNOWN: there is none. */
 scene_up scene_up_named(const char *name);
+/* Returns the name of an axis. */
+const char *scene_up_name(scene_up up);
 
 #endif

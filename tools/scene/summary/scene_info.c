@@ -14,10 +14,12 @@
 #include "core/camera.h"
 #include "recording/recording.h"
 #include "scene/scene_file.h"
+#include "scene/scene_turn.h"
 #include "scene/summary/scale_picture.h"
 
 #define ERROR_BYTES 512
 #define QUANTILES 5
+#define UP_UNKNOWN "not stated; -y in most scenes: y points down"
 #define PANEL_NAME_BYTES 80 /* as wide as a panel */
 
 static const double quantile_share[QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
@@ -27,6 +29,7 @@ typedef struct scene_summary {
     uint32_t count;
     double low[3], high[3]; /* bounds of the means, world units */
     double opacity;         /* mean */
+    scene_up up;            /* as the file states it */
 } scene_summary;
 
 typedef struct scene_summaries {
@@ -41,7 +44,7 @@ typedef struct scene_summaries {
 
 static scene_summary summarise(const scene_file *scene)
 {
-    scene_summary summary = {.count = scene->count};
+    scene_summary summary = {.count = scene->count, .up = scene->up};
     for (uint32_t i = 0; i < scene->count; i++) {
         const t3r_gaussian *g = &scene->gaussians[i];
         for (int axis = 0; axis < 3; axis++) {
@@ -202,6 +205,7 @@ static void print_text(const scene_info_request *request, const scene_summaries 
         printf("%s: %" PRIu32 " Gaussians\n", request->scenes[i], s->count);
         printf("  %-9s%.4g..%.4g, %.4g..%.4g, %.4g..%.4g\n", "x, y, z:", s->low[0], s->high[0], s->low[1], s->high[1],
                s->low[2], s->high[2]);
+        printf("  %-9s%s\n", "up:", s->up != T3R_UP_UNKNOWN ? scene_up_name(s->up) : UP_UNKNOWN);
         printf("  %-9s%.3f in the mean\n", "opacity:", s->opacity);
         print_quantiles("scale:", &summary->scales[i], 1);
         if (summary->pixels > 0) {
