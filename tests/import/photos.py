@@ -182,6 +182,8 @@ def scene_of_photos():
     lines = text.splitlines()
     check(sum(not line.startswith("  ") for line in lines) == 5 and max(map(len, lines)) <= 80 and "photo 3.png" in text,
           f"not five lines: {text}")
+    chosen, others = lines[[line.startswith("frames: ") for line in lines].index(True)], "; not chosen: " in " ".join(text.split())
+    check(("sharp ones that together show most" in chosen) == others, f"why some are chosen: {text}")
     check(read("kept.mcap")["image"][0].shape == (72, 96, 3), "--size")
 
 

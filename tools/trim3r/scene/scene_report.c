@@ -141,6 +141,13 @@ static uint32_t used_count(const scene_report *r)
     return used;
 }
 
+static void write_frames(FILE *out, const scene_report *r)
+{
+    const uint32_t used = used_count(r);
+    fprintf(out, "%" PRIu32 " of %" PRIu32 " chosen%s; depth by %s", used, r->frames,
+            used < r->frames ? ", sharp ones that together show most" : "", r->depth);
+}
+
 /* Writes "a.jpg 27.1, b.jpg 20.4 (blurred)" for the used pictures, or for the others. */
 static void write_some(FILE *out, const scene_report *r, bool used)
 {
@@ -174,7 +181,7 @@ void scene_report_print(const scene_report *r)
     snprintf(input, sizeof input, "%s: ", r->input);
     print_line(r, input, write_input);
     print_line(r, "poses: ", write_poses);
-    printf("frames: %" PRIu32 " of %" PRIu32 " chosen; depth by %s\n", used_count(r), r->frames, r->depth);
+    print_line(r, "frames: ", write_frames);
     print_line(r, "drawn, dB: ", write_drawn);
     printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points; %.1f s\n", r->output, r->gaussians, r->valid_points,
            r->seconds);
