@@ -30,7 +30,7 @@ def render():
             expect(2, "render", "scene.ply", "-o", "v.png", f"{option}={value}", err=option)
     expect(1, "render", "scene.ply", recording, "--view", 99, "-o", "v.png", err="no frame 99")
     expect(1, "render", "absent.ply", recording, "--view", 1, "-o", "v.png", err="absent.ply")
-    expect(1, "render", recording, recording, "--view", 1, "-o", "v.png", err="not a .ply")
+    expect(1, "render", recording, recording, "--view", 1, "-o", "v.png", err="a recording, not a scene: trim3r scene")
     scene = open("scene.ply", "rb").read()
     write("cut.ply", scene[:-1])
     expect(1, "render", "cut.ply", recording, "--view", 1, "-o", "v.png", err="cut off")
