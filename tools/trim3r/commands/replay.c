@@ -88,7 +88,7 @@ static void check_stream(struct argp_state *state, const replay_options *o)
                                        : given;
     if (!o->streams && given != NULL) {
         argp_error(state, "--%s belongs to --stream%s", given,
-                   live->scene != NULL ? "; trim3r build -o writes a scene of some frames" : "");
+                   strcmp(given, "output") == 0 ? "; trim3r build -o writes a scene of some frames" : "");
     }
     scene_output_option(state, "-o", live->scene);
     live_options_check(state, live);
