@@ -49,7 +49,7 @@ def kinds():
                                                             "left_out")), f"{name}: {found}, {report}")
         text = expect(0, "info", path)
         check(kind in text and f"{FRAMES} frames" in text and "poses: " in text, f"{name}: {text}")
-        check(f"poses:    of {FRAMES} of {FRAMES} frames\n" in text or found["posed_frames"] != FRAMES, f"{name}: {text}")
+        check(f"poses:    {FRAMES} of {FRAMES} frames\n" in text or found["posed_frames"] != FRAMES, f"{name}: {text}")
 
 
 def units():

@@ -81,12 +81,12 @@ static void print_text(const char *directory, const posed_folder *folder, const 
         printf("camera:   none: import needs --intrinsics fx,fy,cx,cy, or --poses estimate\n");
     }
     if (s->posed_frames > 0) {
-        printf("poses:    of %u of %u frames\n", s->posed_frames, folder->frame_count);
+        printf("poses:    %u of %u frames\n", s->posed_frames, folder->frame_count);
     } else {
         printf("poses:    none: import needs --poses estimate or --pointmaps\n");
     }
     if (s->depth_frames > 0) {
-        printf("depth:    of %u of %u frames, %ux%u, %.9g world units a step\n", s->depth_frames, folder->frame_count,
+        printf("depth:    %u of %u frames, %ux%u, %.9g world units a step\n", s->depth_frames, folder->frame_count,
                s->depth_width, s->depth_height, folder->depth_unit);
     } else if (s->pointmaps > 0) {
         printf("depth:    pointmaps of %u of %u frames\n", s->pointmaps, folder->frame_count);
