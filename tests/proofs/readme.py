@@ -21,7 +21,7 @@ RIVALS = proof.ROOT / "docs" / "rivals.md"
 BOARDS = proof.ROOT / "docs" / "study" / "boards.md"
 PAPER = proof.ROOT / "docs" / "study" / "paper.md"
 COLUMNS = {"Cortex-M7 with DSP": ("AN500), DSP", 480), "Cortex-M55 with Helium": ("Helium", 400)}  # its title's end, MHz
-METHODS = {  # rows of README and docs/rivals.md, and of the last table of docs/study/paper.md
+METHODS = {  # rows of README and docs/rivals.md, and their methods in docs/study/paper.md
     "trim3r, `--preset fast`": "trim3r, fast", "trim3r, `--preset balanced` (default)": "trim3r",
     "trim3r, `--preset best`": "trim3r, best", "random points, 200 iterations of fine-tuning": "random+finetune",
     "trim3r, `fast`": "trim3r, fast", "trim3r, `balanced`": "trim3r", "trim3r, `best`": "trim3r, best"}
@@ -91,28 +91,29 @@ def with_boards(readme, boards):
     return readme
 
 
-def means_of(paper):
-    """Returns the means of the scenes by method: PSNR / SSIM at 20, 10, 5 and 2 % kept."""
-    tuned = re.search(r"<!-- tuned:begin -->\n(.*?)<!-- tuned:end -->", paper, flags=re.S)[1]
-    rows = tuned[tuned.index("| mean of the scenes |"):].splitlines()
-    cells = [[cell.strip() for cell in row.strip("|").split("|")] for row in rows]
-    return {row[1]: [" / ".join(cell.split(" / ")[:2]) for cell in row[2:]] for row in cells}
+def means_of(paper, table):
+    """Returns the means of the scenes in a table of docs/study/paper.md by method: PSNR / SSIM by percent kept."""
+    text = re.search(rf"<!-- {table}:begin -->\n(.*?)<!-- {table}:end -->", paper, flags=re.S)[1]
+    rows = [[cell.strip() for cell in row.strip("|").split("|")]
+            for row in re.search(r"^\| mean of the scenes \|.*\n(?:\|  \|.*\n)*", text, flags=re.M)[0].splitlines()]
+    return {row[1]: [" / ".join(cell.split(" / ")[:2]) for cell in row[2:]] for row in rows}
 
 
-def with_views(text, paper, ssim):
-    """Returns a text with the means that docs/study/paper.md has, as PSNR / SSIM or as PSNR alone."""
-    means = means_of(paper)
-    for name in {**METHODS, **{name: name for name in means if name.endswith("+finetune")}}:
-        cells = [mean if ssim else mean.split(" / ")[0] for mean in means[METHODS.get(name, name)]]
-        text = re.sub(rf"^\| {re.escape(name)} \|( [^|]* \|){{4}}$", f"| {name} | {' | '.join(cells)} |",
-                      text, flags=re.M)
+def with_means(text, means, ssim):
+    """Returns a text whose rows of these methods and budgets have these means, as PSNR / SSIM or as PSNR alone."""
+    for name, method in {**{method: method for method in means}, **METHODS}.items():
+        cells = [mean if ssim else mean.split(" / ")[0] for mean in means.get(method, [])]
+        row = rf"^\| {re.escape(name)} \|(?: [^|]* \|){{{len(cells)}}}$"
+        if cells:
+            text = re.sub(row, f"| {name} | {' | '.join(cells)} |", text, flags=re.M)
     return text
 
 
 def with_study(texts):
     """Returns README and docs/rivals.md with the figures of the study's pages."""
     boards, paper = BOARDS.read_text(), PAPER.read_text()
-    return [with_views(with_boards(texts[0], boards), paper, False), with_views(texts[1], paper, True)]
+    drawn, tuned = means_of(paper, "quality"), means_of(paper, "tuned")
+    return [with_means(with_boards(texts[0], boards), tuned, False), with_means(with_means(texts[1], drawn, True), tuned, True)]
 
 
 def check_study(texts):
