@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""structure.py [LIBRARY...]: the picture of the house holds. Every area includes only what stands below it, and no two
-source files of a library call each other, be it through others. No folder is a heap. Who opens a runtime chooses its
-inner loops.
+"""structure.py [LIBRARY...]: the picture of the house holds. Every area includes only what stands below it, and no
+two source files of a library call each other, be it through others. Nor do folders of the tools include each other,
+and none is a heap. Who opens a runtime chooses its inner loops.
 
 MAY is the whole picture: what each area may include. An area that is not in it is a finding, so a new one is entered
 here with its arrows.
@@ -153,6 +153,17 @@ def circles(arrows):
     return found
 
 
+def check_folders(root):
+    """Returns folders of the tools whose files include each other's, also within an area."""
+    arrows = collections.defaultdict(set)
+    for path in sources(root):
+        for name in INCLUDE.findall((root / path).read_text()):
+            target = resolve(root, path, name)
+            if path.parts[0] == "tools" and target is not None and target.parent != path.parent:
+                arrows[str(path.parent)].add(str(target.parent))
+    return [f"folders include each other: {', '.join(circle)}" for circle in circles(arrows)]
+
+
 def is_study(area):
     return area.split("/")[:2] == ["tools", "study"]
 
@@ -198,6 +209,7 @@ def planted_findings():
         proof.must_find(findings, offence, "house")
     if len(findings) != 5:
         proof.broken("the planted house has five offences, no more", findings)
+    proof.must_find(check_folders(house), "folders include each other: tools/cli, tools/scene, tools/study/rivals", "house")
     proof.must_find(check_kernels(house), "tools/cli/plain.c: opens a runtime", "house")
     proof.must_find(check_picture({"a": {"b"}, "b": {"c"}, "c": {"a"}}), "a, b, c", "a picture of three")
     proof.must_find(check_picture({"tools/trim3r": {"tools/study/rivals"}}), "of the product", "an arrow to the study")
@@ -213,8 +225,8 @@ def main():
     planted_findings()
     libraries = sys.argv[1:]
     tests = (path for path in (proof.ROOT / "tests").rglob("*") if path.suffix in (".c", ".h", ".py"))
-    proof.verdict("no area includes what stands above it; no two files of a library call each other; no folder is a heap; no embedder "
-                  "runs plain C", check_picture(MAY) + check_includes(proof.ROOT) + check_calls(libraries) + check_kernels(proof.ROOT) +
+    proof.verdict("no area includes what stands above it; no folders of the tools include each other; no two files of a library call each "
+                  "other; no folder is a heap; no embedder runs plain C", check_picture(MAY) + check_includes(proof.ROOT) + check_folders(proof.ROOT) + check_calls(libraries) + check_kernels(proof.ROOT) +
                   check_rooms([*sources(proof.ROOT), *tests]))
 
 

@@ -8,7 +8,7 @@
 
 #include "cli/cli.h"
 #include "messages/pixel_layout.h"
-#include "reconstruction/context/lens_masks.h"
+#include "reconstruction/lens_masks.h"
 #include "reconstruction/reconstruction_error.h"
 
 /* Returns the bytes of all rows without padding. */

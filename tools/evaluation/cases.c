@@ -14,7 +14,7 @@
 #include "import/folders/planar_recording.h"
 #include "import/import_source.h"
 #include "reconstruction/context/context_frames.h"
-#include "reconstruction/context/context_points.h"
+#include "reconstruction/context_points.h"
 
 /* ---- names ------------------------------------------------------------------------------------------------------ */
 

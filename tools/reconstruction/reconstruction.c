@@ -9,9 +9,9 @@
 
 #include "cli/cli.h"
 #include "core/camera.h"
-#include "reconstruction/context/context_points.h"
-#include "reconstruction/context/lens_masks.h"
+#include "reconstruction/context_points.h"
 #include "reconstruction/importance_pictures.h"
+#include "reconstruction/lens_masks.h"
 #include "reconstruction/reconstruction_error.h"
 #include "reconstruction/scene_frames.h"
 #include "state/state.h"

@@ -9,7 +9,7 @@
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
 #include "cli/tables/json_output.h"
-#include "reconstruction/context/lens_masks.h"
+#include "reconstruction/lens_masks.h"
 #include "reconstruction/reconstruction_error.h"
 #include "reconstruction/replay/hash_report.h"
 

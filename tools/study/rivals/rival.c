@@ -6,7 +6,7 @@
 
 #include "cli/cli.h"
 #include "core/fixed.h"
-#include "reconstruction/context/context_points.h"
+#include "reconstruction/context_points.h"
 #include "reconstruction/developed_frame.h"
 #include "reconstruction/scene_frames.h"
 #include "study/rivals/choose.h"

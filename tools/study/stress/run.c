@@ -6,7 +6,7 @@
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
-#include "reconstruction/context/context_points.h"
+#include "reconstruction/context_points.h"
 #include "study/stress/random.h"
 
 int stress_case_open(stress_case *c, const stress_contest *contest)

@@ -17,7 +17,7 @@
 #include "import/estimation/recording_poses.h"
 #include "import/import_source.h"
 #include "reconstruction/aligned_poses.h"
-#include "reconstruction/colmap_start.h"
+#include "reconstruction/colmap/colmap_start.h"
 #include "reconstruction/context/context_frames.h"
 #include "reconstruction/options/poses_option.h"
 #include "reconstruction/options/settings.h"

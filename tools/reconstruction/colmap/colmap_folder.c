@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "reconstruction/colmap_folder.h"
+#include "reconstruction/colmap/colmap_folder.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "reconstruction/context/context_points.h"
+#include "reconstruction/context_points.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "reconstruction/colmap_start.h"
+#include "reconstruction/colmap/colmap_start.h"
 
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "reconstruction/colmap_folder.h"
+#include "reconstruction/colmap/colmap_folder.h"
 #include "reconstruction/developed_frame.h"
 
 #define ERROR_BYTES 512

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "reconstruction/context/lens_masks.h"
+#include "reconstruction/lens_masks.h"
 
 #include <stdlib.h>
 
