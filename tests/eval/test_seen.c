@@ -2,7 +2,7 @@
 /* Which pixels of a target a context view saw too: walls, borders, what hides them, what was not measured. */
 #include <stdbool.h>
 
-#include "evaluation/seen.h"
+#include "geometry/seen.h"
 #include "test.h"
 
 #define SIDE 16

@@ -11,7 +11,7 @@
 #include "cli/cli.h"
 #include "cli/files/part_files.h"
 #include "cli/files/recorded_frame.h"
-#include "evaluation/seen.h"
+#include "geometry/seen.h"
 #include "pictures/metrics.h"
 #include "reconstruction/developed_frame.h"
 #include "reconstruction/reconstruction_error.h"

@@ -63,7 +63,7 @@ if(wasm_found)
                scene/store/scene_remark scene/store/scene_write import/viewpoint_angle geometry/quaternion
                viewer/viewpoints viewer/camera_path cli/files/recorded_frame reconstruction/developed_frame
                reconstruction/reconstruction_error reconstruction/context/context_choice
-               reconstruction/context/view_surface reconstruction/context/pinhole)
+               reconstruction/context/view_surface geometry/pinhole)
     list(APPEND file_sources ${CMAKE_CURRENT_SOURCE_DIR}/${name}.c)
   endforeach()
   # The reader of recordings, and the head that builds from them.

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "reconstruction/context/pinhole.h"
+#include "geometry/pinhole.h"
 #include "recording/recording.h"
 
 enum { SURFACE_ACROSS = 32, SURFACE_DOWN = 24, SURFACE_CELLS = SURFACE_ACROSS * SURFACE_DOWN };

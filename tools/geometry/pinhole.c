@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "reconstruction/context/pinhole.h"
+#include "geometry/pinhole.h"
 
 #include <math.h>
 #include <stddef.h>

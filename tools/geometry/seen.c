@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "evaluation/seen.h"
+#include "geometry/seen.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "reconstruction/context/pinhole.h"
+#include "geometry/pinhole.h"
 
 #define WITHIN (1.0 / 20)
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Which pixels of a target show a surface that a context view saw too, by the frames' own depth. */
-#ifndef TRIM3R_TOOLS_EVALUATION_SEEN_H
-#define TRIM3R_TOOLS_EVALUATION_SEEN_H
+#ifndef TRIM3R_TOOLS_SEEN_H
+#define TRIM3R_TOOLS_SEEN_H
 
 #include <stdint.h>
 
