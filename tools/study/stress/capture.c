@@ -35,11 +35,11 @@ bool stress_capture_copy(stress_capture *copy, const stress_capture *capture)
 {
     size_t pixels = (size_t)capture->width * capture->height;
     bool done = stress_capture_open(copy, capture->width, capture->height, capture->views, capture->depth_unit);
-    copy->colour_only = capture->colour_only;
     for (uint32_t v = 0; v <= capture->views && done; v++) {
         memcpy(copy->view[v].rgb, capture->view[v].rgb, pixels * 3);
         memcpy(copy->view[v].depth, capture->view[v].depth, pixels * sizeof(uint16_t));
         copy->view[v].camera = capture->view[v].camera;
+        copy->view[v].colour_only = capture->view[v].colour_only;
     }
     return done;
 }
@@ -76,7 +76,8 @@ static t3r_recorded_camera camera_of(const t3r_camera *camera, uint32_t width, u
 static int develop(stress_capture *capture, uint32_t v, const t3r_capture_frame *frame, const char *path)
 {
     t3r_camera camera;
-    uint16_t *depth = frame->frame.depth == NULL ? NULL : capture->view[v].depth;
+    capture->view[v].colour_only = frame->frame.depth == NULL;
+    uint16_t *depth = capture->view[v].colour_only ? NULL : capture->view[v].depth;
     const int code = developed_capture(frame, path, frame->index, capture->width, capture->height, capture->view[v].rgb,
                                        depth, &camera);
     if (code == CLI_OK) {
@@ -88,6 +89,7 @@ static int develop(stress_capture *capture, uint32_t v, const t3r_capture_frame 
 int stress_capture_read(stress_capture *capture, const evaluation_case *what, const reconstruction_options *settings)
 {
     t3r_capture_frame frames[T3R_MAX_VIEWS + 1];
+    double depth_unit = 0; /* of the first frame with depth */
     *capture = (stress_capture){0};
     for (uint32_t v = 0; v <= what->context_count; v++) {
         uint32_t index = v < what->context_count ? what->context[v] : what->target;
@@ -95,15 +97,15 @@ int stress_capture_read(stress_capture *capture, const evaluation_case *what, co
         if (code != CLI_OK) {
             return code;
         }
+        if (depth_unit == 0 && frames[v].frame.depth != NULL) {
+            depth_unit = ldexp((double)frames[v].frame.depth_unit_q40, -40);
+        }
     }
     uint32_t width = settings->config.width != 0 ? settings->config.width : frames[0].frame.width;
     uint32_t height = settings->config.height != 0 ? settings->config.height : frames[0].frame.height;
-    const bool colour_only = frames[0].frame.depth == NULL;
-    if (!stress_capture_open(capture, width, height, what->context_count,
-                             colour_only ? 1 : ldexp((double)frames[0].frame.depth_unit_q40, -40))) {
+    if (!stress_capture_open(capture, width, height, what->context_count, depth_unit == 0 ? 1 : depth_unit)) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    capture->colour_only = colour_only;
     int code = CLI_OK;
     for (uint32_t v = 0; v <= what->context_count && code == CLI_OK; v++) {
         code = develop(capture, v, &frames[v], what->path);
@@ -124,7 +126,7 @@ static bool write_frames(const stress_capture *capture, FILE *file, t3r_recorder
                                     .height = capture->height,
                                     .planes = {view->rgb},
                                     .stride_bytes = {capture->width * 3},
-                                    .depth = capture->colour_only ? NULL : view->depth,
+                                    .depth = view->colour_only ? NULL : view->depth,
                                     .depth_width = capture->width,
                                     .depth_height = capture->height,
                                     .camera = view->camera};

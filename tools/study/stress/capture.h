@@ -11,15 +11,15 @@
 #include "recording/recording.h"
 
 typedef struct stress_view {
-    uint8_t *rgb;    /* width x height x 3 */
-    uint16_t *depth; /* width x height steps; 0 = none */
+    uint8_t *rgb;     /* width x height x 3 */
+    uint16_t *depth;  /* width x height steps; 0 = none */
+    bool colour_only; /* recorded without depth: the plane is zero */
     t3r_recorded_camera camera;
 } stress_view;
 
 typedef struct stress_capture {
     uint32_t width, height;
-    uint32_t views;   /* context views; the target is view[views] */
-    bool colour_only; /* recorded without depth: the depth planes are zero */
+    uint32_t views; /* context views; the target is view[views] */
     double depth_unit;
     stress_view view[T3R_MAX_VIEWS + 1];
 } stress_capture;
