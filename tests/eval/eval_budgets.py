@@ -3,6 +3,7 @@
 """eval_budgets.py TRIM3R: `--gaussians` and `--poses` work in `trim3r eval` as in `trim3r build`."""
 import json
 import os
+import pathlib
 import shutil
 import sys
 import tempfile
@@ -57,11 +58,13 @@ def poses():
     # OpenCV finds too few features in the smaller room
     run(trim3r, "room", "--size", "96x96", "-o", "room.mcap")
     shutil.rmtree("recorded")
-    given, again = (rows(*ONE, "--gaussians", 500, *more)[0] for more in ((), ("--poses", "given")))
+    given, again = (rows(*ONE, "--gaussians", 500, "--images", "given", *more)[0] for more in ((), ("--poses", "given")))
     same = [key for key in given if key not in ("build_ms", "render_ms")]
     check([given[key] for key in same] == [again[key] for key in same], "--poses given changes rows")
     for source in ("estimate", "estimate-colour"):
-        posed = rows(*ONE, "--gaussians", 500, "--poses", source)[0]
+        posed = rows(*ONE, "--gaussians", 500, "--images", source, "--poses", source)[0]
+        masks = [pathlib.Path(folder, "1", "mask.png").read_bytes() for folder in ("given", source)]
+        check(masks[0] == masks[1], f"{source}: the estimate moves the mask that it is scored on")
         check(posed["settings"] == f"poses-{source}" and posed["psnr"] != given["psnr"], f"{source}: nothing changes")
         check(source != "estimate" or posed["psnr"] > given["psnr"] - 1, f"{posed['psnr']} dB, given {given['psnr']} dB")
         near(posed["psnr_all"], built("--gaussians", 500, "--poses", source), 0.05, f"{source} is not that of build")

@@ -22,13 +22,12 @@ SLACK = 0.25  # dB below the measured value: the most that a newly trained head 
 # of the whole scene, and the measured one over these triplets. Of the rooms' eleven triplets, an easy, a middling and
 # the two hardest.
 NOVEL = {
-    "hololens_b": (((0, 2, 1), (3, 5, 4), (6, 8, 7), (9, 11, 10)), 22.3, 27.45),
-    "icl_livingroom_synth": (((0, 3, 1), (8, 11, 9), (13, 16, 14), (14, 19, 17)), 26.6, 27.47),
-    "icl_livingroom_noisy_synth": (((0, 4, 2), (0, 3, 1), (1, 4, 3)), 28.8, 37.00),
+    "hololens_b": (((0, 2, 1), (3, 5, 4), (6, 8, 7), (9, 11, 10)), 22.3, 27.38),
+    "icl_livingroom_synth": (((0, 3, 1), (8, 11, 9), (13, 16, 14), (14, 19, 17)), 26.6, 27.35),
+    "icl_livingroom_noisy_synth": (((0, 4, 2), (0, 3, 1), (1, 4, 3)), 28.8, 39.11),
 }
-# On the shelf all triplets count, at 40 to 5 % kept, over which the learned head is level with the analytic one: 0.02
-# dB below it. It was 0.15 dB above before holes were bridged, which raised both by 0.4 dB, and 0.04 above with 300
-# SuperClusters.
+# On the shelf all triplets count, at 40 to 5 % kept, over which the learned head is level with the analytic one: 0.04 dB
+# above it. It was 0.15 dB above before holes were bridged, which raised both by 0.4 dB.
 LEVEL = 0.05  # dB
 # Every seventh of the 80 colour frames of the test scenes; the PSNR guaranteed for all 80 and the one measured on
 # these, by percent kept: `small` with 2 passes on a plane. The eleven are within 0.05 dB of all (36.70 and 34.37), so

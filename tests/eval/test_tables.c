@@ -109,11 +109,11 @@ TEST(test_columns_and_empty_cells)
         text,
         "scene,context,target,method,head,bits,refine,allocate,depth,ablation,wavelet,levels,clusters,settings,keep,"
         "requested,"
-        "gaussians,psnr,ssim,sharp,holes,psnr_all,psnr_seen,context_psnr,perceptual,build_ms,render_ms,arena_bytes,"
-        "scene_bytes,"
+        "gaussians,psnr_all,ssim_all,perceptual_all,psnr,ssim,sharp,holes,psnr_seen,context_psnr,perceptual,build_ms,"
+        "render_ms,arena_bytes,scene_bytes,"
         "planar_psnr,loss,"
         "picture,bits_epoch\n"
-        "room,\"0,2\",1,trim3r,analytic,,0,density,sensor,,db2,2,300,default,2.5,,13107,21.2500,,,0.00000,,,,,,,,,,,"
+        "room,\"0,2\",1,trim3r,analytic,,0,density,sensor,,db2,2,300,default,2.5,,13107,,,,21.2500,,,0.00000,,,,,,,,,,"
         "1/trim3r_2.5.png,\n");
     free(text);
     assert_null(evaluation_column_name(EVALUATION_COLUMNS));

@@ -320,6 +320,7 @@ int evaluation_case_enter(evaluation_entered *entered, const evaluation_cases *c
     if (cases->planar) {
         entered->own = planar_recording(cases->inputs[index], cases->width, cases->height, &entered->bytes);
     } else if (cases->poses != POSES_GIVEN) {
+        entered->what.recorded = entered->what.recording;
         entered->own = posed_anew(&entered->what, cases->poses);
     } else {
         return CLI_OK;

@@ -10,16 +10,12 @@
 
 #include "cli/cli.h"
 #include "cli/files/part_files.h"
-#include "cli/files/recorded_frame.h"
-#include "geometry/seen.h"
 #include "pictures/metrics.h"
-#include "reconstruction/developed_frame.h"
 #include "reconstruction/reconstruction_error.h"
 #include "scene/scene_file.h"
 
 /* alpha_q15 is one minus transmittance; 32767 is the runtime's one */
 #define ALPHA_ONE 32767u
-#define MASK_TRANSMITTANCE 0.3
 #define HOLE_TRANSMITTANCE 0.5
 
 static double transmittance(uint16_t alpha_q15)
@@ -46,191 +42,6 @@ int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluatio
     return status == T3R_OK ? CLI_OK : reconstruction_render_error(status, "render", r->runtime, camera, &target);
 }
 
-/* ---- shared by the rows of a case --------------------------------------------------------------------------- */
-
-static void free_picture(const evaluation_picture *picture)
-{
-    free(picture->rgb);
-    free(picture->shown);
-    free(picture->mask);
-}
-
-void evaluation_views_free(evaluation_views *views)
-{
-    free_picture(&views->target);
-    free(views->seen);
-    for (uint32_t v = 0; v < views->context_count; v++) {
-        free_picture(&views->context[v]);
-    }
-    method_source_close(&views->source);
-    *views = (evaluation_views){0};
-}
-
-/* Makes frame `index` as the image stage outputs it, and the area that the unpruned scene in `r` covers. */
-static int make_picture(evaluation_picture *picture, const evaluation_views *views, const evaluation_case *what,
-                        uint32_t index, reconstruction *r, uint16_t *alpha)
-{
-    size_t pixels = (size_t)views->width * views->height;
-    picture->rgb = malloc(pixels * 3);
-    picture->shown = malloc(pixels);
-    picture->mask = malloc(pixels);
-    if (picture->rgb == NULL || picture->shown == NULL || picture->mask == NULL) {
-        return cli_error(CLI_BAD_INPUT, "out of memory");
-    }
-    t3r_capture_frame frame;
-    int code = recorded_frame_read(what->recording, what->path, index, &frame);
-    code = code == CLI_OK ? developed_capture(&frame, what->path, index, views->width, views->height, picture->rgb,
-                                              NULL, &picture->camera)
-                          : code;
-    code =
-        code == CLI_OK ? developed_shown(&frame, what->path, index, views->width, views->height, picture->shown) : code;
-    if (code != CLI_OK || what->planar) {
-        memset(picture->mask, 255, pixels);
-        return code;
-    }
-    code = evaluation_draw(r, &picture->camera, views, NULL, alpha);
-    for (size_t i = 0; i < pixels && code == CLI_OK; i++) {
-        picture->mask[i] = transmittance(alpha[i]) < MASK_TRANSMITTANCE ? picture->shown[i] : 0;
-    }
-    return code;
-}
-
-static int make_pictures(evaluation_views *views, const evaluation_case *what, reconstruction *r)
-{
-    uint16_t *alpha = malloc((size_t)views->width * views->height * sizeof *alpha);
-    if (alpha == NULL) {
-        return cli_error(CLI_BAD_INPUT, "out of memory");
-    }
-    int code = make_picture(&views->target, views, what, what->target, r, alpha);
-    for (uint32_t v = 0; v < what->context_count && code == CLI_OK; v++) {
-        views->context_count = v + 1;
-        code = make_picture(&views->context[v], views, what, what->context[v], r, alpha);
-    }
-    free(alpha);
-    return code;
-}
-
-/* Reads the depth of frame `index` at the working size; depth is allocated. */
-static int read_depth(seen_view *view, uint16_t **depth, const evaluation_views *views, const evaluation_case *what,
-                      uint32_t index, const evaluation_picture *picture)
-{
-    size_t pixels = (size_t)views->width * views->height;
-    uint8_t *rgb = malloc(pixels * 3);
-    *depth = calloc(pixels, sizeof **depth);
-    t3r_camera camera;
-    t3r_capture_frame frame;
-    int code = rgb == NULL || *depth == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
-                                             : recorded_frame_read(what->recording, what->path, index, &frame);
-    if (code == CLI_OK) {
-        *view = (seen_view){&picture->camera, *depth, ldexp((double)frame.frame.depth_unit_q40, -40)};
-        code = developed_capture(&frame, what->path, index, views->width, views->height, rgb, *depth, &camera);
-    }
-    free(rgb);
-    return code;
-}
-
-/* Marks the target's pixels that a context view saw too; every frame has a depth of its own. */
-static int make_seen(evaluation_views *views, const evaluation_case *what)
-{
-    uint16_t *depth[1 + T3R_MAX_VIEWS] = {NULL};
-    seen_view view[1 + T3R_MAX_VIEWS];
-    int code = read_depth(&view[0], &depth[0], views, what, what->target, &views->target);
-    for (uint32_t v = 0; v < views->context_count && code == CLI_OK; v++) {
-        code = read_depth(&view[1 + v], &depth[1 + v], views, what, what->context[v], &views->context[v]);
-    }
-    views->seen = code == CLI_OK ? malloc((size_t)views->width * views->height) : NULL;
-    if (views->seen != NULL) {
-        seen_mask(views->seen, views->width, views->height, &view[0], &view[1], views->context_count);
-    } else if (code == CLI_OK) {
-        code = cli_error(CLI_BAD_INPUT, "out of memory");
-    }
-    for (uint32_t v = 0; v <= views->context_count; v++) {
-        free(depth[v]);
-    }
-    return code;
-}
-
-/* Whether a frame has a depth of its own. */
-static int has_depth(const evaluation_case *what, uint32_t index, bool *has)
-{
-    t3r_capture_frame frame;
-    int code = recorded_frame_read(what->recording, what->path, index, &frame);
-    *has = code == CLI_OK && frame.frame.depth != NULL;
-    return code;
-}
-
-/* Whether every context frame has a depth of its own. */
-static int have_depth(const evaluation_case *what, bool *all)
-{
-    *all = true;
-    for (uint32_t v = 0; v < what->context_count; v++) {
-        bool has;
-        int code = has_depth(what, what->context[v], &has);
-        if (code != CLI_OK) {
-            return code;
-        }
-        *all = *all && has;
-    }
-    return CLI_OK;
-}
-
-int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings)
-{
-    /* all points of the raw depth with the plain analytic head for every comparison; the sensor's depth if all
-     * frames have it */
-    reconstruction_options options = *settings;
-    bool sensed, target_sensed = false;
-    int looked = have_depth(what, &sensed);
-    if (looked == CLI_OK) {
-        looked = has_depth(what, what->target, &target_sensed);
-    }
-    if (looked != CLI_OK) {
-        return looked;
-    }
-    options.config.depth = sensed ? T3R_DEPTH_SENSOR : settings->config.depth;
-    options.points_of = sensed ? NULL : settings->points_of;
-    /* frames without depth: the mask is of the scene's own means */
-    if (!sensed && settings->config.depth == T3R_DEPTH_SENSOR && settings->scene != NULL) {
-        options.points_of = settings->scene;
-    }
-    options.gaussians = 0;
-    options.keep_percent = 100;
-    options.automatic = false;
-    options.min_psnr = 0;
-    options.config.fill_radius = options.config.bridge_radius = 0;
-    options.head = "analytic";
-    options.config.allocate = T3R_ALLOCATE_UNIFORM;
-    options.config.flying = options.config.redundancy = options.config.exposure = options.config.fit_widths =
-        options.config.align = 0;
-    options.config.keep_analysis = options.config.backdrop = false;
-    options.config.refine = 0;
-    options.hash = false;
-    options.arena = ARENA_FULL;
-    options.context_count = what->context_count;
-    memcpy(options.context, what->context, sizeof options.context);
-
-    *views = (evaluation_views){0};
-    reconstruction r;
-    int code = reconstruction_build(&r, what->recording, what->path, &options);
-    if (code != CLI_OK) {
-        evaluation_views_free(views);
-        return code;
-    }
-    views->width = r.config.width;
-    views->height = r.config.height;
-    code = make_pictures(views, what, &r);
-    reconstruction_close(&r);
-    if (code == CLI_OK && sensed && target_sensed && !what->planar) {
-        code = make_seen(views, what);
-    }
-    if (code != CLI_OK) {
-        evaluation_views_free(views);
-    }
-    return code;
-}
-
-/* ---- a row -------------------------------------------------------------------------------------------------- */
-
 static double share_of_holes(const uint16_t *alpha, const uint8_t *mask, size_t pixels)
 {
     size_t holes = 0, count = 0;
@@ -243,36 +54,42 @@ static double share_of_holes(const uint16_t *alpha, const uint8_t *mask, size_t 
     return count == 0 ? NAN : (double)holes / (double)count;
 }
 
-/* Draws the target and the context views from the scene in `r`, and scores them. */
-static int score(evaluation_row *row, uint8_t *render, uint8_t *rgb, uint16_t *alpha, const evaluation_views *views,
-                 bool planar, reconstruction *r)
+/* Draws the target from the scene in `r`, and scores it. */
+static int score_target(evaluation_row *row, uint8_t *render, uint16_t *alpha, const evaluation_views *views,
+                        bool planar, reconstruction *r)
 {
-    uint32_t w = views->width, h = views->height;
+    const uint32_t w = views->width, h = views->height;
     const evaluation_picture *target = &views->target;
-    double start = cli_now();
-    int code = evaluation_draw(r, &target->camera, views, render, alpha);
+    const double start = cli_now();
+    const int code = evaluation_draw(r, &target->camera, views, render, alpha);
     row->value[EVALUATION_RENDER_MS] = (cli_now() - start) * 1000;
     if (code != CLI_OK) {
         return code;
     }
+    const double psnr = metric_psnr(target->rgb, render, target->mask, w, h);
+    row->value[EVALUATION_PSNR_ALL] = metric_psnr(target->rgb, render, target->shown, w, h);
+    row->value[EVALUATION_SSIM_ALL] = metric_ssim(target->rgb, render, target->shown, w, h);
+    row->value[EVALUATION_PERCEPTUAL_ALL] = metric_flip(target->rgb, render, target->shown, w, h);
+    row->value[planar ? EVALUATION_PLANAR_PSNR : EVALUATION_PSNR] = psnr;
+    row->value[EVALUATION_PSNR_SEEN] = views->sensed ? psnr : NAN;
     row->value[EVALUATION_SSIM] = metric_ssim(target->rgb, render, target->mask, w, h);
     row->value[EVALUATION_SHARP] = metric_sharp(target->rgb, render, target->mask, w, h);
     row->value[EVALUATION_PERCEPTUAL] = metric_flip(target->rgb, render, target->mask, w, h);
     row->value[EVALUATION_HOLES] = share_of_holes(alpha, target->mask, (size_t)w * h);
-    row->value[EVALUATION_PSNR_ALL] = metric_psnr(target->rgb, render, target->shown, w, h);
-    if (planar) {
-        row->value[EVALUATION_PLANAR_PSNR] = row->value[EVALUATION_PSNR_ALL];
-        return CLI_OK;
-    }
-    row->value[EVALUATION_PSNR] = metric_psnr(target->rgb, render, target->mask, w, h);
-    row->value[EVALUATION_PSNR_SEEN] = views->seen != NULL ? metric_psnr(target->rgb, render, views->seen, w, h) : NAN;
+    return CLI_OK;
+}
+
+/* Draws the context views, and sets the mean of their PSNR. */
+static int score_context(evaluation_row *row, uint8_t *rgb, const evaluation_views *views, reconstruction *r)
+{
     double sum = 0;
     for (uint32_t v = 0; v < views->context_count; v++) {
-        code = evaluation_draw(r, &views->context[v].camera, views, rgb, alpha);
+        const evaluation_picture *context = &views->context[v];
+        const int code = evaluation_draw(r, &context->camera, views, rgb, NULL);
         if (code != CLI_OK) {
             return code;
         }
-        sum += metric_psnr(views->context[v].rgb, rgb, views->context[v].mask, w, h);
+        sum += metric_psnr(context->rgb, rgb, context->mask, views->width, views->height);
     }
     row->value[EVALUATION_CONTEXT_PSNR] = views->context_count == 0 ? NAN : sum / views->context_count;
     return CLI_OK;
@@ -387,7 +204,10 @@ int evaluation_score(evaluation_row *row, uint8_t *render, const evaluation_view
     uint8_t *rgb = malloc(pixels * 3);
     uint16_t *alpha = malloc(pixels * sizeof *alpha);
     int code = rgb == NULL || alpha == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
-                                            : score(row, render, rgb, alpha, views, what->planar, r);
+                                            : score_target(row, render, alpha, views, what->planar, r);
+    if (code == CLI_OK && !what->planar) {
+        code = score_context(row, rgb, views, r);
+    }
     free(alpha);
     free(rgb);
     return code;

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Scores of views that a reconstruction was not given.
  *
- * A case is one (scene, context, target). evaluation_views_make() prepares what all of its rows share: the recorded
- * pictures through the image stage, their cameras and their masks. evaluation_measure() builds one scene and scores it:
- * one row. Functions that can fail report on stderr and return an exit status of cli.h. */
+ * evaluation_measure() builds one scene of a case (views.h) and scores it: one row. Functions that can fail report on
+ * stderr and return an exit status of cli.h. */
 #ifndef TRIM3R_TOOLS_EVALUATION_H
 #define TRIM3R_TOOLS_EVALUATION_H
 
@@ -11,9 +10,8 @@
 #include <stdint.h>
 
 #include "evaluation/settings.h"
-#include "reconstruction/method.h"
+#include "evaluation/views.h"
 #include "reconstruction/reconstruction.h"
-#include "recording/recording.h"
 #include "trim3r.h"
 
 #define EVALUATION_NAME_BYTES 256 /* of a scene's name */
@@ -25,49 +23,19 @@ typedef struct evaluation_budget {
     uint32_t gaussians; /* a count, or all valid points if they are fewer; 0 = not given */
 } evaluation_budget;
 
-typedef struct evaluation_case {
-    const t3r_recording *recording;
-    const char *path;                /* of the recording or image, for messages */
-    const char *scene;               /* the scene's name in the tables */
-    uint32_t context[T3R_MAX_VIEWS]; /* frame indices */
-    uint32_t context_count;
-    uint32_t target; /* a frame index */
-    bool planar;     /* one image on a plane: the target is the context view itself, and all pixels count */
-} evaluation_case;
-
-/* A recorded frame at the working size. */
-typedef struct evaluation_picture {
-    t3r_camera camera; /* undistorted */
-    uint8_t *rgb;      /* width x height x 3 */
-    uint8_t *shown;    /* width x height, 255 = the recorded picture reaches it, 0 = beyond the lens: it never counts */
-    uint8_t *mask;     /* width x height, 255 = counts, else 0 */
-} evaluation_picture;
-
-typedef struct evaluation_views {
-    uint32_t width, height;
-    evaluation_picture target;
-    uint8_t *seen; /* width x height, 255 = a context view saw the surface too (seen.h); NULL = depth is missing */
-    evaluation_picture context[T3R_MAX_VIEWS];
-    uint32_t context_count;
-    method_source source; /* shared by the rows of a method */
-} evaluation_views;
-
-/* Makes the masks from the frames' own depth if every context view has one, for every kind of row. Call
- * evaluation_views_free() after CLI_OK, and only then. */
-int evaluation_views_make(evaluation_views *views, const evaluation_case *what, const reconstruction_options *settings);
-void evaluation_views_free(evaluation_views *views);
-
 /* The numbers of a row; NaN = does not apply. */
 typedef enum evaluation_value {
     EVALUATION_KEEP,      /* percent of the valid points; NaN for a budget given as a count */
     EVALUATION_REQUESTED, /* the budget's count */
     EVALUATION_GAUSSIANS, /* count used */
-    EVALUATION_PSNR,      /* on the mask, dB */
+    EVALUATION_PSNR_ALL,  /* all pixels that the recorded picture reaches, over black, dB; the next two likewise */
+    EVALUATION_SSIM_ALL,
+    EVALUATION_PERCEPTUAL_ALL, /* FLIP */
+    EVALUATION_PSNR,           /* on the mask, over black, dB */
     EVALUATION_SSIM,
     EVALUATION_SHARP,
     EVALUATION_HOLES,        /* share of mask pixels with transmittance above 1/2 */
-    EVALUATION_PSNR_ALL,     /* all pixels that the recorded picture reaches, over black, dB */
-    EVALUATION_PSNR_SEEN,    /* pixels whose surface a context view saw, over black, dB */
+    EVALUATION_PSNR_SEEN,    /* the same as EVALUATION_PSNR; NaN without a depth of every frame */
     EVALUATION_CONTEXT_PSNR, /* mean over the context views on their masks, dB */
     EVALUATION_PERCEPTUAL,   /* FLIP on the mask */
     EVALUATION_BUILD_MS,  /* frames to scene: the image stage and all later steps, including scoring and fine-tuning */

@@ -175,13 +175,11 @@ static const struct argp_option options[] = {
      "numbers of Gaussians, one row each, after those of --keep: all valid points if there are fewer", 0},
     {"prune", OPTION_TO(evaluation_options, settings.points_of), "SCENE.ply", OPTION_READS,
      "scene, made elsewhere of the views of --context, to prune: percents are of its Gaussians; trim3r makes new ones "
-     "of points among their means; where a view has no depth, the mask is of the means",
+     "of points among their means",
      0},
     {"scene", OPTION_TO(evaluation_options, settings.scene), "SCENE", OPTION_READS,
      "scene file, of trim3r or made elsewhere, to score as it is: nothing is built; it is in the recording's "
-     "world, and the frames of --context, or of the triplets, make the mask alone; where one has no depth, the mask is "
-     "of the "
-     "scene's means",
+     "world, and the frames of --context, or of the triplets, make the mask alone",
      0},
     {"heads", KEY_HEADS, CHOSEN_HEAD_VALUES ",...", OPTION_READS | OPTION_LIST | OPTION_OR_WORD,
      "heads to compare, as --head takes them: rows of the method trim3r for each", 0},
@@ -201,7 +199,7 @@ static const struct argp_option options[] = {
     {"html", OPTION_TO(evaluation_options, to.page), "PAGE.html", OPTION_WRITES(FILE_PAGE),
      "page to write, with the pictures side by side; it needs no other file", 0},
     {"wide", OPTION_TO(evaluation_options, to.wide), NULL, 0,
-     "print all main columns, in 200 characters, not those that fit 80; several methods or heads print them always", 0},
+     "print all main columns, in 224 characters, not those that fit 80; several methods or heads print them always", 0},
     {"json", OPTION_TO(evaluation_options, to.json), NULL, 0,
      "print one JSON object on stdout: rows, means over the cases, refused cases", 0},
     {NULL, 0, NULL, 0, "How the work is done:", 3},
@@ -247,12 +245,16 @@ const struct argp evaluation_argp = {
            "  keep          percent of the valid points that was asked for\n"
            "  requested     number of Gaussians that was asked for instead\n"
            "  bits          of a network's weights, and of its activations if not the same\n"
-           "  psnr, ssim    on the mask; decibels are averaged as decibels\n"
+           "  psnr_all      of the picture as far as the lens reaches, over black;\n"
+           "                decibels are averaged as decibels\n"
+           "  ssim_all, perceptual_all\n"
+           "                of the same pixels\n"
+           "  psnr, ssim    on the mask\n"
            "  sharp         mean gradient over the target's, on the mask\n"
            "  perceptual    FLIP at 67 pixels a degree, on the mask; 0 = no difference\n"
            "  holes         share of the mask that keeps a transmittance above 0.5\n"
-           "  psnr_all      of the picture as far as the lens reaches, over black\n"
-           "  psnr_seen     of pixels that a context view saw: it measured their depth\n"
+           "  psnr_seen     psnr, but empty where a frame has no depth: a mean of it\n"
+           "                never mixes masks with whole pictures\n"
            "  planar_psnr   of all pixels of --planar, where no score has a mask\n"
            "  context_psnr  mean over the context views, each on its own mask\n"
            "  build_ms      recorded frames to scene\n"
@@ -261,8 +263,10 @@ const struct argp evaluation_argp = {
            "  loss          of --auto: decibels lost, measured between the context views\n"
            "  picture       the name of the render within --images\n"
            "  bits_epoch    of the program: results of other epochs have other bits\n"
-           "The mask: the pixels that all points of the raw depth, drawn with the plain analytic head, leave a "
-           "transmittance below 0.3.\n"
+           "The mask: the pixels whose surface a context view saw. Their recorded depth puts a point into a context "
+           "view that measured the same depth there, within 5 %, at the nearest pixel or beside it. Where the target "
+           "or a context view has no recorded depth, the mask is the whole picture. No scene is built for it, and "
+           "--depth does not change it. With --poses estimate it follows the recorded poses, if there are any.\n"
            "\n"
            "--views N: the frames of the triplet, or of --context, come first. Then come the other frames that have "
            "pose, intrinsics and (but for --depth stereo) depth, the nearest to the target's camera first. The "

@@ -55,9 +55,6 @@ int evaluation_write_views(const char *folder, const evaluation_views *views, co
     if (code == CLI_OK && memchr(views->target.shown, 0, (size_t)views->width * views->height) != NULL) {
         code = write_png(folder, "shown.png", views, 1, views->target.shown);
     }
-    if (code == CLI_OK && views->seen != NULL) {
-        code = write_png(folder, "seen.png", views, 1, views->seen);
-    }
     for (uint32_t v = 0; v < views->context_count && code == CLI_OK; v++) {
         char name[] = "context_a.png";
         name[strlen("context_")] = (char)('a' + v); /* at most 16 */
@@ -88,8 +85,9 @@ void evaluation_page_views(html_page *page, const evaluation_views *views, const
     }
     html_page_picture(page, "target", views->width, views->height, 3, views->target.rgb, 0);
     if (!what->planar) {
-        html_page_picture(page, "mask: what the context views can show", views->width, views->height, 1,
-                          views->target.mask, 0);
+        html_page_picture(page,
+                          views->sensed ? "mask: what a context view saw" : "mask: all pixels, as depth is missing",
+                          views->width, views->height, 1, views->target.mask, 0);
     }
 }
 

@@ -12,7 +12,7 @@
 #include "cli/tables/csv.h"
 #include "evaluation/evaluation.h"
 
-#define EVALUATION_COLUMNS 33u
+#define EVALUATION_COLUMNS 35u
 #define EVALUATION_CELL_BYTES 512u /* of any cell, including the terminator */
 
 /* Stable order; NULL past the last. */

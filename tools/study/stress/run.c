@@ -12,24 +12,19 @@
 int stress_case_open(stress_case *c, const stress_contest *contest)
 {
     stress_run run;
+    reconstruction_points points = {.valid = 0};
     c->views = (evaluation_views){0};
     int code = stress_run_open(&run, c, contest, NULL, 0, 0);
+    const reconstruction_options settings = stress_run_options(&run, c, contest, contest->keep_count);
     if (code == CLI_OK) {
-        reconstruction_options settings = contest->settings;
-        settings.config.width = c->base.width;
-        settings.config.height = c->base.height;
-        code = evaluation_views_make(&c->views, &run.what, &settings);
+        code = reconstruction_count(&points, run.recording, c->name, &settings);
     }
-    uint32_t valid = stress_capture_valid(&c->base);
-    if (code == CLI_OK && contest->settings.config.depth == T3R_DEPTH_STEREO) {
-        const reconstruction_options options = stress_run_options(&run, c, contest, contest->keep_count);
-        reconstruction_points points = {.valid = 0};
-        code = reconstruction_count(&points, run.recording, c->name, &options);
-        valid = points.valid;
+    if (code == CLI_OK) {
+        code = evaluation_views_make(&c->views, &run.what, &settings);
     }
     stress_run_close(&run);
     for (uint32_t k = 0; k < contest->keep_count; k++) {
-        c->budget[k] = reconstruction_budget(valid, contest->keep[k]);
+        c->budget[k] = reconstruction_budget(points.valid, contest->keep[k]);
     }
     return code;
 }
