@@ -75,6 +75,9 @@ def reports(folder):
     page = f"{folder}/report.html"
     run(trim3r, "chart", *tables, "--pictures", folders[0], "--pictures", folders[1], "-o", page)
     text = open(page, encoding="utf-8").read()
+    check("Whole-picture SSIM" in text, "the whole picture can be chosen")
+    run(trim3r, "chart", tables[0], "--svg", f"{folder}/whole.svg", "--quality", "psnr_all", "--against", "build_ms")
+    check("Whole-picture PSNR against build time" in texts(f"{folder}/whole.svg", "text"), "and drawn")
     check("http" not in text.replace("http://www.w3.org/2000/svg", "").replace("http-equiv", ""), "nothing is fetched")
     rows = sum(open(t, encoding="utf-8").read().count(".png") for t in tables)
     scenes = {line.split(",")[0] for t in tables for line in open(t, encoding="utf-8").read().splitlines()[1:]}

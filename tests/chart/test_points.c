@@ -171,7 +171,9 @@ TEST(test_refusals)
         {"", "t.csv:1: the table is empty"},
         {"\n\n", "t.csv:1: the table is empty"},
         {HEADING, "t.csv:1: a heading without rows"},
-        {"method,build_ms\na,1\n", "t.csv:1: the heading names no quality: one of psnr, ssim, perceptual, planar_psnr"},
+        {"method,build_ms\na,1\n",
+         "t.csv:1: the heading names no quality: one of psnr, ssim, perceptual, planar_psnr, psnr_all, ssim_all, "
+         "perceptual_all"},
         {"psnr,keep\n1,2\n",
          "t.csv:1: the heading names no cost: one of build_ms, render_ms, arena_bytes, scene_bytes"},
         {"psnr,build_ms,psnr\n1,2,3\n", "t.csv:1: psnr is in the heading twice"},

@@ -29,6 +29,9 @@ const chart_measure_about chart_measures[CHART_MEASURES] = {
     [CHART_SSIM] = {"ssim", "SSIM", CHART_PLAIN, 3, 0},
     [CHART_PERCEPTUAL] = {"perceptual", "Difference (FLIP)", CHART_PLAIN, 3, 1},
     [CHART_PLANAR_PSNR] = {"planar_psnr", "Planar PSNR", CHART_DECIBELS, 2, 0},
+    [CHART_PSNR_ALL] = {"psnr_all", "Whole-picture PSNR", CHART_DECIBELS, 2, 0},
+    [CHART_SSIM_ALL] = {"ssim_all", "Whole-picture SSIM", CHART_PLAIN, 3, 0},
+    [CHART_PERCEPTUAL_ALL] = {"perceptual_all", "Whole-picture difference (FLIP)", CHART_PLAIN, 3, 1},
     [CHART_BUILD_MS] = {"build_ms", "Build time", CHART_MILLISECONDS, 0, 1},
     [CHART_RENDER_MS] = {"render_ms", "Render time", CHART_MILLISECONDS, 0, 1},
     [CHART_ARENA_BYTES] = {"arena_bytes", "Arena", CHART_BYTES, 0, 1},
@@ -82,7 +85,7 @@ static int read_heading(csv_reader *reader, layout *l, char *error, size_t error
     }
     if (!quality) {
         return fail(reader, error, error_bytes, "the heading names no quality",
-                    ": one of psnr, ssim, perceptual, planar_psnr");
+                    ": one of psnr, ssim, perceptual, planar_psnr, psnr_all, ssim_all, perceptual_all");
     }
     return cost ? 0
                 : fail(reader, error, error_bytes, "the heading names no cost",

@@ -34,6 +34,9 @@ typedef enum chart_measure {
     CHART_SSIM,
     CHART_PERCEPTUAL,
     CHART_PLANAR_PSNR,
+    CHART_PSNR_ALL, /* of the whole picture, as the next two; after the others, so that none is the default */
+    CHART_SSIM_ALL,
+    CHART_PERCEPTUAL_ALL,
     CHART_QUALITIES,
     CHART_BUILD_MS = CHART_QUALITIES,
     CHART_RENDER_MS,

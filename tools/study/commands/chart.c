@@ -52,7 +52,7 @@ static chart_measure measure(struct argp_state *state, const char *option, list_
         }
     }
     argp_error(state, "--%s takes %s, not '%.*s'", option,
-               from == 0 ? "psnr, ssim, perceptual or planar_psnr"
+               from == 0 ? "psnr, ssim, perceptual, planar_psnr, psnr_all, ssim_all or perceptual_all"
                          : "build_ms, render_ms, arena_bytes and scene_bytes with commas between",
                (int)name.length, name.text);
     return CHART_MEASURES;
@@ -134,7 +134,10 @@ static const struct argp_option argp_options[] = {
     {"dark", OPTION_TO(options, dark), NULL, 0, "draw the PNG on a dark ground", 0},
     {NULL, 0, NULL, 0, "What is shown:", 2},
     {"quality", KEY_QUALITY, "NAME", 0,
-     "quality to draw: psnr (default), ssim, perceptual or planar_psnr; the report begins with it", 0},
+     "quality to draw: psnr, ssim, perceptual, planar_psnr, psnr_all, ssim_all or perceptual_all; the report begins "
+     "with "
+     "it (psnr)",
+     0},
     {"against", KEY_AGAINST, "NAME,NAME,...", 0,
      "costs to draw it against: build_ms, render_ms, arena_bytes, scene_bytes (all that the tables have); the report "
      "begins with the first",
