@@ -62,7 +62,7 @@ tool("study/troubles")
 tool("study/commands", "trim3r", "study/chart", "study/ablation", "study/stress", "study/troubles")
 tool("study/train", "study/rivals")
 tool("study", "study/commands")
-tool("python", "room", "pictures", "scene", base=PLATFORM | {"quant"})
+tool("python", "geometry", "room", "pictures", "scene", base=PLATFORM | {"quant"})
 tool("examples", base=PLATFORM | {"quant", "platform/baremetal"})
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)

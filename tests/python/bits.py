@@ -9,10 +9,12 @@ import tempfile
 from common import FRAMES, SIDE, check, np, small, trim3r, with_views
 
 from checks import done, near, run
+from png import png
 
 # the program's rounding
 FIGURES = {"psnr": ("psnr", 4), "ssim": ("ssim", 5), "sharp": ("sharp", 5), "holes": ("holes", 5),
-           "psnr_all": ("psnr_all", 4), "context_psnr": ("context_psnr", 4), "flip": ("perceptual", 5)}
+           "psnr_all": ("psnr_all", 4), "ssim_all": ("ssim_all", 5), "flip_all": ("perceptual_all", 5),
+           "context_psnr": ("context_psnr", 4), "flip": ("perceptual", 5)}
 
 
 def program(*arguments):
@@ -118,15 +120,45 @@ def check_scene(folder):
             check(len(trim3r.Scene.read(folder / f"scene{suffix}")) == len(scene), f"as {suffix}")
 
 
-def check_figures(path):
+def check_figures(path, frames):
     rows = json.loads(program("eval", path, "--context", "0,2", "--target", "1", "--keep", "40,10", "--json"))["rows"]
-    ours = trim3r.evaluate([FRAMES[0], FRAMES[2]], FRAMES[1], [40, 10])
+    ours = trim3r.evaluate([frames[0], frames[2]], frames[1], [40, 10])
     for theirs, row in zip(rows, ours):
         check((row.gaussians, row.keep) == (theirs["gaussians"], theirs["keep"]), f"{row}")
         for name, (column, digits) in FIGURES.items():
             near(getattr(row, name), theirs[column], 0.51 * 10 ** -digits, f"{name} at {row.keep} %")
         check(row.image.shape == (SIDE, SIDE, 3), "the image")
     check(len(rows) == len(ours) == 2 and ours[0].psnr > ours[1].psnr + 0.1, "two rows, and the larger budget is better")
+    return ours[0]
+
+
+def bent(folder, name, depths):
+    """Records the room through a lens that does not reach every pixel; frames beyond so many have no depth."""
+    made, frames = folder / name, []
+    made.mkdir()
+    for i, frame in enumerate(FRAMES):
+        (made / f"{i}.png").write_bytes(png([row.tobytes() for row in frame.colour]))
+        (made / f"{i}.depth.png").write_bytes(png([row.astype(">u2").tobytes() for row in frame.depth], 16, 1))
+        pose = frame.camera.pose @ np.diag([1, -1, -1, 1])
+        frames.append({"file_path": f"{i}.png", "transform_matrix": pose.tolist()})
+        frames[-1].update({"depth_path": f"{i}.depth.png"} if i in depths else {})
+    camera = FRAMES[0].camera
+    (made / "transforms.json").write_text(json.dumps(
+        {"camera_model": "OPENCV", "k1": 0.2, "k2": 0, "p1": 0, "p2": 0, "fl_x": camera.fx, "fl_y": camera.fy,
+         "cx": camera.cx + 0.5, "cy": camera.cy + 0.5, "w": SIDE, "h": SIDE, "integer_depth_scale": FRAMES[0].depth_unit,
+         "frames": frames}))
+    program("import", made, "-o", made.with_suffix(".mcap"))
+    return made.with_suffix(".mcap")
+
+
+def check_masks(folder):
+    """Compares the figures of frames with a lens, all with depth, and with none of the target."""
+    for name, depths in (("lens", (0, 1, 2)), ("lens-no-depth", (0, 2))):
+        path = bent(folder, name, depths)
+        row = check_figures(path, trim3r.Recording(path))
+        check((row.psnr == row.psnr_all) == (1 not in depths), f"{name}: psnr {row.psnr}, psnr_all {row.psnr_all}")
+        target = trim3r.develop(trim3r.Recording(path)[1], SIDE, SIDE).colour
+        check(row.psnr_all > trim3r.psnr(target, row.image) + 0.1, f"{name}: pixels beyond the lens do not count")
 
 
 def check_stereo(path):
@@ -150,7 +182,8 @@ def main():
         check_same_bits()
         check_heads()
         check_scene(folder)
-        check_figures(path)
+        check_figures(path, FRAMES)
+        check_masks(folder)
         check_stereo(path)
     done()
 

@@ -3,6 +3,7 @@
 #ifndef TRIM3R_PYTHON_INTERFACE_H
 #define TRIM3R_PYTHON_INTERFACE_H
 
+#include "geometry/seen.h"
 #include "host/cpu.h"
 #include "pictures/metrics.h"
 #include "recording/recording.h"
