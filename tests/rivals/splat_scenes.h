@@ -16,6 +16,13 @@
 #include "oracle/float64/drawing.h"
 #include "study/rivals/splat_view.h"
 
+static inline void assert_near(double a, double b, double bound)
+{
+    if (!(fabs(a - b) <= bound)) {
+        fail_msg("%.9g is not within %g of %.9g", a, bound, b);
+    }
+}
+
 /* The frame of the scenes: scene units are world units, their origin the world's. */
 extern const t3r_scene_frame scene_frame;
 

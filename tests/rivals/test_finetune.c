@@ -66,7 +66,7 @@ TEST(finds_back)
     assert_non_null(s);
     make_scene(s);
     double before = psnr(s);
-    assert_true(finetune(&s->model, s->targets, VIEWS, 200, &finetune_rates_default));
+    assert_true(finetune(&s->model, s->targets, VIEWS, 200, &finetune_rates_default, NULL));
     double after = psnr(s);
     print_message("%.1f dB disturbed, %.1f dB fine-tuned\n", before, after);
     assert_true(s->model.count == COUNT);
@@ -84,11 +84,15 @@ TEST(finds_back)
 TEST(same_every_time)
 {
     scene *s = calloc(2, sizeof *s);
+    t3r_threads *threads = t3r_threads_start(3);
     assert_non_null(s);
+    assert_non_null(threads);
     for (int i = 0; i < 2; i++) {
         make_scene(&s[i]);
-        assert_true(finetune(&s[i].model, s[i].targets, VIEWS, 10, &finetune_rates_default));
+        assert_true(
+            finetune(&s[i].model, s[i].targets, VIEWS, 10, &finetune_rates_default, i == 0 ? NULL : threads));
     }
+    t3r_threads_stop(threads);
     assert_memory_equal(s[0].model.parameters, s[1].model.parameters, COUNT * SPLAT_PARAMETERS * sizeof(double));
     splat_model_free(&s[0].model);
     splat_model_free(&s[1].model);
@@ -106,8 +110,8 @@ TEST(first_step)
     set_ball(&model, 1, 0, 0, -1, 0.1, 0.5); /* behind the camera */
     double before[2 * SPLAT_PARAMETERS];
     memcpy(before, model.parameters, sizeof before);
-    const finetune_rates rates = {.position = 1e-3, .log_scale = 2e-3, .rotation = 3e-3, .logit = 4e-3, .colour = 5e-3};
-    assert_true(finetune(&model, &target, 1, 1, &rates));
+    const finetune_rates rates = {.position = 1e-3, .log_scale = 2e-3, .rotation = 3e-3, .logit = 4e-3, .colour = 5e-3, .last = 1};
+    assert_true(finetune(&model, &target, 1, 1, &rates, NULL));
     const double *after = parameters_of(&model, 0);
     for (int k = 0; k < 3; k++) {
         /* towards black: smaller, fainter, darker */

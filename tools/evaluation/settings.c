@@ -107,7 +107,14 @@ static void add_rest(words *w, const reconstruction_options *s, const reconstruc
     if (s->config.width != 0) {
         add(w, "working-%" PRIu32 "x%" PRIu32, s->config.width, s->config.height);
     }
-    add_number(w, "iterations", s->finetune_iterations, usual->finetune_iterations);
+    add_number(w, "iterations", s->finetune.iterations, usual->finetune.iterations);
+    add_number(w, "rounds", s->finetune.rounds, usual->finetune.rounds);
+    if (s->finetune.pruned_widths) {
+        add(w, "pruned-widths");
+    }
+    if (s->finetune.published_rates) {
+        add(w, "published-rates");
+    }
     if (s->arena == ARENA_MIN) {
         add(w, "arena-min");
     } else if (s->arena == ARENA_BYTES) {

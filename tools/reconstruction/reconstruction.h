@@ -14,6 +14,7 @@
 #include "cli/options/processor_options.h"
 #include "posing/poses_source.h"
 #include "reconstruction/chosen_head.h"
+#include "reconstruction/finetune_options.h"
 #include "reconstruction/measured_loss.h"
 #include "reconstruction/stage_times.h"
 #include "recording/recording.h"
@@ -49,7 +50,7 @@ typedef struct reconstruction_options {
     double max_loss;                 /* dB, relative to all points; 0 unless automatic */
     double min_psnr;                 /* dB of the context views: the fewest that reach it; 0 = exactly the budget */
     const struct method *method;     /* for callers that build by several methods (method.h); NULL = none given */
-    uint32_t finetune_iterations;    /* of methods that fine-tune; 0 = their own number */
+    finetune_options finetune;       /* for methods that fine-tune */
     const char
         *importance; /* for the allocation `given`: a text for importance_pictures_read(); NULL = the planes below */
     const uint16_t *const *importance_planes; /* one per context view at the working size, rows without gaps */

@@ -11,6 +11,7 @@
 #include <stdint.h>
 
 #include "study/rivals/splat_view.h"
+#include "trim3r_host.h"
 
 /* The target picture of a view. */
 typedef struct finetune_target {
@@ -22,14 +23,17 @@ typedef struct finetune_target {
 typedef struct finetune_rates {
     double position; /* scene units: the median depth is between one and two */
     double log_scale, rotation, logit, colour;
+    double last; /* share of the first rates that remains in the last iteration; the decay is exponential */
 } finetune_rates;
 
-/* Tuned on training scenes (docs/rivals.md) at budgets of 40, 10 and 5 % with random and efficientgs, varying one rate
- * at a time. Decaying rates were no better. */
+/* Tuned on training scenes from the start of splat_model_widen() (docs/rivals.md). */
 extern const finetune_rates finetune_rates_default;
+/* The rates with which 3D Gaussian Splatting and the rivals' programs train for thousands of iterations. */
+extern const finetune_rates finetune_rates_published;
 
-/* Changes the model in place. False if out of memory; the model is then the result of the last complete iteration. */
+/* Changes the model in place, with the same result for any number of threads (NULL: the caller's alone). False if out
+ * of memory; the model is then the result of the last complete iteration. */
 bool finetune(splat_model *model, const finetune_target *targets, uint32_t target_count, uint32_t iterations,
-              const finetune_rates *rates);
+              const finetune_rates *rates, t3r_threads *threads);
 
 #endif

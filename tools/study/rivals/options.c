@@ -6,10 +6,11 @@
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "reconstruction/options/option_names.h"
+#include "study/rivals/rounds.h"
 
 #define ITERATIONS_MOST 100000u
 
-enum { KEY_ITERATIONS = 0x300, KEY_MASK_HEAD };
+enum { KEY_ITERATIONS = 0x300, KEY_ROUNDS, KEY_START, KEY_RATES, KEY_MASK_HEAD };
 
 static const method *named(struct argp_state *state, const char *option, list_word name)
 {
@@ -60,6 +61,14 @@ void rival_check_settings(struct argp_state *state, const reconstruction_options
 static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "Rivals:", 15},
     {"finetune-iterations", KEY_ITERATIONS, "N", 0, "iterations of the methods with +finetune, 1..100000 (200)", 0},
+    {"finetune-rounds", KEY_ROUNDS, "N", 0,
+     "rounds in which rivals prune and fine-tune, 1..16 (as published: pup 2, efficientgs 3, eagles 5, others 1)", 0},
+    {"finetune-start", KEY_START, "neighbours|pruned", 0,
+     "widths of a rival's Gaussians before fine-tuning: the distances to their neighbours, as 3D Gaussian Splatting "
+     "starts, or those left by pruning (neighbours)",
+     0},
+    {"finetune-rates", KEY_RATES, "tuned|published", 0,
+     "rates of fine-tuning: tuned on training scenes for few iterations, or those of 3D Gaussian Splatting (tuned)", 0},
     /* CHOSEN_HEAD_VALUES, shortened to 79 columns of help */
     {"mask-head", KEY_MASK_HEAD, "tiny|small|H.t3w|analytic|none", OPTION_READS | OPTION_OR_WORD,
      "head whose unpruned scene rivals with +head rank (the one of --head); so --head can be one that was retrained "
@@ -68,12 +77,31 @@ static const struct argp_option options[] = {
     {0},
 };
 
+/* Returns whether the value is the second of two words. */
+static bool option_second(struct argp_state *state, const char *option, const char *text, const char *first,
+                          const char *second)
+{
+    if (strcmp(text, first) != 0 && strcmp(text, second) != 0) {
+        argp_error(state, "--%s takes %s or %s, not '%s'", option, first, second, text);
+    }
+    return strcmp(text, second) == 0;
+}
+
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     reconstruction_options *o = state->input;
     switch (key) {
     case KEY_ITERATIONS:
-        o->finetune_iterations = option_number(state, "finetune-iterations", arg, 1, ITERATIONS_MOST);
+        o->finetune.iterations = option_number(state, "finetune-iterations", arg, 1, ITERATIONS_MOST);
+        return 0;
+    case KEY_ROUNDS:
+        o->finetune.rounds = option_number(state, "finetune-rounds", arg, 1, ROUNDS_MOST);
+        return 0;
+    case KEY_START:
+        o->finetune.pruned_widths = option_second(state, "finetune-start", arg, "neighbours", "pruned");
+        return 0;
+    case KEY_RATES:
+        o->finetune.published_rates = option_second(state, "finetune-rates", arg, "tuned", "published");
         return 0;
     case KEY_MASK_HEAD:
         o->mask_head = option_head(state, "mask-head", arg);

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "study/rivals/vectorized.h"
+
 enum { REACH = 5, TAPS = 2 * REACH + 1 };
 enum { PICTURE, MEAN, SQUARE, OF_TARGET };
 enum { OWN, OWN_MEAN, OWN_SQUARE, PRODUCT, SCRATCH, WORK };
@@ -44,7 +46,7 @@ static void window(float taps[TAPS])
 }
 
 /* Adds weight x from[] shifted by `shift` to line[], zeros beyond the border. */
-static void add_shifted(float *restrict line, const float *restrict from, ptrdiff_t shift, ptrdiff_t count,
+RIVAL_INLINE void add_shifted(float *restrict line, const float *restrict from, ptrdiff_t shift, ptrdiff_t count,
                         float weight)
 {
     ptrdiff_t first = shift < 0 ? -shift : 0, last = shift > 0 ? count - shift : count;
@@ -54,7 +56,7 @@ static void add_shifted(float *restrict line, const float *restrict from, ptrdif
 }
 
 /* Replaces a plane by its Gaussian mean; the operation is its own transpose. */
-static void blur(const photometric *p, float *values)
+RIVAL_VARIANTS static void blur(const photometric *p, float *values)
 {
     float taps[TAPS], *across = work(p, SCRATCH);
     ptrdiff_t width = p->width, height = p->height;
@@ -104,7 +106,7 @@ void photometric_close(photometric *p)
 
 /* Returns the similarity at a pixel and replaces the means of the picture, of its square and of its product with the
  * target by the derivatives of the similarity with respect to these means. */
-static float differentiate(float *mean, float *square, float *product, float target_mean, float target_square)
+RIVAL_INLINE float differentiate(float *mean, float *square, float *product, float target_mean, float target_square)
 {
     float a1 = 2 * *mean * target_mean + C1, a2 = 2 * (*product - *mean * target_mean) + C2;
     float b1 = *mean * *mean + target_mean * target_mean + C1;
@@ -117,7 +119,7 @@ static float differentiate(float *mean, float *square, float *product, float tar
 }
 
 /* Adds one channel's share to gradient[]; returns its mean similarity. */
-static double add_channel(const photometric *p, int channel, double share, const float *rgb, float *gradient)
+RIVAL_VARIANTS static double add_channel(const photometric *p, int channel, double share, const float *rgb, float *gradient)
 {
     size_t pixels = (size_t)p->width * p->height;
     const float *target = of_target(p, channel, PICTURE);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "study/rivals/rival.h"
 
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,8 +13,7 @@
 #include "study/rivals/choose.h"
 #include "study/rivals/score.h"
 #include "study/rivals/traced.h"
-
-#define FINETUNE_ITERATIONS 200u /* default of --finetune-iterations */
+#include "study/rivals/tune.h"
 
 /* ---- shared --------------------------------------------------------------------------------------------------- */
 
@@ -150,10 +150,10 @@ static int make_score(rival_source *source, method_kind kind)
 
 /* ---- pruning -------------------------------------------------------------------------------------------------- */
 
-/* Allocates `count` Gaussians, with harmonics of the unpruned scene's degree. */
-static bool open_scene(const reconstruction *whole, uint32_t count, scene_file *scene)
+/* Allocates `count` Gaussians in the frame of the scene in `r`, with harmonics of that degree. */
+static bool open_scene(const reconstruction *r, uint32_t count, uint32_t degree, scene_file *scene)
 {
-    *scene = (scene_file){.frame = whole->scene.frame, .count = count, .degree = whole->loaded.degree};
+    *scene = (scene_file){.frame = r->scene.frame, .count = count, .degree = degree};
     scene->gaussians = malloc(((size_t)count + 1) * sizeof *scene->gaussians);
     if (scene->degree > 0) {
         scene->harmonics_q12 = malloc(((size_t)count + 1) * scene_file_harmonics_count(scene) * sizeof(int16_t));
@@ -166,7 +166,7 @@ static int prune(rival_source *source, method_kind kind, uint32_t count, scene_f
 {
     const reconstruction *whole = &source->whole;
     uint32_t *kept = malloc(((size_t)count + 1) * sizeof *kept);
-    int code = open_scene(whole, count, scene) && kept != NULL &&
+    int code = open_scene(whole, count, whole->loaded.degree, scene) && kept != NULL &&
                        rival_choose(source->score[kind], whole->scene.count, count, kept)
                    ? CLI_OK
                    : cli_error(CLI_BAD_INPUT, "out of memory");
@@ -209,29 +209,6 @@ static int prune_whole(rival_source *source, method_kind kind, const reconstruct
     double start = cli_now();
     code = prune(source, kind, T3R_MIN(account->requested, source->whole.scene.count), scene);
     account->seconds += cli_now() - start;
-    return code;
-}
-
-/* ---- ours, to be fine-tuned ------------------------------------------------------------------------------------- */
-
-static int build_ours(rival_source *source, const reconstruction_options *options, scene_file *scene,
-                      reconstruction_account *account)
-{
-    reconstruction r;
-    int code = reconstruction_build(&r, source->recording, source->path, options);
-    if (code != CLI_OK) {
-        return code;
-    }
-    *account = reconstruction_account_of(&r);
-    *scene = (scene_file){.frame = r.scene.frame, .count = r.scene.count};
-    scene->gaussians = malloc(((size_t)r.scene.count + 1) * sizeof *scene->gaussians);
-    if (scene->gaussians == NULL) {
-        code = cli_error(CLI_BAD_INPUT, "out of memory");
-    } else {
-        memcpy(scene->gaussians, r.scene.gaussians, r.scene.count * sizeof *scene->gaussians);
-        code = source->opened ? CLI_OK : open_pictures(source, &r);
-    }
-    reconstruction_close(&r);
     return code;
 }
 
@@ -284,26 +261,131 @@ static int build_by_head(rival_source *source, method_kind kind, const reconstru
 
 /* ---- fine-tuning ------------------------------------------------------------------------------------------------ */
 
-/* Fine-tunes colours of degree 0, without the harmonics of a scene from a file. */
-static int tune(const rival_source *source, uint32_t iterations, scene_file *scene)
-{
-    scene->degree = 0;
+/* The views that fine-tuning compares with, in the frame of a scene. */
+typedef struct tuning {
     finetune_target targets[T3R_MAX_VIEWS];
-    uint32_t views = source->options.context_count;
-    for (uint32_t v = 0; v < views; v++) {
-        targets[v].camera = splat_camera_of(&source->camera[v], &scene->frame, source->options.config.width,
-                                            source->options.config.height);
-        targets[v].rgb = source->rgb[v];
+    uint32_t count;
+    t3r_threads *threads;
+} tuning;
+
+static int begin_tuning(tuning *t, const rival_source *source, const t3r_scene_frame *frame,
+                        const reconstruction_options *options)
+{
+    *t = (tuning){.count = source->options.context_count, .threads = t3r_threads_start(options->processor.threads)};
+    for (uint32_t v = 0; v < t->count; v++) {
+        t->targets[v].camera = splat_camera_of(&source->camera[v], frame, source->options.config.width,
+                                               source->options.config.height);
+        t->targets[v].rgb = source->rgb[v];
     }
-    splat_model model;
-    bool done = splat_model_of(&model, scene->gaussians, scene->count) &&
-                finetune(&model, targets, views, iterations, &finetune_rates_default);
+    return t->threads != NULL ? CLI_OK
+                              : cli_error(CLI_BAD_INPUT, "the system refuses %" PRIu32 " threads",
+                                          options->processor.threads);
+}
+
+static int end_tuning(tuning *t, bool done)
+{
+    t3r_threads_stop(t->threads);
     cli_progress_end();
-    for (uint32_t i = 0; i < scene->count && done; i++) {
-        splat_model_store(&model.parameters[(size_t)i * SPLAT_PARAMETERS], &scene->gaussians[i]);
+    return done ? CLI_OK : cli_error(CLI_BAD_INPUT, "out of memory");
+}
+
+/* Stores the Gaussians of a model, which began as scene->gaussians. */
+static void store_model(const splat_model *model, scene_file *scene)
+{
+    for (uint32_t i = 0; i < scene->count; i++) {
+        splat_model_store(&model->parameters[(size_t)i * SPLAT_PARAMETERS], &scene->gaussians[i]);
+    }
+}
+
+/* Makes a rival's scene. It has colours of degree 0, without the harmonics of a scene from a file. */
+static int tune_whole(rival_source *source, method_kind kind, const reconstruction_options *options, scene_file *scene,
+                      reconstruction_account *account)
+{
+    tuning t;
+    tuned_model tuned = {0};
+    int code = rank_whole(source, kind, options, account);
+    code = code == CLI_OK ? begin_tuning(&t, source, &source->whole.scene.frame, options) : code;
+    if (code != CLI_OK) {
+        return code;
+    }
+    const double start = cli_now();
+    const uint32_t budget = T3R_MIN(account->requested, source->whole.scene.count);
+    code = end_tuning(&t, tuned_model_of(&tuned, &source->model) &&
+                              tune_rival(&tuned, kind, source->score[kind], budget, options->config.seed, t.targets,
+                                         t.count, &options->finetune, t.threads));
+    if (code == CLI_OK && !open_scene(&source->whole, budget, 0, scene)) {
+        code = cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    for (uint32_t n = 0; n < budget && code == CLI_OK; n++) {
+        scene->gaussians[n] = source->whole.scene.gaussians[tuned.of[n]];
+    }
+    if (code == CLI_OK) {
+        store_model(&tuned.model, scene);
+    }
+    tuned_model_free(&tuned);
+    account->seconds += cli_now() - start;
+    return code;
+}
+
+/* Copies the scene of a build of ours. */
+static int copy_scene(const reconstruction *r, scene_file *scene)
+{
+    if (!open_scene(r, r->scene.count, 0, scene)) {
+        return cli_error(CLI_BAD_INPUT, "out of memory");
+    }
+    memcpy(scene->gaussians, r->scene.gaussians, r->scene.count * sizeof *scene->gaussians);
+    return CLI_OK;
+}
+
+static int tune_scene(const rival_source *source, const reconstruction_options *options, scene_file *scene)
+{
+    tuning t;
+    splat_model model = {0};
+    int code = begin_tuning(&t, source, &scene->frame, options);
+    if (code != CLI_OK) {
+        return code;
+    }
+    code = end_tuning(&t, splat_model_of(&model, scene->gaussians, scene->count) &&
+                              tune_model(&model, t.targets, t.count, &options->finetune, t.threads));
+    if (code == CLI_OK) {
+        store_model(&model, scene);
     }
     splat_model_free(&model);
-    return done ? CLI_OK : cli_error(CLI_BAD_INPUT, "out of memory");
+    return code;
+}
+
+/* Builds a scene of ours and fine-tunes it as it is. */
+static int tune_ours(rival_source *source, const reconstruction_options *options, scene_file *scene,
+                     reconstruction_account *account)
+{
+    reconstruction r;
+    int code = reconstruction_build(&r, source->recording, source->path, options);
+    if (code != CLI_OK) {
+        return code;
+    }
+    *account = reconstruction_account_of(&r);
+    code = copy_scene(&r, scene);
+    if (code == CLI_OK && !source->opened) {
+        code = open_pictures(source, &r);
+    }
+    reconstruction_close(&r);
+    const double start = cli_now();
+    code = code == CLI_OK ? tune_scene(source, options, scene) : code;
+    account->seconds += cli_now() - start;
+    return code;
+}
+
+/* ---- a method ---------------------------------------------------------------------------------------------------- */
+
+static int make_scene(rival_source *source, const method *m, const reconstruction_options *options, scene_file *scene,
+                      reconstruction_account *account)
+{
+    const method_kind kind = method_kind_of(m);
+    if (method_way_of(m) == METHOD_PLAIN) {
+        return prune_whole(source, kind, options, scene, account);
+    }
+    return kind == METHOD_TRIM3R ? tune_ours(source, options, scene, account)
+                                 : tune_whole(source, kind, options, scene, account);
 }
 
 int rival_build(method_source *shared, const t3r_recording *recording, const char *path,
@@ -318,19 +400,11 @@ int rival_build(method_source *shared, const t3r_recording *recording, const cha
     if (source == NULL) {
         return cli_error(CLI_BAD_INPUT, "out of memory");
     }
-    const method_kind kind = method_kind_of(m);
     if (method_way_of(m) == METHOD_HEAD) {
-        return build_by_head(source, kind, options, made, account);
+        return build_by_head(source, method_kind_of(m), options, made, account);
     }
     scene_file scene = {0};
-    int code = kind == METHOD_TRIM3R ? build_ours(source, options, &scene, account)
-                                     : prune_whole(source, kind, options, &scene, account);
-    if (code == CLI_OK && method_way_of(m) == METHOD_FINETUNE) {
-        double start = cli_now();
-        const uint32_t iterations = options->finetune_iterations;
-        code = tune(source, iterations != 0 ? iterations : FINETUNE_ITERATIONS, &scene);
-        account->seconds += cli_now() - start;
-    }
+    int code = make_scene(source, m, options, &scene, account);
     if (code == CLI_OK) {
         uint32_t width =
             options->config.render_width != 0 ? options->config.render_width : source->options.config.width;

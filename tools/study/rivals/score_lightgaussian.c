@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* LightGaussian: Unbounded 3D Gaussian Compression with 15x Reduction and 200+ FPS. Fan et al., NeurIPS 2024
  * (arXiv:2311.17245), section 3.2, "global significance": the sum over all pixels of the training views of 1(the
- * Gaussian meets the pixel's ray) x opacity x gamma(volume), gamma(V) = (V_norm)^beta, V_norm the volume divided by
- * the ninth decile of all volumes, clamped to 0..1. A Gaussian meets a ray if it contributes to the pixel. */
+ * Gaussian meets the pixel's ray) x opacity x T x gamma(volume). T is the transmittance before the Gaussian, as the
+ * authors' rasterizer has it. gamma(V) = (V_norm)^beta, V_norm the volume divided by the ninth decile of all volumes,
+ * clamped to 0..1. A Gaussian meets a ray if it contributes to the pixel. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "study/rivals/score.h"
 
-static void count_hits(void *user, const splat_row *row)
+static void add_hits(void *user, const splat_row *row)
 {
     double *score = user;
     for (uint32_t i = 0; i < row->columns; i++) {
-        score[row->gaussian] += row->alpha[i] > 0;
+        score[row->gaussian] += row->alpha[i] > 0 ? (double)row->before[i] : 0;
     }
 }
 
@@ -49,7 +50,7 @@ bool score_lightgaussian(const splat_model *model, const splat_view *views, uint
 {
     memset(score, 0, model->count * sizeof *score);
     for (uint32_t v = 0; v < view_count; v++) {
-        splat_view_walk(&views[v], count_hits, score);
+        splat_view_walk(&views[v], add_hits, score);
     }
     double decile = ninth_decile(model);
     if (isnan(decile)) {

@@ -5,10 +5,11 @@
 #define TRIM3R_TOOLS_RIVALS_SPLAT_BLEND_H
 
 #include "study/rivals/splat_view.h"
+#include "study/rivals/vectorized.h"
 
 /* Returns exp(-q) for q in 0..16, within 2e-5 relative up to q = 6, where alpha matters: the series of q / 16, to
  * the 16th power. */
-static inline float splat_decay(float q)
+RIVAL_INLINE float splat_decay(float q)
 {
     float t = q * (-1.0f / 16);
     float e = 1 + t * (1 + t * (1.0f / 2 + t * (1.0f / 6 + t * (1.0f / 24 + t * (1.0f / 120 + t * (1.0f / 720))))));
@@ -20,7 +21,7 @@ static inline float splat_decay(float q)
 
 /* Computes alpha of columns left .. left + 7 at dy below the centre, 0 where it is below `least` or the pixel is
  * closed; dx gets their distances from the centre. Each loop has one condition: with more, compilers branch. */
-static inline void splat_alphas(const splat *s, float least, float left, float dy,
+RIVAL_INLINE void splat_alphas(const splat *s, float least, float left, float dy,
                                 const float transmittance[SPLAT_TILE], float alpha[SPLAT_TILE], float dx[SPLAT_TILE])
 {
     float rest = 0.5f * s->c * dy * dy, slope = s->b * dy, half = 0.5f * s->a, opacity = s->opacity;
@@ -43,7 +44,7 @@ static inline void splat_alphas(const splat *s, float least, float left, float d
 }
 
 /* Computes the rows of the tile starting at pixel row `top` that the splat may reach. */
-static inline void splat_rows(const splat *s, int32_t top, int32_t *first, int32_t *last)
+RIVAL_INLINE void splat_rows(const splat *s, int32_t top, int32_t *first, int32_t *last)
 {
     *first = s->top > top ? s->top - top : 0;
     *last = s->bottom < top + SPLAT_TILE - 1 ? s->bottom - top : SPLAT_TILE - 1;

@@ -10,7 +10,7 @@ typedef struct tile {
     float colour[3][SPLAT_TILE][SPLAT_TILE];
 } tile;
 
-static void clear(tile *t)
+RIVAL_INLINE void clear(tile *t)
 {
     *t = (tile){0};
     for (int y = 0; y < SPLAT_TILE; y++) {
@@ -20,7 +20,7 @@ static void clear(tile *t)
     }
 }
 
-static void blend(const splat *s, float least, int32_t left, int32_t top, tile *t)
+RIVAL_INLINE void blend(const splat *s, float least, int32_t left, int32_t top, tile *t)
 {
     int32_t first, last;
     splat_rows(s, top, &first, &last);
@@ -38,7 +38,7 @@ static void blend(const splat *s, float least, int32_t left, int32_t top, tile *
     }
 }
 
-static void put(const splat_view *view, const tile *t, uint32_t left, uint32_t top, float *rgb, float *transmittance)
+RIVAL_INLINE void put(const splat_view *view, const tile *t, uint32_t left, uint32_t top, float *rgb, float *transmittance)
 {
     uint32_t width = view->camera.width, height = view->camera.height;
     for (uint32_t y = 0; y < SPLAT_TILE && top + y < height; y++) {
@@ -54,7 +54,7 @@ static void put(const splat_view *view, const tile *t, uint32_t left, uint32_t t
     }
 }
 
-void splat_view_draw(const splat_view *view, float *rgb, float *transmittance)
+RIVAL_VARIANTS void splat_view_draw(const splat_view *view, float *rgb, float *transmittance)
 {
     for (uint32_t n = 0; n < view->across * view->down; n++) {
         uint32_t left = n % view->across * SPLAT_TILE, top = n / view->across * SPLAT_TILE;

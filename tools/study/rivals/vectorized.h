@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Instruction sets for the float loops of the rivals, so that their times compare with those of trim3r's kernels. */
+#ifndef TRIM3R_TOOLS_RIVALS_VECTORIZED_H
+#define TRIM3R_TOOLS_RIVALS_VECTORIZED_H
+
+/* Before a function: the compiler makes variants of it for AVX2 and AVX-512, and the loader chooses the widest that the
+ * processor has. Functions that it calls in a loop are RIVAL_INLINE, so that they are part of each variant. Sanitizers
+ * do not work with functions that the loader chooses. */
+#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__OPTIMIZE__) && !defined(T3R_SANITIZED)
+#define RIVAL_VARIANTS __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
+#else
+#define RIVAL_VARIANTS
+#endif
+#define RIVAL_INLINE static inline __attribute__((always_inline))
+
+#endif
