@@ -27,6 +27,10 @@ def rivals():
                         "-o", "tuned.ply")
     check(tuned["gaussians"] == 300 and "hash" not in tuned, "fine-tuning keeps the count")
     check(not vertices("tuned.ply") & vertices("rival.ply"), "fine-tuning leaves Gaussians as they are")
+    for number, option in enumerate((("--finetune-rounds", 1), ("--finetune-start", "pruned"), ("--finetune-rates", "published"))):
+        expect_json(*small, "--gaussians", 300, "--method", "efficientgs+finetune", "--finetune-iterations", 2, *option,
+                    "-o", f"other{number}.ply")
+        check(vertices(f"other{number}.ply") != vertices("tuned.ply"), f"{option} has no effect")
     expect(0, "render", "tuned.ply", recording, "--view", 1, "-o", "tuned.png")
     expect(0, *small, "--gaussians", 100000, "--method", "eagles", "-o", "all.ply",
            err="100000 Gaussians are more than the views have")
@@ -34,6 +38,9 @@ def rivals():
         expect(2, *small, "--keep", 9, f"--method={method}", "-o", "x.ply", err=f"--method: '{method}' is not a method")
     for iterations in ("0", "100001", "x"):
         expect(2, *small, "--keep", 9, f"--finetune-iterations={iterations}", "-o", "x.ply", err="--finetune-iterations")
+    for option, words in (("rounds=0", "--finetune-rounds"), ("rounds=17", "--finetune-rounds"),
+                          ("start=wide", "takes neighbours or pruned"), ("rates=1", "takes tuned or published")):
+        expect(2, *small, "--keep", 9, f"--finetune-{option}", "-o", "x.ply", err=words)
     expect(2, *small, "--auto", "--method", "eagles", "-o", "x.ply", err="not for eagles")
     expect(2, *small, "--keep", 9, "--method", "pup", "--profile", "-o", "x.ply", err="--profile belongs to the method trim3r")
     expect(0, *small, "--gaussians", 9, "--head", "none", "--method", "random", "--comments", "-o", "named.ply")

@@ -15,7 +15,7 @@
 #define LEAST 1e-15
 
 const finetune_rates finetune_rates_default = {
-    .position = 0.002, .log_scale = 0.1, .rotation = 0.01, .logit = 0.05, .colour = 0.01, .last = 1};
+    .position = 0.002, .log_scale = 0.2, .rotation = 0.01, .logit = 0.05, .colour = 0.01, .last = 1};
 /* The position's rate is 3DGS's last one, 1.6e-6 of the cameras' extent, with which PUP and LightGaussian fine-tune; the
  * extent is taken for a scene unit. The colour's is that of its harmonic, 0.0025, times 0.2821. */
 const finetune_rates finetune_rates_published = {

@@ -91,9 +91,11 @@ bool tune_rival(tuned_model *tuned, method_kind kind, const double *score, uint3
     double *own = malloc(((size_t)all + 1) * sizeof *own); /* scores after the first round */
     bool done = own != NULL;
     for (uint32_t round = 0; round < rounds && done; round++) {
+        const uint32_t left = rounds_left(kind, all, budget, round, rounds);
+        const bool widens = left < tuned->model.count && !options->pruned_widths;
         done = round == 0 || score_model(&tuned->model, kind, seed, targets, target_count, own);
-        done = done && keep_best(tuned, round == 0 ? score : own, rounds_left(kind, all, budget, round, rounds)) &&
-               (options->pruned_widths || neighbour_widen(&tuned->model)) &&
+        done = done && keep_best(tuned, round == 0 ? score : own, left) &&
+               (!widens || neighbour_widen(&tuned->model)) &&
                finetune(&tuned->model, targets, target_count, rounds_iterations(iterations, round, rounds),
                         rates_of(options), threads);
     }
