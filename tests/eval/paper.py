@@ -24,6 +24,9 @@ except ImportError as error:
     skip(str(error))
 SCENES = ("hololens_b", "icl_livingroom_synth", "icl_livingroom_noisy_synth", "apc_shelf")
 METHODS = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs")
+PRESETS = [f"trim3r, {name}" for name in ("fast", "balanced", "best")]
+TUNED = [f"{method}+finetune, 3" for method in METHODS]
+MEASURES = ("psnr_all", "psnr", "ssim_all", "perceptual_all")
 
 
 def tables(text):
@@ -52,7 +55,7 @@ def rows_of(cache, pattern):
 
 def tells(cell, row):
     numbers = list(map(float, cell.split(" / ")))
-    for number, column, step in zip(numbers, ("psnr", "ssim", "perceptual"), (0.005, 0.0005, 0.0005), strict=True):
+    for number, column, step in zip(numbers, MEASURES, (0.005, 0.005, 0.0005, 0.0005), strict=True):
         near(number, float(row[column]), step * 1.001, f"{column} of {row['scene']}, {row['method']}")
 
 
@@ -74,23 +77,32 @@ def check_quality(cache, found):
 
 def check_others(cache, found):
     rows = {(s, m): cells for s, m, cells in filled(found["With fine-tuning"][0])}
-    for method in METHODS:
-        tells(rows["apc_shelf", f"{method}+finetune"][0], rows_of(cache, f"apc_shelf.*.{method}.tuned.*.csv")[0])
-    check(("apc_shelf", "trim3r") in rows, "with what was not fine-tuned beside it")
-    views = {(s, n): cells for s, n, cells in filled(found["More input views"][0])}
-    check(list(views) == [(s, n) for s in SCENES for n in ("2", "3")], "input views")
-    three = rows_of(cache, "hololens_b.*.3-views.*.csv")
-    tells(views["hololens_b", "3"][0], three[0])
-    check(len(three[0]["context"].split(",")) == 3, "of three frames")
+    check(list(rows) == [(s, n) for s in (*SCENES, "mean of the scenes") for n in PRESETS + TUNED], f"{list(rows)}")
+    for name in TUNED[2:]:
+        tells(rows["apc_shelf", name][0], rows_of(cache, f"apc_shelf.*.{name.replace(', ', '-')}.1.*.csv")[0])
+    seeds = [rows_of(cache, f"apc_shelf.*.random+finetune-3.{seed}.*.csv")[0] for seed in (1, 2)]
+    near(float(rows["apc_shelf", TUNED[1]][0].split(" / ")[0]), statistics.fmean(float(r["psnr_all"]) for r in seeds), 0.0051,
+         "the mean of the seeds")
+    check(seeds[0]["psnr_all"] != seeds[1]["psnr_all"], "seeds differ")
+    spread = {row[0]: float(row[1]) for row in found["With fine-tuning"][1][2:]}
+    check(list(spread) == PRESETS + TUNED[:2] and spread[TUNED[1]] > 0, f"the spread of what depends on a seed: {spread}")
+    choices = {(m, c): cells for m, c, cells in filled(found["Choices of fine-tuning"][0])}
+    check(len(choices) == 10, f"choices of fine-tuning: {list(choices)}")
+    tells(choices["pup+finetune", "1 round"][0], rows_of(cache, "hololens_a.*.choices.pup.1-round.*.csv")[0])
+    views = [(s, n, cells[0], cells[1:]) for s, n, cells in filled(found["More input views"][0])]
+    check([v[:3] for v in views] == [(s, *row) for s in SCENES for n in ("2", "3") for row in ((n, "trim3r"), ("", TUNED[1]))],
+          "input views")
+    for name, row in (("trim3r", views[2]), ("random+finetune-3", views[3])):
+        three = rows_of(cache, f"hololens_b.*.3-views.{name}.*.csv")
+        tells(row[3][1], three[-1])
+        check(len(three[-1]["context"].split(",")) == 3, "of three frames")
     build, slow, frames = found["Latency and frames a second"]
     timed = [rows_of(cache, f"{s}.*.timed.*.csv") for s in SCENES]
     ours = statistics.median(float(r["render_ms"]) for rows in timed for r in rows
                              if (r["method"], r["keep"]) == ("trim3r", "10"))
     near(float(frames[2][2]), 1000 / ours, 0.51, "frames a second")
-    presets = [f"trim3r, {name}" for name in ("fast", "best")]
     check([row[0] for row in build[2:]] == list(METHODS), "every method is timed")
-    check(slow[0] == [*(f"{method}+finetune" for method in METHODS), *presets], "and what takes longer")
-    check(all(("apc_shelf", name) in rows for name in presets), "presets stand beside fine-tuning")
+    check([row[0] for row in slow[2:]] == PRESETS + TUNED and slow[3][2] == "1", "and what takes longer, by the default's time")
     scales = found["Splat scales"][0]
     check([row[0] for row in scales[2:]] == list(SCENES), "scales of every scene")
     for row in scales[2:]:
