@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "oracle/float64/drawing.h"
-#include "study/rivals/splat_view.h"
+#include "study/rivals/splats/splat_view.h"
 
 static inline void assert_near(double a, double b, double bound)
 {

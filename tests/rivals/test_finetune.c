@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "splat_scenes.h"
-#include "study/rivals/finetune.h"
+#include "study/rivals/tuning/finetune.h"
 #include "test.h"
 
 enum { SIDE = 32, VALUES = SIDE * SIDE * 3, VIEWS = 2, COUNT = 60 };
@@ -89,8 +89,7 @@ TEST(same_every_time)
     assert_non_null(threads);
     for (int i = 0; i < 2; i++) {
         make_scene(&s[i]);
-        assert_true(
-            finetune(&s[i].model, s[i].targets, VIEWS, 10, &finetune_rates_default, i == 0 ? NULL : threads));
+        assert_true(finetune(&s[i].model, s[i].targets, VIEWS, 10, &finetune_rates_default, i == 0 ? NULL : threads));
     }
     t3r_threads_stop(threads);
     assert_memory_equal(s[0].model.parameters, s[1].model.parameters, COUNT * SPLAT_PARAMETERS * sizeof(double));
@@ -110,7 +109,8 @@ TEST(first_step)
     set_ball(&model, 1, 0, 0, -1, 0.1, 0.5); /* behind the camera */
     double before[2 * SPLAT_PARAMETERS];
     memcpy(before, model.parameters, sizeof before);
-    const finetune_rates rates = {.position = 1e-3, .log_scale = 2e-3, .rotation = 3e-3, .logit = 4e-3, .colour = 5e-3, .last = 1};
+    const finetune_rates rates = {
+        .position = 1e-3, .log_scale = 2e-3, .rotation = 3e-3, .logit = 4e-3, .colour = 5e-3, .last = 1};
     assert_true(finetune(&model, &target, 1, 1, &rates, NULL));
     const double *after = parameters_of(&model, 0);
     for (int k = 0; k < 3; k++) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Distances to the nearest neighbours against a search of all pairs, and the widths made of them. */
 #include "splat_scenes.h"
-#include "study/rivals/neighbours.h"
+#include "study/rivals/tuning/neighbours.h"
 #include "test.h"
 
 enum { COUNT = 700 };

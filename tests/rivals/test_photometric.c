@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The loss of fine-tuning against a direct computation of its definition, and its derivatives against differences. */
 #include "splat_scenes.h"
-#include "study/rivals/photometric.h"
+#include "study/rivals/tuning/photometric.h"
 #include "test.h"
 
 enum { WIDTH = 19, HEIGHT = 14, VALUES = WIDTH * HEIGHT * 3 };

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Rounds of pruning: their counts, and a model that is pruned and fine-tuned in several. */
 #include "splat_scenes.h"
-#include "study/rivals/rounds.h"
-#include "study/rivals/score.h"
-#include "study/rivals/tune.h"
+#include "study/rivals/scores/score.h"
+#include "study/rivals/tuning/rounds.h"
+#include "study/rivals/tuning/tune.h"
 #include "test.h"
 
 enum { SIDE = 32, COUNT = 200, BUDGET = 25 };

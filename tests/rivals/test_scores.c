@@ -3,8 +3,8 @@
 #include <stdio.h>
 
 #include "splat_scenes.h"
-#include "study/rivals/rival.h"
-#include "study/rivals/score.h"
+#include "study/rivals/scores/choose.h"
+#include "study/rivals/scores/score.h"
 #include "test.h"
 
 enum { SIDE = 33 };

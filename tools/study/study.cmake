@@ -21,5 +21,5 @@ add_custom_command(
 target_sources(tools_study_chart PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/chart_page.c)
 
 # gcc unrolls loops over eight columns before it recognises them as vectors; without this they are half as fast.
-set_source_files_properties(study/rivals/splat_differentiate.c study/rivals/splat_draw.c study/rivals/photometric.c PROPERTIES
+set_source_files_properties(study/rivals/splats/splat_differentiate.c study/rivals/splats/splat_draw.c study/rivals/tuning/photometric.c PROPERTIES
   COMPILE_OPTIONS "$<$<C_COMPILER_ID:GNU>:--param=max-completely-peel-times=4>;-ffp-contract=fast")

@@ -5,7 +5,7 @@
 
 #include "cli/text/word_list.h"
 #include "reconstruction/method.h"
-#include "study/rivals/kinds.h"
+#include "study/rivals/scores/kinds.h"
 
 typedef struct rival_method {
     method method;

@@ -6,7 +6,7 @@
 #include "cli/options/file_options.h"
 #include "cli/options/option_values.h"
 #include "reconstruction/options/option_names.h"
-#include "study/rivals/rounds.h"
+#include "study/rivals/tuning/rounds.h"
 
 #define ITERATIONS_MOST 100000u
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
-#include "study/rivals/choose.h"
+#include "study/rivals/scores/choose.h"
 
 /* Reads the masks after a build that keeps its analysis. */
 static int read_masks(traced_points *points, const reconstruction *r, const uint32_t *kept, uint32_t count)

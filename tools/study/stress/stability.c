@@ -10,7 +10,7 @@
 #include "cli/cli.h"
 #include "state/state.h"
 #include "state/views.h"
-#include "study/rivals/rival.h"
+#include "study/rivals/source.h"
 
 #define NOBODY UINT32_MAX
 /* Median of the absolute difference of two normal numbers, in their deviation: 0.6745 sqrt(2) */
@@ -79,18 +79,6 @@ static bool fill_places(snapshot *s, const t3r_scene *scene, const stress_run *r
     return s->at != NULL && s->spacing != NULL;
 }
 
-/* Fills in the pixels of a rival's scene: the pixels of the unpruned scene that its score chose. */
-static bool fill_rival(snapshot *s, const rival_source *source, method_kind kind)
-{
-    uint32_t *kept = malloc(((size_t)s->count + 1) * sizeof *kept);
-    bool done = kept != NULL && rival_choose(source->score[kind], source->whole.scene.count, s->count, kept);
-    if (done) {
-        fill_owners(s, source->whole.runtime, kept);
-    }
-    free(kept);
-    return done;
-}
-
 /* Fills in trim3r's scene before fine-tuning. */
 static int fill_untuned(snapshot *s, const stress_run *run, const reconstruction_options *options)
 {
@@ -116,7 +104,8 @@ static int take(snapshot *s, const stress_row *row, const stress_case *c, stress
     s->owner = malloc((size_t)c->base.views * c->base.width * c->base.height * sizeof *s->owner);
     bool done = s->owner != NULL && fill_places(s, &built.scene, run);
     if (done && method_kind_of(row->method) != METHOD_TRIM3R) {
-        done = fill_rival(s, run->views.source.made, method_kind_of(row->method));
+        const rival_source *source = run->views.source.made;
+        fill_owners(s, source->whole.runtime, source->kept);
     } else if (done && row->method == &method_trim3r) {
         fill_owners(s, built.runtime, NULL);
     } else if (done) {

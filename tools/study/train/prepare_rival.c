@@ -5,8 +5,8 @@
 #include <stdlib.h>
 
 #include "state/state.h"
-#include "study/rivals/choose.h"
-#include "study/rivals/score.h"
+#include "study/rivals/scores/choose.h"
+#include "study/rivals/scores/score.h"
 
 typedef struct ranking {
     splat_model model;

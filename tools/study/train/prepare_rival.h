@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "study/rivals/kinds.h"
+#include "study/rivals/scores/kinds.h"
 #include "trim3r.h"
 
 /* Makes every point's importance for a t3r_request: 65535 at the points of the `count` Gaussians that `kind` ranks

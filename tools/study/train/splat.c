@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "study/rivals/splat_blend.h"
-#include "study/rivals/splat_view.h"
+#include "study/rivals/splats/splat_blend.h"
+#include "study/rivals/splats/splat_view.h"
 
 #define PARAMETERS 9
 #ifndef ALPHA_LEAST /* a test lowers it: the cut has no derivative */

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* SSIM: Wang et al. 2004, with a Gaussian window of 11 x 11, sigma 1.5, zeros beyond the border, each channel
  * separately, as in 3D Gaussian Splatting. */
-#include "study/rivals/photometric.h"
+#include "study/rivals/tuning/photometric.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "study/rivals/vectorized.h"
+#include "study/rivals/splats/vectorized.h"
 
 enum { REACH = 5, TAPS = 2 * REACH + 1 };
 enum { PICTURE, MEAN, SQUARE, OF_TARGET };
@@ -47,7 +47,7 @@ static void window(float taps[TAPS])
 
 /* Adds weight x from[] shifted by `shift` to line[], zeros beyond the border. */
 RIVAL_INLINE void add_shifted(float *restrict line, const float *restrict from, ptrdiff_t shift, ptrdiff_t count,
-                        float weight)
+                              float weight)
 {
     ptrdiff_t first = shift < 0 ? -shift : 0, last = shift > 0 ? count - shift : count;
     for (ptrdiff_t i = first; i < last; i++) {
@@ -119,7 +119,8 @@ RIVAL_INLINE float differentiate(float *mean, float *square, float *product, flo
 }
 
 /* Adds one channel's share to gradient[]; returns its mean similarity. */
-RIVAL_VARIANTS static double add_channel(const photometric *p, int channel, double share, const float *rgb, float *gradient)
+RIVAL_VARIANTS static double add_channel(const photometric *p, int channel, double share, const float *rgb,
+                                         float *gradient)
 {
     size_t pixels = (size_t)p->width * p->height;
     const float *target = of_target(p, channel, PICTURE);

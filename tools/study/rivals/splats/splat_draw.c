@@ -2,8 +2,8 @@
 /* Draws a view, or reports the splats that draw it. */
 #include <stddef.h>
 
-#include "study/rivals/splat_blend.h"
-#include "study/rivals/splat_view.h"
+#include "study/rivals/splats/splat_blend.h"
+#include "study/rivals/splats/splat_view.h"
 
 typedef struct tile {
     float transmittance[SPLAT_TILE][SPLAT_TILE];
@@ -38,7 +38,8 @@ RIVAL_INLINE void blend(const splat *s, float least, int32_t left, int32_t top, 
     }
 }
 
-RIVAL_INLINE void put(const splat_view *view, const tile *t, uint32_t left, uint32_t top, float *rgb, float *transmittance)
+RIVAL_INLINE void put(const splat_view *view, const tile *t, uint32_t left, uint32_t top, float *rgb,
+                      float *transmittance)
 {
     uint32_t width = view->camera.width, height = view->camera.height;
     for (uint32_t y = 0; y < SPLAT_TILE && top + y < height; y++) {

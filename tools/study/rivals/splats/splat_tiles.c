@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "study/rivals/splat_view.h"
+#include "study/rivals/splats/splat_view.h"
 
 bool splat_view_open(splat_view *view, const splat_camera *camera, uint32_t count)
 {

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "study/rivals/score.h"
+#include "study/rivals/scores/score.h"
 
 static void add_hits(void *user, const splat_row *row)
 {

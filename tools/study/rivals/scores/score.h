@@ -10,8 +10,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "study/rivals/kinds.h"
-#include "study/rivals/splat_view.h"
+#include "study/rivals/scores/kinds.h"
+#include "study/rivals/splats/splat_view.h"
 
 /* LightGaussian's exponent of the volume, from its authors' code. */
 #define LIGHTGAUSSIAN_BETA 0.1

@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 #include "scene/splat_camera.h"
-#include "study/rivals/splat_model.h"
+#include "study/rivals/splats/splat_model.h"
 #include "trim3r.h"
 
 #define SPLAT_ALPHA_LEAST (1.0 / 255)

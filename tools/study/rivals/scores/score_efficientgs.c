@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "study/rivals/score.h"
+#include "study/rivals/scores/score.h"
 
 #define NOBODY UINT32_MAX
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Random: the lower bound in every paper on pruning. */
-#include "study/rivals/score.h"
+#include "study/rivals/scores/score.h"
 
 /* splitmix64 of the seed and the index */
 bool score_random(const splat_model *model, uint32_t seed, double *score)

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "study/rivals/splat_view.h"
+#include "study/rivals/splats/splat_view.h"
 #include "trim3r_host.h"
 
 /* The target picture of a view. */

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "study/rivals/tune.h"
+#include "study/rivals/tuning/tune.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/fixed.h"
-#include "study/rivals/choose.h"
-#include "study/rivals/neighbours.h"
-#include "study/rivals/rounds.h"
-#include "study/rivals/score.h"
+#include "study/rivals/scores/choose.h"
+#include "study/rivals/scores/score.h"
+#include "study/rivals/tuning/neighbours.h"
+#include "study/rivals/tuning/rounds.h"
 
 bool tuned_model_of(tuned_model *tuned, const splat_model *whole)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "study/rivals/choose.h"
+#include "study/rivals/scores/choose.h"
 
 #include <stdlib.h>
 

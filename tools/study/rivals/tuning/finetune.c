@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "study/rivals/finetune.h"
+#include "study/rivals/tuning/finetune.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 #include "cli/cli.h"
 #include "core/fixed.h"
-#include "study/rivals/photometric.h"
+#include "study/rivals/tuning/photometric.h"
 
 /* values from 3D Gaussian Splatting */
 #define MOMENTUM 0.9
@@ -16,8 +16,8 @@
 
 const finetune_rates finetune_rates_default = {
     .position = 0.002, .log_scale = 0.2, .rotation = 0.01, .logit = 0.05, .colour = 0.01, .last = 1};
-/* The position's rate is 3DGS's last one, 1.6e-6 of the cameras' extent, with which PUP and LightGaussian fine-tune; the
- * extent is taken for a scene unit. The colour's is that of its harmonic, 0.0025, times 0.2821. */
+/* The position's rate is 3DGS's last one, 1.6e-6 of the cameras' extent, with which PUP and LightGaussian fine-tune;
+ * the extent is taken for a scene unit. The colour's is that of its harmonic, 0.0025, times 0.2821. */
 const finetune_rates finetune_rates_published = {
     .position = 1.6e-6, .log_scale = 0.005, .rotation = 0.001, .logit = 0.05, .colour = 0.0007, .last = 1};
 
@@ -36,7 +36,7 @@ typedef struct tuned_view {
 typedef struct tuner {
     splat_model *model;
     tuned_view *views;
-    uint32_t view_count; /* number of opened views */
+    uint32_t view_count;   /* number of opened views */
     double *mean, *square; /* of the derivatives, for every parameter */
     double rate[SPLAT_PARAMETERS];
     double mean_bias, square_bias; /* of this iteration */

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "geometry/quaternion.h"
-#include "study/rivals/splat_view.h"
+#include "study/rivals/splats/splat_view.h"
 
 #define NEAR (1.0 / 32)     /* camera z in scene units at which splats are culled */
 #define WIDEST 16.0         /* |x / z|, |y / z| beyond which they are */

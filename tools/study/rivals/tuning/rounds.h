@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#include "study/rivals/kinds.h"
+#include "study/rivals/scores/kinds.h"
 
 #define ROUNDS_MOST 16u
 

@@ -8,8 +8,8 @@
 #include <stdint.h>
 
 #include "reconstruction/finetune_options.h"
-#include "study/rivals/finetune.h"
-#include "study/rivals/kinds.h"
+#include "study/rivals/scores/kinds.h"
+#include "study/rivals/tuning/finetune.h"
 
 #define TUNE_ITERATIONS 200u /* default */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "study/rivals/rounds.h"
+#include "study/rivals/tuning/rounds.h"
 
 #include <math.h>
 
@@ -8,8 +8,8 @@
 uint32_t rounds_published(method_kind kind)
 {
     static const uint32_t rounds[METHOD_KIND_COUNT] = {
-        [METHOD_TRIM3R] = 1, [METHOD_RANDOM] = 1, [METHOD_EAGLES] = 5,
-        [METHOD_LIGHTGAUSSIAN] = 1, [METHOD_PUP] = 2, [METHOD_EFFICIENTGS] = 3,
+        [METHOD_TRIM3R] = 1,        [METHOD_RANDOM] = 1, [METHOD_EAGLES] = 5,
+        [METHOD_LIGHTGAUSSIAN] = 1, [METHOD_PUP] = 2,    [METHOD_EFFICIENTGS] = 3,
     };
     return rounds[kind];
 }

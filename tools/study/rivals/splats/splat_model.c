@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "study/rivals/splat_model.h"
+#include "study/rivals/splats/splat_model.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Nearest neighbours by a k-d tree: `order` is an array of indices in which the middle of each range splits the range
  * along one axis. */
-#include "study/rivals/neighbours.h"
+#include "study/rivals/tuning/neighbours.h"
 
 #include <float.h>
 #include <math.h>

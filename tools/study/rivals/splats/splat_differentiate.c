@@ -7,8 +7,8 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "study/rivals/splat_blend.h"
-#include "study/rivals/splat_view.h"
+#include "study/rivals/splats/splat_blend.h"
+#include "study/rivals/splats/splat_view.h"
 
 typedef struct tile {
     float transmittance[SPLAT_TILE][SPLAT_TILE];
@@ -23,7 +23,8 @@ typedef struct sums {
     float colour[3][SPLAT_TILE];
 } sums;
 
-RIVAL_INLINE void load(const splat_view *view, const float *rgb, const float *gradient, uint32_t left, uint32_t top, tile *t)
+RIVAL_INLINE void load(const splat_view *view, const float *rgb, const float *gradient, uint32_t left, uint32_t top,
+                       tile *t)
 {
     uint32_t width = view->camera.width, height = view->camera.height;
     memset(t, 0, sizeof *t);
@@ -93,7 +94,7 @@ RIVAL_INLINE void add_sums(const splat *s, const sums *in, splat_gradient *out)
 }
 
 RIVAL_VARIANTS void splat_view_differentiate(const splat_view *view, const float *rgb, const float *rgb_gradient,
-                              splat_gradient *gradients)
+                                             splat_gradient *gradients)
 {
     for (uint32_t n = 0; n < view->across * view->down; n++) {
         uint32_t left = n % view->across * SPLAT_TILE, top = n / view->across * SPLAT_TILE;

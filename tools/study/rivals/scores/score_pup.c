@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "study/rivals/score.h"
+#include "study/rivals/scores/score.h"
 
 enum { FLAT = 5, FREE = 6 };
 

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "study/rivals/splat_model.h"
+#include "study/rivals/splats/splat_model.h"
 
 /* Number of neighbours that count, from the authors' code (simple-knn). */
 enum { NEIGHBOURS = 3 };

@@ -4,8 +4,8 @@
 #ifndef TRIM3R_TOOLS_RIVALS_SPLAT_BLEND_H
 #define TRIM3R_TOOLS_RIVALS_SPLAT_BLEND_H
 
-#include "study/rivals/splat_view.h"
-#include "study/rivals/vectorized.h"
+#include "study/rivals/splats/splat_view.h"
+#include "study/rivals/splats/vectorized.h"
 
 /* Returns exp(-q) for q in 0..16, within 2e-5 relative up to q = 6, where alpha matters: the series of q / 16, to
  * the 16th power. */
@@ -21,8 +21,8 @@ RIVAL_INLINE float splat_decay(float q)
 
 /* Computes alpha of columns left .. left + 7 at dy below the centre, 0 where it is below `least` or the pixel is
  * closed; dx gets their distances from the centre. Each loop has one condition: with more, compilers branch. */
-RIVAL_INLINE void splat_alphas(const splat *s, float least, float left, float dy,
-                                const float transmittance[SPLAT_TILE], float alpha[SPLAT_TILE], float dx[SPLAT_TILE])
+RIVAL_INLINE void splat_alphas(const splat *s, float least, float left, float dy, const float transmittance[SPLAT_TILE],
+                               float alpha[SPLAT_TILE], float dx[SPLAT_TILE])
 {
     float rest = 0.5f * s->c * dy * dy, slope = s->b * dy, half = 0.5f * s->a, opacity = s->opacity;
     float q[SPLAT_TILE];

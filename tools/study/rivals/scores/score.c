@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "study/rivals/score.h"
+#include "study/rivals/scores/score.h"
 
 bool score_of(method_kind kind, const splat_model *model, const splat_view *views, uint32_t view_count, uint32_t seed,
               double *score)

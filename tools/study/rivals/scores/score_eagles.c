@@ -4,7 +4,7 @@
  * over all pixels of the training views; Gaussians with the least influence are removed. */
 #include <string.h>
 
-#include "study/rivals/score.h"
+#include "study/rivals/scores/score.h"
 
 static void add_weights(void *user, const splat_row *row)
 {
