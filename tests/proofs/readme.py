@@ -8,7 +8,7 @@ example: the README's C program compiles without a warning, links with only the 
 table:   the arena table of docs/firmware.md is the output of `trim3r plan --markdown`; --update writes it there.
 code:    the shared library has the bytes of code that README states, within 5 %, the effect of another compiler.
 study:   README's microcontrollers have the figures of docs/study/boards.md, and the views of README and docs/rivals.md those
-         of docs/study/paper.md; --update writes them there.
+         of docs/study/paper.md, with their times; --update writes them there.
 """
 import re
 import sys
@@ -22,9 +22,10 @@ BOARDS = proof.ROOT / "docs" / "study" / "boards.md"
 PAPER = proof.ROOT / "docs" / "study" / "paper.md"
 COLUMNS = {"Cortex-M7 with DSP": ("AN500), DSP", 480), "Cortex-M55 with Helium": ("Helium", 400)}  # its title's end, MHz
 METHODS = {  # rows of README and docs/rivals.md, and their methods in docs/study/paper.md
-    "trim3r, `--preset fast`": "trim3r, fast", "trim3r, `--preset balanced` (default)": "trim3r",
-    "trim3r, `--preset best`": "trim3r, best", "random points, 200 iterations of fine-tuning": "random+finetune",
-    "trim3r, `fast`": "trim3r, fast", "trim3r, `balanced`": "trim3r", "trim3r, `best`": "trim3r, best"}
+    "trim3r, `--preset fast`": "trim3r, fast", "trim3r, `--preset balanced` (default)": "trim3r, balanced",
+    "trim3r, `--preset best`": "trim3r, best", "the default with `--backdrop on`": "trim3r, balanced, backdrop",
+    "`--preset best` with `--backdrop on`": "trim3r, best, backdrop", "random points, 50 iterations of fine-tuning": "random+finetune, 50",
+    "random points, 200 iterations": "random+finetune, 200", "random points, 1,000 iterations": "random+finetune, 1000"}
 PLAN = ["plan", "--size", "256x256", "--views", "2", "--gaussians", "13107", "--markdown"]
 STRICT = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror"]
 
@@ -92,17 +93,25 @@ def with_boards(readme, boards):
 
 
 def means_of(paper, table):
-    """Returns the means of the scenes in a table of docs/study/paper.md by method: PSNR / SSIM by percent kept."""
+    """Returns the means of the scenes in a table of docs/study/paper.md by method: PSNR of the whole picture / of what a
+    context view saw, by percent kept."""
     text = re.search(rf"<!-- {table}:begin -->\n(.*?)<!-- {table}:end -->", paper, flags=re.S)[1]
     rows = [[cell.strip() for cell in row.strip("|").split("|")]
             for row in re.search(r"^\| mean of the scenes \|.*\n(?:\|  \|.*\n)*", text, flags=re.M)[0].splitlines()]
     return {row[1]: [" / ".join(cell.split(" / ")[:2]) for cell in row[2:]] for row in rows}
 
 
-def with_means(text, means, ssim):
-    """Returns a text whose rows of these methods and budgets have these means, as PSNR / SSIM or as PSNR alone."""
+def seconds_of(paper):
+    """Returns the seconds of a build by method, as docs/study/paper.md has them."""
+    text = re.search(r"^\| method \| seconds \|.*\n((?:\|.*\n)*)", paper, flags=re.M)[1]
+    rows = [[cell.strip() for cell in row.strip("|").split("|")] for row in text.splitlines()[1:]]
+    return {row[0]: f"{row[1]} s" for row in rows}
+
+
+def with_means(text, means):
+    """Returns a text whose rows of these methods have these cells."""
     for name, method in {**{method: method for method in means}, **METHODS}.items():
-        cells = [mean if ssim else mean.split(" / ")[0] for mean in means.get(method, [])]
+        cells = means.get(method, [])
         row = rf"^\| {re.escape(name)} \|(?: [^|]* \|){{{len(cells)}}}$"
         if cells:
             text = re.sub(row, f"| {name} | {' | '.join(cells)} |", text, flags=re.M)
@@ -112,8 +121,9 @@ def with_means(text, means, ssim):
 def with_study(texts):
     """Returns README and docs/rivals.md with the figures of the study's pages."""
     boards, paper = BOARDS.read_text(), PAPER.read_text()
-    drawn, tuned = means_of(paper, "quality"), means_of(paper, "tuned")
-    return [with_means(with_boards(texts[0], boards), tuned, False), with_means(with_means(texts[1], drawn, True), tuned, True)]
+    drawn, seconds = means_of(paper, "quality"), seconds_of(paper)
+    tuned = {method: [*cells, seconds[method]] for method, cells in means_of(paper, "tuned").items()}
+    return [with_means(with_boards(texts[0], boards), tuned), with_means(with_means(texts[1], drawn), tuned)]
 
 
 def check_study(texts):
@@ -144,7 +154,7 @@ def main():
             for path, text in zip((README, RIVALS), with_study(texts)):
                 path.write_text(text)
             return
-        for old, new in ((" M instructions", "0 M instructions"), ("fast` | ", "fast` | 1")):
+        for old, new in ((" M instructions", "0 M instructions"), ("fast` | ", "fast` | 1"), ("+finetune, 200 | ", "+finetune, 200 | 1")):
             for text in [text for text in texts if old in text]:
                 proof.must_find(check_study([text.replace(old, new) if text is t else t for t in texts]), "of an older study",
                                 "a document")
