@@ -117,10 +117,11 @@ const struct argp rival_argp = {
     .doc = "\vThe rivals rank the Gaussians that --head and --refine make of all points, by the score of their papers "
            "over the context views. They draw the best ones unchanged. With --prune they rank those of the "
            "file.\n"
+           "  random         a random choice, by --seed\n"
            "  eagles         influence: the sum of blend weights\n"
-           "  lightgaussian  hits x opacity x volume\n"
+           "  lightgaussian  opacity x transmittance x volume\n"
            "  pup            second-order sensitivity to place and scale\n"
            "  efficientgs    dominance: in most pixels\n"
-           "  +finetune      N iterations of Adam follow, on all parameters\n"
+           "  +finetune      pruning in rounds, each with its part of N iterations of Adam on all parameters\n"
            "  +head          --head makes new Gaussians of the points they came from\n",
 };
