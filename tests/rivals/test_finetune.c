@@ -109,8 +109,7 @@ TEST(first_step)
     set_ball(&model, 1, 0, 0, -1, 0.1, 0.5); /* behind the camera */
     double before[2 * SPLAT_PARAMETERS];
     memcpy(before, model.parameters, sizeof before);
-    const finetune_rates rates = {
-        .position = 1e-3, .log_scale = 2e-3, .rotation = 3e-3, .logit = 4e-3, .colour = 5e-3, .last = 1};
+    const finetune_rates rates = {.position = 1e-3, .log_scale = 2e-3, .rotation = 3e-3, .logit = 4e-3, .colour = 5e-3};
     assert_true(finetune(&model, &target, 1, 1, &rates, NULL));
     const double *after = parameters_of(&model, 0);
     for (int k = 0; k < 3; k++) {

@@ -60,7 +60,7 @@ TEST(prunes_and_tunes)
     splat_model_free(&whole);
 }
 
-/* One round of no change keeps the best, as pruning alone does. */
+/* Gaussians start as wide as their neighbours are far, or as wide as they were. */
 TEST(pruned_widths)
 {
     static uint8_t black[SIDE * SIDE * 3];

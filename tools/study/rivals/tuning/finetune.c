@@ -15,11 +15,11 @@
 #define LEAST 1e-15
 
 const finetune_rates finetune_rates_default = {
-    .position = 0.002, .log_scale = 0.2, .rotation = 0.01, .logit = 0.05, .colour = 0.01, .last = 1};
+    .position = 0.002, .log_scale = 0.2, .rotation = 0.01, .logit = 0.05, .colour = 0.01};
 /* The position's rate is 3DGS's last one, 1.6e-6 of the cameras' extent, with which PUP and LightGaussian fine-tune;
  * the extent is taken for a scene unit. The colour's is that of its harmonic, 0.0025, times 0.2821. */
 const finetune_rates finetune_rates_published = {
-    .position = 1.6e-6, .log_scale = 0.005, .rotation = 0.001, .logit = 0.05, .colour = 0.0007, .last = 1};
+    .position = 1.6e-6, .log_scale = 0.005, .rotation = 0.001, .logit = 0.05, .colour = 0.0007};
 
 /* Number of Gaussians that a thread takes at a time. */
 #define CHUNK 256u
@@ -155,13 +155,9 @@ static double rate_of(const finetune_rates *rates, int parameter)
                                         : rates->colour;
 }
 
-/* Sets what Adam needs in iteration `i` of `count`. */
-static void set_iteration(tuner *t, const finetune_rates *rates, uint32_t i, uint32_t count)
+/* Sets what Adam needs in iteration `i`. */
+static void set_iteration(tuner *t, uint32_t i)
 {
-    const double decay = count > 1 ? pow(rates->last, (double)i / (count - 1)) : 1;
-    for (int k = 0; k < SPLAT_PARAMETERS; k++) {
-        t->rate[k] = rate_of(rates, k) * decay;
-    }
     t->mean_bias = 1 - pow(MOMENTUM, i + 1);
     t->square_bias = 1 - pow(MEMORY, i + 1);
 }
@@ -184,8 +180,11 @@ bool finetune(splat_model *model, const finetune_target *targets, uint32_t targe
 {
     tuner t;
     bool done = tuner_open(&t, model, targets, target_count, threads);
+    for (int k = 0; k < SPLAT_PARAMETERS; k++) {
+        t.rate[k] = rate_of(rates, k);
+    }
     for (uint32_t i = 0; i < iterations && done; i++) {
-        set_iteration(&t, rates, i, iterations);
+        set_iteration(&t, i);
         done = iterate(&t);
         cli_progress("fine-tuning", i + 1, iterations);
     }

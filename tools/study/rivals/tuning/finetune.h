@@ -23,10 +23,9 @@ typedef struct finetune_target {
 typedef struct finetune_rates {
     double position; /* scene units: the median depth is between one and two */
     double log_scale, rotation, logit, colour;
-    double last; /* share of the first rates that remains in the last iteration; the decay is exponential */
 } finetune_rates;
 
-/* Tuned on training scenes from the start of splat_model_widen() (docs/rivals.md). */
+/* Tuned on training scenes from the start of neighbour_widen() (docs/rivals.md), the same in every iteration. */
 extern const finetune_rates finetune_rates_default;
 /* The rates with which 3D Gaussian Splatting and the rivals' programs train for thousands of iterations. */
 extern const finetune_rates finetune_rates_published;
