@@ -122,6 +122,6 @@ const struct argp rival_argp = {
            "  lightgaussian  opacity x transmittance x volume\n"
            "  pup            second-order sensitivity to place and scale\n"
            "  efficientgs    dominance: in most pixels\n"
-           "  +finetune      pruning in rounds, each with its part of N iterations of Adam on all parameters\n"
+           "  +finetune      N iterations of Adam on all parameters, in rounds of pruning\n"
            "  +head          --head makes new Gaussians of the points they came from\n",
 };
