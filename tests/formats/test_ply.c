@@ -269,6 +269,7 @@ TEST(refuses_foreign_headers)
         {"end_header\n", "comment trim3r exponent 99\ncomment trim3r origin_q32 0 0 0\nend_header\n", "exponent"},
         {"end_header\n", "comment trim3r exponent 0\ncomment trim3r origin_q32 9223372036854775807 0 0\nend_header\n",
          "origin"},
+        {"end_header\n", "comment trim3r backdrop 2\nend_header\n", "a backdrop of 2 of 1 Gaussians"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         char text[1024], error[256];
@@ -394,6 +395,59 @@ static scene_file scene_at(const double (*places)[3], uint32_t count)
     }
     free(bytes);
     return scene;
+}
+
+/* Writes a scene whose last Gaussians are a backdrop, and reads it again. */
+static int read_with_backdrop(uint32_t backdrop, scene_file *back, char *error, size_t error_bytes)
+{
+    t3r_gaussian *gaussians = calloc(COUNT, sizeof *gaussians);
+    assert_non_null(gaussians);
+    t3r_scene scene;
+    make_scene(&scene, gaussians);
+    for (uint32_t i = COUNT - backdrop; i < COUNT; i++) {
+        gaussians[i].view = T3R_NO_VIEW;
+    }
+    assert_int_equal(scene_file_write(path, &scene, 0, NULL, error, error_bytes), 0);
+    free(gaussians);
+    return scene_file_read(path, 0, back, error, error_bytes);
+}
+
+TEST(the_backdrop_stays_one)
+{
+    static const uint32_t counts[] = {0, 1, 54, COUNT};
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+        scene_file back;
+        char error[256] = "";
+        assert_int_equal(read_with_backdrop(counts[i], &back, error, sizeof error), 0);
+        for (uint32_t k = 0; k < COUNT; k++) {
+            assert_int_equal(back.gaussians[k].view == T3R_NO_VIEW, k >= COUNT - counts[i]);
+        }
+        scene_file_free(&back);
+    }
+}
+
+TEST(a_crop_keeps_what_is_left_of_the_backdrop)
+{
+    scene_file back;
+    scene_conversion counts;
+    char error[256] = "";
+    assert_int_equal(read_with_backdrop(COUNT / 2, &back, error, sizeof error), 0);
+    const scene_crop crop = {.low = {-1e9, -1e9, -1e9}, .high = {1e9, 1e9, 1e9}, .opacity = 0.5};
+    uint32_t left = 0;
+    for (uint32_t k = COUNT / 2; k < COUNT; k++) {
+        left += back.gaussians[k].opacity_q15 >= 16384;
+    }
+    scene_file_free(&back);
+    assert_int_equal(scene_file_convert(path, "cropped.ply", 0, &crop, &counts, error, sizeof error), 0);
+    assert_int_equal(scene_file_read("cropped.ply", 0, &back, error, sizeof error), 0);
+    uint32_t found = 0;
+    for (uint32_t k = 0; k < back.count; k++) {
+        found += back.gaussians[k].view == T3R_NO_VIEW;
+    }
+    assert_true(left > 0 && left < COUNT / 2);
+    assert_int_equal(found, left);
+    scene_file_free(&back);
+    remove("cropped.ply");
 }
 
 /* However far a backdrop of most Gaussians is, what is half a unit from a camera amid the others can be drawn: from

@@ -102,6 +102,18 @@ def built():
     check(b"comment trim3r bits_epoch" in named, "--comments writes none")
     check(b"comment trim3r head none\n" in named, "--comments does not name the head")
     check(b"comment" not in open("exact.ply", "rb").read(), "a comment is in the header unasked")
+    backdrop_without_depth()
+
+
+def backdrop_without_depth():
+    """A file says which of its Gaussians are the backdrop; without this, its depth is that of surfaces far away."""
+    expect(0, "build", "room.mcap", "--context", "0,2", "--working", "64x64", "--keep", 50, "--backdrop", "on", "-o", "wide.ply")
+    marked = open("wide.ply", "rb").read()
+    check(b"\ncomment trim3r backdrop 54\n" in marked, "the file does not say what its backdrop is")
+    open("plain.ply", "wb").write(marked.replace(b"comment trim3r backdrop 54\n", b""))
+    for name, warns in (("wide.ply", False), ("plain.ply", True)):
+        said = run("render", name, "room.mcap", "--view", 5, "--depth", "depth.png", "-o", "view.png")[2]
+        check(("pixels are farther than" in said) == warns, f"{name}: the depth of the backdrop: {said}")
 
 
 def lens_recording(name, side=48):

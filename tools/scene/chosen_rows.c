@@ -25,12 +25,13 @@ static int choose(const scene_rows *all, choice *is_chosen, const void *user, ch
     if (out->index == NULL) {
         return t3r_reason(error, error_bytes, "out of memory for %" PRIu32 " Gaussians", all->count);
     }
-    out->rows.count = 0;
+    out->rows.count = out->rows.backdrop = 0;
     out->rows.read = read_chosen;
     out->rows.user = out;
     for (uint32_t i = 0; i < all->count; i++) {
         if (scene_rows_read(all, i, &row, error, error_bytes) == 0 && is_chosen(user, &row)) {
             out->index[out->rows.count++] = i;
+            out->rows.backdrop += i >= all->count - all->backdrop;
         }
     }
     out->left_out = all->count - out->rows.count;

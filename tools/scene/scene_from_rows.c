@@ -120,7 +120,8 @@ static int convert_row(const scene_rows *rows, const scene_turn *turn, uint32_t 
     if (times > 1 && add_far(scene, index, times) != 0) {
         return t3r_reason(error, error_bytes, "out of memory for a Gaussian far away");
     }
-    *g = (t3r_gaussian){.confidence = 255};
+    const bool is_backdrop = index >= rows->count - rows->backdrop;
+    *g = (t3r_gaussian){.confidence = is_backdrop ? 0 : 255, .view = is_backdrop ? T3R_NO_VIEW : 0};
     for (int i = 0; i < 3; i++) {
         g->position_q20[i] = (int32_t)nearbyint(ldexp(row.position[i], 20 - frame->exponent));
         g->colour_q7[i] = clamp_to((0.5 + HARMONICS_ZERO * row.harmonic[i]) * 32640, 32640);

@@ -2,17 +2,33 @@
 #include "scene/scene_order.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
+
+#include "scene/scene_extent.h"
 
 enum { BITS = 10 };
 
+/* Shells about the centre: the innermost reaches NEAR typical distances, each other twice as far as the one before. Far
+ * Gaussians would make the cells of the others wide, and share their bounds in formats that have some for each part. */
+enum { SHELLS = 32, NEAR = 2 };
+
 typedef struct placed {
-    uint32_t code, index;
+    uint32_t shell, code, index;
 } placed;
+
+/* The cube about the means of a shell. */
+typedef struct cube {
+    bool is_used;
+    double low[3], high[3];
+} cube;
 
 static int compare_codes(const void *a, const void *b)
 {
     const placed *x = a, *y = b;
+    if (x->shell != y->shell) {
+        return (x->shell > y->shell) - (x->shell < y->shell);
+    }
     return x->code != y->code ? (x->code > y->code) - (x->code < y->code)
                               : (x->index > y->index) - (x->index < y->index);
 }
@@ -29,20 +45,48 @@ static uint32_t interleave(const uint32_t cell[3])
     return code;
 }
 
-/* Finds the low corner and the side of the cube about all means, with a row at a time. */
-static double bound(const scene_source *source, double low[3])
+/* Returns the shell of a row of the file, in its own axes. */
+static uint32_t shell_of(const scene_extent *extent, const double position[3])
 {
-    double high[3], side = 0;
+    double away = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        away = fmax(away, fabs(position[axis] - extent->centre[axis]));
+    }
+    const double times = away / (NEAR * extent->typical);
+    return times <= 1 ? 0 : (uint32_t)fmin(ceil(log2(times)), SHELLS - 1);
+}
+
+/* Finds the shell of each row, and the cubes about them, with a row at a time. */
+static void bound(const scene_source *source, const scene_extent *extent, placed *order, cube cubes[SHELLS])
+{
     for (uint32_t i = 0; i < source->rows->count; i++) {
         scene_row row;
+        (void)source->rows->read(source->rows->user, i, &row, NULL, 0); /* checked with the extent */
+        order[i] = (placed){.shell = shell_of(extent, row.position), .index = i};
         scene_source_row(source, i, &row);
+        cube *c = &cubes[order[i].shell];
         for (int axis = 0; axis < 3; axis++) {
-            low[axis] = i == 0 ? row.position[axis] : fmin(low[axis], row.position[axis]);
-            high[axis] = i == 0 ? row.position[axis] : fmax(high[axis], row.position[axis]);
-            side = fmax(side, high[axis] - low[axis]);
+            c->low[axis] = c->is_used ? fmin(c->low[axis], row.position[axis]) : row.position[axis];
+            c->high[axis] = c->is_used ? fmax(c->high[axis], row.position[axis]) : row.position[axis];
         }
+        c->is_used = true;
     }
-    return side;
+}
+
+static double side_of(const cube *c)
+{
+    return fmax(c->high[0] - c->low[0], fmax(c->high[1] - c->low[1], c->high[2] - c->low[2]));
+}
+
+static uint32_t code_of(const cube *c, const double position[3])
+{
+    const double side = side_of(c);
+    uint32_t cell[3];
+    for (int axis = 0; axis < 3; axis++) {
+        const double share = side > 0 ? (position[axis] - c->low[axis]) / side : 0;
+        cell[axis] = (uint32_t)fmin(ldexp(share, BITS), (1 << BITS) - 1);
+    }
+    return interleave(cell);
 }
 
 uint32_t *scene_order_morton(const scene_source *source)
@@ -50,22 +94,18 @@ uint32_t *scene_order_morton(const scene_source *source)
     const uint32_t count = source->rows->count;
     placed *order = malloc((count + (size_t)1) * sizeof *order);
     uint32_t *indices = malloc((count + (size_t)1) * sizeof *indices);
-    if (order == NULL || indices == NULL) {
+    scene_extent extent;
+    if (order == NULL || indices == NULL || scene_extent_of(source->rows, &extent, NULL, 0) != 0) {
         free(order);
         free(indices);
         return NULL;
     }
-    double low[3];
-    const double side = bound(source, low);
+    cube cubes[SHELLS] = {0};
+    bound(source, &extent, order, cubes);
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t cell[3];
         scene_row row;
         scene_source_row(source, i, &row);
-        for (int axis = 0; axis < 3; axis++) {
-            const double share = side > 0 ? (row.position[axis] - low[axis]) / side : 0;
-            cell[axis] = (uint32_t)fmin(ldexp(share, BITS), (1 << BITS) - 1);
-        }
-        order[i] = (placed){interleave(cell), i};
+        order[i].code = code_of(&cubes[order[i].shell], row.position);
     }
     qsort(order, count, sizeof *order, compare_codes);
     for (uint32_t i = 0; i < count; i++) {

@@ -6,7 +6,8 @@
 #include "scene/scene_rows.h"
 
 /* Returns indices along a Z-order curve (Morton) through the bounding box of the means, 10 bits per axis; ties keep
- * their order. free() it; NULL: out of memory. */
+ * their order. Gaussians far outside the scene, such as a backdrop, follow the others, each shell by its own box.
+ * free() it; NULL: out of memory. */
 uint32_t *scene_order_morton(const scene_source *source);
 
 #endif

@@ -8,6 +8,9 @@
 
 #include "scene/scene_rows.h"
 
+/* The comment on how many of the last vertices are a backdrop; their number follows. */
+#define PLY_BACKDROP_COMMENT "comment trim3r backdrop "
+
 /* The comment of Brush for scenes of mip-splatting. Of the comments on this that a file has, the last one counts. */
 #define PLY_MIP_COMMENT "comment SplatRenderMode: mip"
 

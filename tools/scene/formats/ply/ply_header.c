@@ -92,10 +92,12 @@ static void read_up(const char *line, ply_header *h)
     }
 }
 
+/* Reads a line that begins with "comment" or "obj_info". */
 static void read_comment(const char *line, ply_header *h)
 {
     int local, end = 0;
     int32_t exponent;
+    uint32_t backdrop;
     int64_t *origin = h->frame.origin_q32;
     if (sscanf(line, "comment trim3r exponent %" SCNd32 "%n", &exponent, &end) == 1 && line[end] == '\0') {
         h->frame.exponent = exponent;
@@ -106,6 +108,8 @@ static void read_comment(const char *line, ply_header *h)
         h->has_origin = true;
     } else if (sscanf(line, "comment trim3r local %d%n", &local, &end) == 1 && line[end] == '\0') {
         h->local = local != 0;
+    } else if (sscanf(line, PLY_BACKDROP_COMMENT "%" SCNu32 "%n", &backdrop, &end) == 1 && line[end] == '\0') {
+        h->backdrop = backdrop;
     } else {
         read_render_mode(line, h);
         read_up(line, h);

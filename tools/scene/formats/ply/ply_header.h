@@ -44,6 +44,7 @@ typedef struct ply_header {
     t3r_scene_frame frame; /* as given in comments */
     bool mip;              /* a comment says "SplatRenderMode: mip" or "antialiased 1" */
     scene_up up;           /* a comment ends in "with Y-axis up" */
+    uint32_t backdrop;     /* as given in a comment: the last so many vertices */
 } ply_header;
 
 /* Each returns 0, or -1 with "byte: what" in error[]. */

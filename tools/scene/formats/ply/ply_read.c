@@ -201,6 +201,10 @@ static int parse_vertices(const ply_header *header, const uint8_t *bytes, size_t
     if (vertex->count == 0) {
         return t3r_reason(error, error_bytes, "the file holds no Gaussians");
     }
+    if (header->backdrop > vertex->count) {
+        return t3r_reason(error, error_bytes, "the header names a backdrop of %" PRIu32 " of %" PRIu32 " Gaussians",
+                          header->backdrop, vertex->count);
+    }
     vertices.rows = bytes + vertex->at;
     vertices.row_bytes = vertex->row_bytes;
     scene_rows rows = {.count = vertex->count,
@@ -210,6 +214,7 @@ static int parse_vertices(const ply_header *header, const uint8_t *bytes, size_t
                        .degree = vertices.degree,
                        .mip = header->mip,
                        .up = header->up,
+                       .backdrop = header->backdrop,
                        .remark = vertices.remark != NULL ? vertices.remark
                                  : has_more(header, vertex, count)
                                      ? "rows beyond those that the header states are left out"

@@ -46,6 +46,9 @@ static void write_header(FILE *file, const scene_source *source)
 {
     fputs("ply\nformat binary_little_endian 1.0\n", file);
     fputs(source->rows->mip ? PLY_MIP_COMMENT "\n" : "", file);
+    if (source->rows->backdrop > 0) {
+        fprintf(file, PLY_BACKDROP_COMMENT "%" PRIu32 "\n", source->rows->backdrop);
+    }
     if (source->flags & T3R_SCENE_COMMENTS) {
         fprintf(file, "comment trim3r bits_epoch %d\n", T3R_BITS_EPOCH);
         fprintf(file, "comment trim3r exponent %" PRId32 "\n", source->frame.exponent);
