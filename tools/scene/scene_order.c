@@ -5,8 +5,6 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "scene/scene_extent.h"
-
 enum { BITS = 10 };
 
 /* Shells about the centre: the innermost reaches NEAR typical distances, each other twice as far as the one before. Far
@@ -45,25 +43,23 @@ static uint32_t interleave(const uint32_t cell[3])
     return code;
 }
 
-/* Returns the shell of a row of the file, in its own axes. */
-static uint32_t shell_of(const scene_extent *extent, const double position[3])
+static uint32_t shell_of(const scene_source *source, const double position[3])
 {
     double away = 0;
     for (int axis = 0; axis < 3; axis++) {
-        away = fmax(away, fabs(position[axis] - extent->centre[axis]));
+        away = fmax(away, fabs(position[axis] - source->centre[axis]));
     }
-    const double times = away / (NEAR * extent->typical);
+    const double times = away / (NEAR * source->typical);
     return times <= 1 ? 0 : (uint32_t)fmin(ceil(log2(times)), SHELLS - 1);
 }
 
 /* Finds the shell of each row, and the cubes about them, with a row at a time. */
-static void bound(const scene_source *source, const scene_extent *extent, placed *order, cube cubes[SHELLS])
+static void bound(const scene_source *source, placed *order, cube cubes[SHELLS])
 {
     for (uint32_t i = 0; i < source->rows->count; i++) {
         scene_row row;
-        (void)source->rows->read(source->rows->user, i, &row, NULL, 0); /* checked with the extent */
-        order[i] = (placed){.shell = shell_of(extent, row.position), .index = i};
         scene_source_row(source, i, &row);
+        order[i] = (placed){.shell = shell_of(source, row.position), .index = i};
         cube *c = &cubes[order[i].shell];
         for (int axis = 0; axis < 3; axis++) {
             c->low[axis] = c->is_used ? fmin(c->low[axis], row.position[axis]) : row.position[axis];
@@ -94,14 +90,13 @@ uint32_t *scene_order_morton(const scene_source *source)
     const uint32_t count = source->rows->count;
     placed *order = malloc((count + (size_t)1) * sizeof *order);
     uint32_t *indices = malloc((count + (size_t)1) * sizeof *indices);
-    scene_extent extent;
-    if (order == NULL || indices == NULL || scene_extent_of(source->rows, &extent, NULL, 0) != 0) {
+    if (order == NULL || indices == NULL) {
         free(order);
         free(indices);
         return NULL;
     }
     cube cubes[SHELLS] = {0};
-    bound(source, &extent, order, cubes);
+    bound(source, order, cubes);
     for (uint32_t i = 0; i < count; i++) {
         scene_row row;
         scene_source_row(source, i, &row);

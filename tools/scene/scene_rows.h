@@ -82,6 +82,8 @@ typedef struct scene_source {
     t3r_scene_frame frame; /* in the axes of the rows; written where the format has a place for it */
     scene_turn turn;       /* from the axes of the rows to those of the file */
     double shift[3];       /* added to the positions of the rows */
+    double centre[3];      /* of the scene (scene_extent), in the axes and the frame of the file */
+    double typical;        /* distance from there, as in scene_extent */
     uint32_t degree;       /* of the harmonics to write */
 } scene_source;
 

@@ -57,12 +57,16 @@ static scene_source source_of(const scene_format *format, const scene_rows *rows
                            .note = note,
                            .frame = frame_of(rows, extent),
                            .turn = scene_turn_between(rows->axes, format->axes, (scene_up)(flags / SCENE_FILE_UP)),
+                           .typical = extent->typical,
                            .degree = rows->degree < format->degree ? rows->degree : format->degree};
     const bool is_local = rows->has_frame && rows->local, writes_local = (flags & T3R_SCENE_LOCAL) != 0;
     for (int axis = 0; axis < 3; axis++) {
         const double origin = ldexp((double)source.frame.origin_q32[axis], -32);
         source.shift[axis] = is_local == writes_local ? 0 : is_local ? origin : -origin;
+        source.centre[axis] = extent->centre[axis] - (writes_local ? origin : 0);
     }
+    double unturned[4] = {1, 0, 0, 0};
+    scene_turn_apply(&source.turn, source.centre, unturned, 0, NULL);
     return source;
 }
 
