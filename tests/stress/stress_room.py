@@ -109,8 +109,18 @@ def errors(folder):
     check("too small" in said, said)
 
 
+def with_a_backdrop():
+    """A backdrop is of no view: it is no part of the mask, and of no motion."""
+    rows = rows_of(*SMALL, "--rows", "noise", "--strengths", "3", "--methods", "trim3r,random", "--keep", "20", "--backdrop", "on")
+    for row in rows:
+        check(row["status"] == "measured" and row["gaussians"] == 922, f"{row}")
+    still = [row["mask_changed"] for row in rows if row["mask_changed"] is not None]
+    check(len(still) > 0 and all(0 <= changed < 0.3 for changed in still), f"{still}")
+
+
 with tempfile.TemporaryDirectory() as folder:
     figures = table_and_page(folder)
     again(against_eval(folder, figures))
     errors(folder)
+with_a_backdrop()
 done()

@@ -114,6 +114,9 @@ def backdrop_without_depth():
     for name, warns in (("wide.ply", False), ("plain.ply", True)):
         said = run("render", name, "room.mcap", "--view", 5, "--depth", "depth.png", "-o", "view.png")[2]
         check(("pixels are farther than" in said) == warns, f"{name}: the depth of the backdrop: {said}")
+    for name, warns in (("kept.ply", False), ("lost.splat", True), ("lost.spz", True)):
+        said = run("convert", "wide.ply", "-o", name)[2]
+        check(("no place for the mark of the 54 Gaussians" in said) == warns, f"{name}: the mark of the backdrop: {said}")
 
 
 def lens_recording(name, side=48):

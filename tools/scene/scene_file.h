@@ -27,6 +27,15 @@ static inline int16_t *scene_file_harmonics(const scene_file *scene, uint32_t in
     return scene->harmonics_q12 + index * scene_file_harmonics_count(scene);
 }
 
+/* Returns how many of the Gaussians are of surfaces. A backdrop follows them. */
+static inline uint32_t scene_surfaces(const t3r_gaussian *gaussians, uint32_t count)
+{
+    while (count > 0 && gaussians[count - 1].view == T3R_NO_VIEW) {
+        count--;
+    }
+    return count;
+}
+
 /* Whether a file is a scene by its content; or by its suffix, if it does not exist or its content is no other kind. */
 bool scene_file_is_one(const char *path);
 /* Whether a path has the suffix of a scene file that can be written. */

@@ -74,16 +74,6 @@ static int read_gaussian(void *user, uint32_t index, scene_row *row, char *error
     return 0;
 }
 
-/* Returns how many of the last Gaussians are a backdrop. */
-static uint32_t count_backdrop(const scene_file *scene)
-{
-    uint32_t count = 0;
-    while (count < scene->count && scene->gaussians[scene->count - 1 - count].view == T3R_NO_VIEW) {
-        count++;
-    }
-    return count;
-}
-
 scene_rows scene_rows_of(const scene_file *scene)
 {
     return (scene_rows){.count = scene->count,
@@ -93,7 +83,7 @@ scene_rows scene_rows_of(const scene_file *scene)
                         .degree = scene->degree,
                         .mip = scene->mip,
                         .up = scene->up,
-                        .backdrop = count_backdrop(scene),
+                        .backdrop = scene->count - scene_surfaces(scene->gaussians, scene->count),
                         .read = read_gaussian,
                         .user = (void *)(uintptr_t)scene}; /* only read */
 }

@@ -30,8 +30,8 @@ typedef struct colmap_model {
     bool sourced; /* each Gaussian is observed in its source view, one of `views`; else nowhere */
 } colmap_model;
 
-/* Writes pictures, cameras, poses, and a point for the mean of each Gaussian, with its colour. A point has one
- * observation, the projection of the mean in its source view, with error 0; or none, with error -1. The folder must
+/* Writes pictures, cameras, poses, and a point for the mean of each Gaussian of a surface, with its colour. A point has
+ * one observation, the projection of the mean in its source view, with error 0; or none, with error -1. The folder must
  * have been begun, and is not committed here. Returns 0, or -1 with "path: why" in error[]. */
 int colmap_folder_write(whole_folder *folder, const colmap_model *model, char *error, size_t error_bytes);
 

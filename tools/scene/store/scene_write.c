@@ -130,6 +130,12 @@ static int write_all(const char *path, const scene_rows *rows, const scene_exten
                      "this format has no place for the mark of mip-splatting (antialiased): viewers will draw the "
                      "scene too bright");
     }
+    if (rows->backdrop > 0 && !format->holds_backdrop) {
+        scene_remark(caller, path,
+                     "this format has no place for the mark of the %" PRIu32 " Gaussians of the backdrop: drawn "
+                     "from this file they have a depth; a .ply keeps the mark",
+                     rows->backdrop);
+    }
     return t3r_whole_file_commit(&file, NULL, error, error_bytes);
 }
 

@@ -12,19 +12,21 @@ static int compare(const void *a, const void *b)
 
 int scene_box_of(const scene_file *scene, scene_up up, scene_box *out)
 {
-    double *values = malloc(scene->count * sizeof *values);
+    const uint32_t surfaces = scene_surfaces(scene->gaussians, scene->count);
+    const uint32_t count = surfaces > 0 ? surfaces : scene->count;
+    double *values = malloc(count * sizeof *values);
     if (values == NULL) {
         return -1;
     }
     out->upright = scene_turn_between(SCENE_AXES_AS_THEY_ARE, SCENE_AXES_RDF, up);
     for (int axis = 0; axis < 3; axis++) {
         const double *row = out->upright.matrix + 3 * axis;
-        for (uint32_t i = 0; i < scene->count; i++) {
+        for (uint32_t i = 0; i < count; i++) {
             const int32_t *at = scene->gaussians[i].position_q20;
             values[i] = ldexp(row[0] * at[0] + row[1] * at[1] + row[2] * at[2], scene->frame.exponent - 20);
         }
-        qsort(values, scene->count, sizeof *values, compare);
-        const double low = values[scene->count / 20], high = values[scene->count - 1 - scene->count / 20];
+        qsort(values, count, sizeof *values, compare);
+        const double low = values[count / 20], high = values[count - 1 - count / 20];
         out->middle[axis] = (low + high) / 2;
         out->half[axis] = (high - low) / 2 * 1.25;
     }

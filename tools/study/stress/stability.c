@@ -8,6 +8,7 @@
 
 #include "budget/budget.h"
 #include "cli/cli.h"
+#include "scene/scene_file.h"
 #include "state/state.h"
 #include "state/views.h"
 #include "study/rivals/source.h"
@@ -100,7 +101,7 @@ static int take(snapshot *s, const stress_row *row, const stress_case *c, stress
     if (code != CLI_OK) {
         return code;
     }
-    s->count = built.scene.count;
+    s->count = scene_surfaces(built.scene.gaussians, built.scene.count);
     s->owner = malloc((size_t)c->base.views * c->base.width * c->base.height * sizeof *s->owner);
     bool done = s->owner != NULL && fill_places(s, &built.scene, run);
     if (done && method_kind_of(row->method) != METHOD_TRIM3R) {

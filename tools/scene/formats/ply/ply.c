@@ -10,6 +10,7 @@ const scene_format scene_format_ply = {
     .degree = 3,
     .holds_origin = true,
     .holds_mip = true,
+    .holds_backdrop = true,
     .parse = ply_parse,
     .write = ply_write,
 };

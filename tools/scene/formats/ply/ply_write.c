@@ -46,9 +46,6 @@ static void write_header(FILE *file, const scene_source *source)
 {
     fputs("ply\nformat binary_little_endian 1.0\n", file);
     fputs(source->rows->mip ? PLY_MIP_COMMENT "\n" : "", file);
-    if (source->rows->backdrop > 0) {
-        fprintf(file, PLY_BACKDROP_COMMENT "%" PRIu32 "\n", source->rows->backdrop);
-    }
     if (source->flags & T3R_SCENE_COMMENTS) {
         fprintf(file, "comment trim3r bits_epoch %d\n", T3R_BITS_EPOCH);
         fprintf(file, "comment trim3r exponent %" PRId32 "\n", source->frame.exponent);
@@ -67,6 +64,10 @@ static void write_header(FILE *file, const scene_source *source)
         fprintf(file, "property float f_rest_%" PRIu32 "\n", i);
     }
     write_properties(file, "opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3");
+    if (source->rows->backdrop >
+        0) { /* last: without another comment, the element is in the third line, as some readers expect */
+        fprintf(file, PLY_BACKDROP_COMMENT "%" PRIu32 "\n", source->rows->backdrop);
+    }
     fputs("end_header\n", file);
 }
 
