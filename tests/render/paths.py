@@ -92,6 +92,11 @@ def turntables():
     axes = {up: expect_json("render", "scene.ply", "--orbit", 3, "--up", up, "--size", "64x48", "-o", "w.png")["hash"]
             for up in ("x", "-x", "y", "-y", "z", "-z")}
     check(len(set(axes.values())) == 6, f"axes that point up: {axes}")
+    expect(0, "build", room(), "--working", "64x64", "--gaussians", 900, "--backdrop", "on", "-o", "far.ply")
+    expect(0, "convert", "far.ply", "--crop=-99,-99,-99,99,99,99", "-o", "near.ply")  # without its backdrop
+    for name in ("far", "near"):
+        expect(0, "render", f"{name}.ply", "--orbit", 2, "--size", "64x48", "--depth", f"{name}.depth.png", "-o", "w.png")
+    check((read("far.depth_0001.png") == read("near.depth_0001.png")).all(), "a backdrop moves the camera of a turntable")
     expect(2, "render", "scene.ply", "--orbit", 3, "--trajectory", "path.txt", "-o", "w.png", err="exclude")
     expect(2, "render", "scene.ply", "--pose", "pose.json", "--up", "z", "-o", "w.png", err="--orbit")
     expect(2, "render", "scene.ply", "--orbit", 0, "-o", "w.png", err="--orbit")

@@ -135,7 +135,8 @@ def other_views(folder, images, points):
 def adapted(recording, folder, sizes):
     model = f"{folder}/adapted"
     answer = expect_json("build", recording, "--context", "0,2", "--keep", "20%", "--backdrop", "on", "--colmap", model)
-    check("scene" not in answer and answer["gaussians"] >= 864, "no scene file was asked for")
+    check("scene" not in answer, "no scene file was asked for")
+    check(answer["gaussians"] >= 864, "a scene with a whole backdrop")
     _, points, apart = check_model(model, sizes, answer["gaussians"] - 54)  # a backdrop is no points
     check(max(apart) < 0.01 and len(apart) > 0.9 * len(points), "reprojected")
 

@@ -31,8 +31,8 @@ typedef struct writer {
     whole_folder *folder;
     const colmap_model *model;
     pose poses[T3R_MAX_VIEWS];
-    uint32_t count;        /* of Gaussians that are of surfaces */
-    observation *observed; /* of each of them */
+    uint32_t points;       /* the first Gaussians, which are of surfaces */
+    observation *observed; /* of each point */
     char *error;
     size_t error_bytes;
 } writer;
@@ -83,7 +83,7 @@ static bool project(const writer *w, uint32_t index, uint32_t v, observation *at
 static void observe(writer *w)
 {
     uint32_t counts[T3R_MAX_VIEWS] = {0};
-    for (uint32_t i = 0; i < w->count; i++) {
+    for (uint32_t i = 0; i < w->points; i++) {
         uint32_t v = w->model->scene->gaussians[i].view;
         bool seen = w->model->sourced && v < w->model->view_count && project(w, i, v, &w->observed[i]);
         w->observed[i].index = seen ? counts[v]++ : NOWHERE;
@@ -110,7 +110,7 @@ static void write_images(FILE *file, const writer *w)
                 v + 1, p->quaternion[0], p->quaternion[1], p->quaternion[2], p->quaternion[3], p->translation[0],
                 p->translation[1], p->translation[2], v + 1, w->model->views[v].frame);
         const char *between = "";
-        for (uint32_t i = 0; i < w->count; i++) {
+        for (uint32_t i = 0; i < w->points; i++) {
             if (w->observed[i].index != NOWHERE && w->model->scene->gaussians[i].view == v) {
                 fprintf(file, "%s%.4f %.4f %" PRIu32, between, w->observed[i].x, w->observed[i].y, i + 1);
                 between = " ";
@@ -123,7 +123,7 @@ static void write_images(FILE *file, const writer *w)
 static void write_points(FILE *file, const writer *w)
 {
     fputs("# POINT3D_ID X Y Z R G B ERROR IMAGE_ID POINT2D_IDX\n", file);
-    for (uint32_t i = 0; i < w->count; i++) {
+    for (uint32_t i = 0; i < w->points; i++) {
         const t3r_gaussian *g = &w->model->scene->gaussians[i];
         double point[3];
         point_of(w, i, point);
@@ -181,8 +181,8 @@ static int write_all(writer *w)
 int colmap_folder_write(whole_folder *folder, const colmap_model *model, char *error, size_t error_bytes)
 {
     writer w = {.folder = folder, .model = model, .error = error, .error_bytes = error_bytes};
-    w.count = scene_surfaces(model->scene->gaussians, model->scene->count);
-    w.observed = malloc(((size_t)w.count + 1) * sizeof *w.observed);
+    w.points = scene_surfaces(model->scene->gaussians, model->scene->count);
+    w.observed = malloc(((size_t)w.points + 1) * sizeof *w.observed);
     if (w.observed == NULL) {
         return t3r_reason(error, error_bytes, "out of memory");
     }

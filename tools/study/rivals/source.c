@@ -35,7 +35,6 @@ rival_source *rival_source_open(method_source *shared, const t3r_recording *reco
         source->recording = recording;
         source->path = path;
         source->options = *options;
-        source->options.config.backdrop = 0; /* rivals rank surfaces */
         if (options->mask_head != NULL) {
             source->options.head = options->mask_head;
         }

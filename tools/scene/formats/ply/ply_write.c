@@ -64,8 +64,7 @@ static void write_header(FILE *file, const scene_source *source)
         fprintf(file, "property float f_rest_%" PRIu32 "\n", i);
     }
     write_properties(file, "opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3");
-    if (source->rows->backdrop >
-        0) { /* last: without another comment, the element is in the third line, as some readers expect */
+    if (source->rows->backdrop > 0) { /* not above: some readers expect the element in the third line */
         fprintf(file, PLY_BACKDROP_COMMENT "%" PRIu32 "\n", source->rows->backdrop);
     }
     fputs("end_header\n", file);
