@@ -60,26 +60,26 @@ const char *t3r_fixed_camera(const t3r_recorded_camera *in, t3r_camera *out)
     if (!t3r_fixed_focal(t3r_double_bits(in->fx), &out->fx_q16) ||
         !t3r_fixed_focal(t3r_double_bits(in->fy), &out->fy_q16)) {
         return T3R_LIMIT_TEXT("fl_x, fl_y: ", T3R_LIMIT_FOCAL_LEAST,
-                              T3R_LIMIT_TEXT(" to ", T3R_LIMIT_PIXELS, " pixels"));
+                              T3R_LIMIT_TEXT(" to ", T3R_LIMIT_PIXELS, " pixels are supported"));
     }
     if (!t3r_fixed_centre(t3r_double_bits(in->cx), &out->cx_q16) ||
         !t3r_fixed_centre(t3r_double_bits(in->cy), &out->cy_q16)) {
-        return T3R_LIMIT_TEXT("cx, cy: less than ", T3R_LIMIT_PIXELS, " pixels");
+        return T3R_LIMIT_TEXT("cx, cy: less than ", T3R_LIMIT_PIXELS, " pixels are supported");
     }
     for (uint32_t i = 0; i < 5; i++) {
         if (!t3r_fixed_coefficient(t3r_double_bits(in->coefficients[i]), in->distortion, i, &out->distortion_q24[i])) {
             return T3R_LIMIT_TEXT("distortion: coefficients of less than ", T3R_LIMIT_DISTORTION,
-                                  T3R_LIMIT_TEXT(", p1 and p2 of less than ", T3R_LIMIT_TANGENTIAL, ""));
+                                  T3R_LIMIT_TEXT(", p1 and p2 of less than ", T3R_LIMIT_TANGENTIAL, " are supported"));
         }
     }
     for (uint32_t i = 0; i < 3; i++) {
         if (!t3r_fixed_position(t3r_double_bits(in->position[i]), &out->position_q32[i])) {
-            return T3R_LIMIT_TEXT("position: less than 2^", T3R_LIMIT_POSITION_LOG2, "");
+            return T3R_LIMIT_TEXT("position: less than 2^", T3R_LIMIT_POSITION_LOG2, " is supported");
         }
     }
     for (uint32_t i = 0; i < 4; i++) {
         if (!t3r_fixed_rotation(t3r_double_bits(in->rotation[i]), &out->rotation_q30[i])) {
-            return "rotation: a unit quaternion";
+            return "rotation: unit quaternions are supported";
         }
     }
     return NULL;

@@ -20,7 +20,7 @@ bool t3r_fixed_coefficient(uint64_t f64, t3r_distortion distortion, uint32_t ind
 bool t3r_fixed_depth_unit(double unit, uint64_t *q40);
 
 /* Converts the whole camera like a reader of the recording. Returns NULL, or what is wrong: "field: what is
- * supported". */
+ * supported", a whole sentence. */
 const char *t3r_fixed_camera(const t3r_recorded_camera *in, t3r_camera *out);
 
 /* Whether the principal point lies in a picture of width x height. If nothing states the size that intrinsics are for,

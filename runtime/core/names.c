@@ -141,7 +141,7 @@ const char *t3r_error_text(t3r_status status)
     case T3R_ERR_INTERFACE:
         return "the program was compiled with another trim3r.h, or other features, than the library";
     case T3R_ERR_WEIGHTS:
-        return "the weights are damaged, of another version, or too large a head for this arena";
+        return "the weights are damaged, of another version, or of too large a head for this arena";
     }
     return "unknown status";
 }

@@ -51,7 +51,14 @@ def prose(name, text):
             yield f"{name}: {len(words)} words: {' '.join(words[:10])} ..."
 
 
+def layout(name, text):
+    """Returns lines that argp breaks where an option's text fills a line to the last column: they want another word."""
+    for line in re.findall(r"^ +$|^ {30,}--[a-z].*$", text, flags=re.M):
+        yield f"{name}: a line of help is broken: {line!r}"
+
+
 def find_what_is_planted():
+    check(len(list(layout("x", "a\n  \n" + " " * 35 + "--start=A|B\nwidths\n"))) == 2, "blind to planted lines")
     check(list(findings("x", "Tell more.")) != [] and list(findings("x", "of a stream")) != [], "blind to a planted text")
     check(list(prose("x", "what we told " + "word " * 40)) != [], "blind to planted prose")
     check(list(options_of("  -o, --output=REC.mcap      recording to write")) ==
@@ -70,6 +77,7 @@ def every_help():
     check(len(commands) >= 15, f"{len(commands)} commands")
     for command, about in commands:
         wrong += findings(command, about)
+        wrong += layout(command, expect(0, command, "--help"))
         wide = subprocess.run([TRIM3R, command, "--help"], capture_output=True, text=True, check=True,
                               env={**os.environ, "ARGP_HELP_FMT": "rmargin=2000"}).stdout
         options = list(options_of(wide))

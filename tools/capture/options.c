@@ -147,7 +147,9 @@ static void parse_intrinsics(struct argp_state *state, const char *text, capture
     if (count == 0) {
         argp_error(state, "--intrinsics %s: not fx,fy,cx,cy[,k1,k2,p1,p2[,k3]]", text);
     } else if (count == INTRINSICS_NUMBERS) {
-        argp_error(state, "--intrinsics: no recording holds k4,k5,k6: trim3r import of the pictures' folder does");
+        argp_error(
+            state,
+            "--intrinsics: no recording holds k4,k5,k6: trim3r import of the pictures' folder redraws the pictures");
     }
     o->intrinsics.fx = numbers[0];
     o->intrinsics.fy = numbers[1];
@@ -370,8 +372,8 @@ static const struct argp argp = {
         "  trim3r capture --source replay:posed.mcap --build s.ply --keep 10%\n"
         "  trim3r capture --source replay:posed.mcap --build map.ply --stream \\\n"
         "    --snapshot 10 --lines map.jsonl\n\n"
-        "Poses are known after the capture as a rule: record first, then add them from the recording as above. "
-        "Devices may come back under another name: those of /dev/v4l/by-id do not.\n\n"
+        "Poses are usually known only after the capture: record first, then add them to the recording as above. A "
+        "device may come back under another name, but not below /dev/v4l/by-id.\n\n"
         "Every frame that is not recorded is counted under its cause and reported on the topic /camera/events, as is "
         "every pair of colour and depth. A process that is killed loses at most the message that it was writing, with "
         "--compression the frame.",

@@ -73,8 +73,8 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, evalua
 int evaluation_measure(evaluation_row *row, uint8_t *render, evaluation_views *views, const evaluation_case *what,
                        evaluation_budget budget, bool from_file, const reconstruction_options *settings);
 
-/* The steps of evaluation_measure() after the build, for callers that build from frames other than the views' (stress)
- * . evaluation_draw() renders the scene as `camera` sees it; rgb (width x height x 3) or alpha (width
+/* The steps of evaluation_measure() after the build, for callers that build from frames other than the views'
+ * (stress). evaluation_draw() renders the scene as `camera` sees it; rgb (width x height x 3) or alpha (width
  * x height, 32767 = opaque) may be NULL. evaluation_score() renders the target into `render` and fills the scores
  * and render_ms of *row; context_psnr is NaN if the views hold no context. */
 int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluation_views *views, uint8_t *rgb,

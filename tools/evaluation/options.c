@@ -163,8 +163,8 @@ static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS | OPTION_FOLDER),
     {NULL, 0, NULL, 0, "What is compared:", 1},
     {"context", KEY_CONTEXT, "LIST|all|auto", 0,
-     "frames that the scene is made of: 0,2 or 0-3 or 0:11:2, one named twice counting once; all but the target; or "
-     "auto, of all but the target (all triplets that the recording carries)",
+     "frames that the scene is made of: 0,2 or 0-3 or 0:11:2, one named twice counting once; all, but without the "
+     "target; or auto, chosen of those (all triplets that the recording carries)",
      0},
     {"target", KEY_TARGET, "T", 0, "frame to compare the rendered view with; the method never sees it", 0},
     {"views", KEY_VIEWS, "N", 0,

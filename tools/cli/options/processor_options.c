@@ -13,7 +13,7 @@ static const struct argp_option options[] = {
     {NULL, 0, NULL, 0, "Without effect on the result:", PROCESSOR_GROUP},
     {"threads", KEY_THREADS, "N|all", 0, "number of threads, 1..16, or all: one for each processor (1)", 0},
     {"cpu-mask", KEY_CPU_MASK, "MASK", 0,
-     "vector extensions of the processor to use: all (default), none, names like avx2,vnni, or a number", 0},
+     "vector extensions of the processor to use: all (default), none, names like avx2,vnni or a number", 0},
     {0},
 };
 

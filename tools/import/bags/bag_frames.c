@@ -183,7 +183,8 @@ static bool pose_of_tree(bag_frames *b, int64_t stamp_ns, rigid *out)
         return false;
     }
     if (b->fixed.count == 0 && !transform_tree_moves(&b->tree, camera)) { /* frames inside a rigid rig are no poses */
-        remark(b, "no pose topic was chosen, and no transform moves", b->camera, (t3r_text){"its root", 8});
+        remark(b, "no pose topic was chosen, and no transform that changes leads", b->camera,
+               (t3r_text){"its root", 8});
         return false;
     }
     t3r_text to =
@@ -354,7 +355,7 @@ static int make_depth(bag_frames *b, uint32_t index, t3r_capture_frame *frame, c
     }
     if (!own_lens || !frame->has_intrinsics) {
         if (!same_frame) {
-            remark(b, "depth has no camera_info of its own, so none is registered", from, b->camera);
+            remark(b, "depth without a camera_info of its own is left out: it cannot be registered", from, b->camera);
             drop_depth(b, f);
         }
         return 0;

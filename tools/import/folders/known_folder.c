@@ -28,7 +28,7 @@ static const struct known {
     {"a model of 3D Gaussian Splatting",
      {"point_cloud/iteration_*"},
      "trim3r render and view take its scene, DIR/point_cloud/iteration_N/point_cloud.ply, and render --path "
-     "DIR/cameras.json"},
+     "DIR/cameras.json draws its views"},
     {"a run of nerfstudio",
      {"config.yml", "nerfstudio_models"},
      "ns-export gaussian-splat --load-config DIR/config.yml --output-dir OUT writes a scene"},

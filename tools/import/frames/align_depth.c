@@ -31,7 +31,7 @@ static int lens_of(const t3r_recorded_camera *camera, lens *out, char *error, si
     t3r_camera fixed;
     const char *wrong = t3r_fixed_camera(camera, &fixed);
     if (wrong != NULL) {
-        return t3r_reason(error, error_bytes, "%s are supported", wrong);
+        return t3r_reason(error, error_bytes, "%s", wrong);
     }
     lens_of_camera(&fixed, camera->width, camera->height, out);
     return 0;

@@ -188,9 +188,8 @@ static int check_camera(const t3r_recorded_camera *camera, const char *name, cha
     t3r_camera fixed;
     const char *wrong = t3r_fixed_camera(camera, &fixed);
     if (wrong != NULL) {
-        return t3r_reason(error, error_bytes,
-                          "%s: %s are supported; after resizing fl_x, fl_y, cx, cy are %g, %g, %g, %g", name, wrong,
-                          camera->fx, camera->fy, camera->cx, camera->cy);
+        return t3r_reason(error, error_bytes, "%s: %s; after resizing fl_x, fl_y, cx, cy are %g, %g, %g, %g", name,
+                          wrong, camera->fx, camera->fy, camera->cx, camera->cy);
     }
     int folds = lens_folds(&fixed, camera->width, camera->height);
     return folds == 0 ? 0

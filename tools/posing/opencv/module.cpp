@@ -96,8 +96,8 @@ int resect(const double (*points)[3], const double (*rays)[2], uint32_t count, d
             !cv::solvePnPRansac(places, seen, UNIT, cv::noArray(), r, t, false, 2000, static_cast<float>(band),
                                 CONFIDENCE, inliers, cv::SOLVEPNP_AP3P) ||
             static_cast<uint32_t>(inliers.rows) < count / 2) {
-            refuse("the points do not lie on the pixels' rays from any: intrinsics are wrong or missing, or the points "
-                   "are");
+            refuse("the points do not lie on the pixels' rays from any place: intrinsics are wrong or missing, or the "
+                   "points are wrong");
         }
         for (int i = 0; i < inliers.rows; i++) {
             some_places.push_back(places.row(inliers.at<int>(i)));

@@ -102,7 +102,7 @@ def _is_report(native: Any) -> bool:
 class Stream(Runtime):
     """A map that follows a moving camera with depth, in a fixed number of bytes: docs/streams.md.
 
-    `keyframe()` takes frame after frame, of which the caller chooses which; the map may be drawn and read in between. It
+    `keyframe()` takes one frame after another; the caller chooses which. The map may be drawn and read in between. It
     is a context manager, and `close()` ends it. Calls release Python's lock, and one stream takes one call at a time.
 
     Parameters

@@ -17,7 +17,7 @@ static const struct argp_option options[] = {
     {"at-hand", KEY_AT_HAND, "K", 0, "number of keyframes whose planes are kept, for refinement, 1..16 (4)", 5},
     {"max-ms", KEY_MAX_MS, "MS", 0,
      "milliseconds that a keyframe may take: passes of refinement that would take longer are left out, so bits and "
-     "hashes differ from run to run; 1..1000000",
+     "hashes differ between runs; 1..1000000",
      5},
     {"snapshot", KEY_SNAPSHOT, "N", 0,
      "keyframes after which the files of the map and of --state are replaced, each as a whole; 1..1000000 (at the end)",

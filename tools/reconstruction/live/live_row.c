@@ -51,7 +51,7 @@ static const struct {
     {"compared", NULL, 0, FIELD_COUNT, AT(report.compared), "", "Gaussians that were compared with the frame"},
     {"contradicted_q8", NULL, 0, FIELD_COUNT, AT(report.contradicted_q8), "1/256",
      "share of these that the frame sees through"},
-    {"likeness_q8", NULL, 0, FIELD_COUNT, AT(report.likeness_q8), "1/256", "correlation of colours with the rest"},
+    {"likeness_q8", NULL, 0, FIELD_COUNT, AT(report.likeness_q8), "1/256", "correlation with the others' colours"},
     {"recent", NULL, 0, FIELD_COUNT, AT(report.recent), "", "Gaussians in the picture that the last keyframe saw"},
     {"in_view_q8", NULL, 0, FIELD_COUNT, AT(report.in_view_q8), "1/256", "share of all that the last keyframe saw"},
     {"hidden_q8", NULL, 0, FIELD_COUNT, AT(report.hidden_q8), "1/256", "share of these that something near hides"},
@@ -64,7 +64,7 @@ static const struct {
      "PSNR of the map's view before it; null: not measured"},
     {"position", NULL, 0, FIELD_PLACE, AT(position), "m", "place of the camera in the world: x, y, z"},
     {"rotation", NULL, 0, FIELD_TURN, AT(rotation), "", "rotation of the camera to the world: w, x, y, z"},
-    {"stages_ms", NULL, 0, FIELD_STAGES, AT(stages), "ms", "time of each stage, with its hash"},
+    {"stages_ms", NULL, 0, FIELD_STAGES, AT(stages), "ms", "time of each stage, its hashing included"},
     {"hash", NULL, 0, FIELD_HASH, AT(hash), "", "hash of all stages so far; null with --max-ms"},
 };
 enum { FIELDS = sizeof fields / sizeof fields[0] };

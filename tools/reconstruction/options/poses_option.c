@@ -8,7 +8,7 @@ enum { KEY_POSES = 0x1b0 };
 static const struct argp_option options[] = {
     {"poses", KEY_POSES, POSES_PLACEHOLDER, 0,
      "source of the poses of the context views: given (default), those of the recording; estimate, from features that "
-     "share, with depth where two of them have it; estimate-colour, the same from colour alone",
+     "views share, with depth where two of them have it; estimate-colour, the same from colour alone",
      20},
     {0},
 };

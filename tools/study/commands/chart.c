@@ -130,25 +130,25 @@ static const struct argp_option argp_options[] = {
     {"output", 'o', "REPORT.html", OPTION_WRITES(FILE_PAGE),
      "report to write: every quality against every cost, in one file that fetches nothing", 0},
     {"svg", OPTION_TO(options, svg), "FILE", OPTION_WRITES(FILE_SVG), "picture to write: a panel for each cost", 0},
-    {"png", OPTION_TO(options, png), "FILE", OPTION_WRITES(FILE_PICTURE), "the same picture to write, in pixels", 0},
+    {"png", OPTION_TO(options, png), "FILE", OPTION_WRITES(FILE_PICTURE), "picture of --svg to write in pixels", 0},
     {"dark", OPTION_TO(options, dark), NULL, 0, "draw the PNG on a dark ground", 0},
     {NULL, 0, NULL, 0, "What is shown:", 2},
     {"quality", KEY_QUALITY, "NAME", 0,
      "quality to draw: psnr, ssim, perceptual, planar_psnr, psnr_all, ssim_all or perceptual_all; the report begins "
-     "with "
-     "it (psnr)",
+     "with it (psnr)",
      0},
     {"against", KEY_AGAINST, "NAME,NAME,...", 0,
-     "costs to draw it against: build_ms, render_ms, arena_bytes, scene_bytes (all that the tables have); the report "
+     "costs to draw the quality against: build_ms, render_ms, arena_bytes, scene_bytes (all that the tables have); the "
+     "report "
      "begins with the first",
      0},
     {"scene", OPTION_TO(options, scene), "NAME", 0,
      "scene to draw, alone (the mean over all); the report begins with it", 0},
     {"pictures", KEY_PICTURES, "DIR", OPTION_READS | OPTION_FOLDER,
-     "folder that eval --images wrote, for the report: one for all tables, or one for each in their order", 0},
+     "folder that eval --images wrote, for the report: one for all tables, or one each in their order", 0},
     {"picture-mib", KEY_MIB, "N", 0,
      "most MiB of pictures that the report holds, 1..1024, the front's first (as many as leave it below 4 MB)", 0},
-    {"all-pictures", KEY_ALL, NULL, 0, "hold all of them", 0},
+    {"all-pictures", KEY_ALL, NULL, 0, "let the report hold all pictures", 0},
     {0},
 };
 

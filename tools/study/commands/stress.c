@@ -134,7 +134,7 @@ static const struct argp_option argp_options[] = {
     {"methods", KEY_METHODS, "M,M,...", 0, METHOD_HELP, 0},
     {"keep", KEY_KEEP, "P,P,...", 0, "percents of the valid points of the unperturbed frames (10)", 0},
     {"rows", KEY_ROWS, "NAME,...", 0, "perturbations and scenes, of those below (all)", 0},
-    {"strengths", KEY_STRENGTHS, "N,...", 0, "strengths of each, 1 the least, 3 the most (1,2,3)", 0},
+    {"strengths", KEY_STRENGTHS, "N,...", 0, "strengths of each, 1 the least, 3 most (1,2,3)", 0},
     {"captures", KEY_CAPTURES, "N", 0, "number of noisy captures of each still scene, for flicker; 0 = none (2)", 0},
     {"triplets", KEY_TRIPLETS, "N", 0,
      "number of triplets of each recording, spread evenly over those that it carries (1)", 0},

@@ -64,8 +64,8 @@ static const struct argp_option options[] = {
     {"finetune-rounds", KEY_ROUNDS, "N", 0,
      "rounds in which rivals prune and fine-tune, 1..16 (as published: pup 2, efficientgs 3, eagles 5, others 1)", 0},
     {"finetune-start", KEY_START, "neighbours|pruned", 0,
-     "widths of a rival's Gaussians before fine-tuning: the distances to their neighbours, as 3D Gaussian Splatting "
-     "starts, or those left by pruning (neighbours)",
+     "widths that fine-tuning starts from: the distances to neighbours, as in 3D Gaussian Splatting, or "
+     "what pruning left (neighbours)",
      0},
     {"finetune-rates", KEY_RATES, "tuned|published", 0,
      "rates of fine-tuning: tuned on training scenes for few iterations, or those of 3D Gaussian Splatting (tuned)", 0},

@@ -19,7 +19,7 @@ static const perturbation perturbations[] = {
     {"black", "%", {25, 50, 100}, false, "share of the rows that are black, from the top", perturb_black},
     {"white", "%", {25, 50, 100}, false, "share of the rows that are white, from the top", perturb_white_frame},
     {"one-colour", "%", {25, 50, 100}, false, "share of the rows in one colour, from the top", perturb_one_colour},
-    {"identical", "kind", {1, 2, 3}, false, "the first view: 1 all; 2 not its pose; 3 its picture", perturb_identical},
+    {"identical", "kind", {1, 2, 3}, false, "copies of the first: 1 all; 2 not its pose; 3 picture", perturb_identical},
     {"mirrored", "kind", {1, 2, 3}, false, "1 the last picture; 2 its depth too; 3 all views", perturb_mirrored},
     {"near", "%", {1, 10, 100}, true, "share of the pixels measured at one step", perturb_near},
     {"far", "%", {1, 10, 100}, true, "share of the pixels measured at 65535 steps", perturb_far},

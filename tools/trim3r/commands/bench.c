@@ -55,7 +55,7 @@ static const struct argp_option options[] = {
     {"calibrate", OPTION_TO(bench_options, calibrate), NULL, 0,
      "measure instead the time of a unit of each kind of work on this machine, for trim3r plan --machine", 0},
     {"output", 'o', "MACHINE.json", OPTION_WRITES(FILE_OTHER), "file that --calibrate writes", 0},
-    {"profile", OPTION_TO(bench_options, profile), NULL, 0, "print also the time of each stage of a whole build", 0},
+    {"profile", OPTION_TO(bench_options, profile), NULL, 0, "print also each stage's time in a whole build", 0},
     {"json", OPTION_TO(bench_options, json), NULL, 0, "print one JSON object on stdout", 0},
     {0},
 };
@@ -121,9 +121,9 @@ static const struct argp argp = {
            "pass over both views, 13,107 Gaussians. stereo_ms: depth of both views from their colours, holes filled, "
            "with the four paths that --depth stereo takes; stereo_8_paths_ms: with eight. build_analytic_ms, "
            "build_unrefined_ms and build_small_ms include it with --depth stereo; the second is the first without "
-           "there, "
+           "refinement. A blended pair is a pixel and a splat that is drawn there, whole groups of eight columns. "
            "machine_gmac_per_s: 10^9 multiply-adds of 8-bit numbers a second, by the widest instruction that "
-           "widest "
+           "--cpu-mask leaves, all in registers. machine_copy_gb_per_s: 10^9 bytes a second, read and written, of 64 "
            "MiB that are copied.\n"
            "\n"
            "--against: the programs take turns, and each turn gives a ratio of times. Its median comes with the least "

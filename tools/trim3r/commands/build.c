@@ -127,7 +127,7 @@ const struct argp build_argp = {
            "--poses estimate: the first context view keeps its recorded pose, or is the origin. Each other view is "
            "joined to the best earlier one. With depth in both views, lengths come from the depth; from colour "
            "alone, the first two cameras are 1 apart, unless some depth gives their distance. Frames too unlike, a "
-           "unlike, a camera that only turned, and features on one plane are refused. `trim3r import --poses estimate` "
+           "camera that only turned, and features on one plane are refused. `trim3r import --poses estimate` keeps "
            "the poses in the recording.\n"
            "\n"
            "--colmap: DIR/images/ holds the context views at the working size, undistorted. DIR/sparse/0/ holds "
@@ -338,7 +338,7 @@ static void print_least(const reconstruction_options *settings, const t3r_least 
     printf("each context view is drawn at %.2f dB or more, in the last of %" PRIu32 " builds\n", least->psnr_q8 / 256.0,
            least->builds);
     if (least->psnr_q8 < settings->min_psnr * 256) {
-        printf("%swarning:%s that is less than --min-psnr %g, the best of the numbers that were tried\n",
+        printf("%swarning:%s that is less than --min-psnr %g: it is the best of the numbers that were tried\n",
                style_begin(stdout, STYLE_WARNING), style_end(stdout), settings->min_psnr);
     }
 }

@@ -47,7 +47,7 @@ static const struct argp_option options[] = {
     {"pose", OPTION_TO(render_options, pose), "FILE.json", OPTION_READS,
      "camera as JSON, or several, one numbered picture each (below)", 0},
     {"path", OPTION_TO(render_options, pose), "FILE.json", OPTION_READS,
-     "the same, for a camera path as nerfstudio's viewer saves it", 0},
+     "the same as --pose, for a camera path as nerfstudio's viewer saves it", 0},
     {"orbit", KEY_ORBIT, "N", 0,
      "turntable: N views around the middle of the scene, from above, or from --view or --pose on", 0},
     {"arc", KEY_ARC, "DEGREES", 0,
@@ -208,9 +208,9 @@ static const struct argp argp = {
         "  {\"fl_x\": 220, \"fl_y\": 220, \"cx\": 128, \"cy\": 128, \"w\": 256, \"h\": 256,\n"
         "   \"transform_matrix\": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}\n"
         "transform_matrix: camera to world, x right, y up, z backward; cx, cy from the picture's corner; "
-        "fl_y, cx and cy may be left out; Blender's camera_angle_x may stand for fl_x, and --size for w and h. It may "
-        "also be a camera path of nerfstudio, with render_width and camera_path, or cameras.json of 3D Gaussian "
-        "Splatting. Several poses give view_0000.png, view_0001.png ...\n"
+        "fl_y, cx and cy may be left out; Blender's camera_angle_x may stand for fl_x, and --size for w and h. The "
+        "file may also be a camera path of nerfstudio, with render_width and camera_path, or cameras.json of 3D "
+        "Gaussian Splatting. Several poses give view_0000.png, view_0001.png ...\n"
         "A trajectory has lines of TUM, `stamp tx ty tz qx qy qz qw`, or of EuRoC: camera to world, x right, y down, "
         "z forward. Poses that cannot be used are left out, counted and named.",
     .children = children,
