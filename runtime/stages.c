@@ -193,8 +193,7 @@ static bool passes_over_covered(const t3r_runtime *rt, const t3r_view *views, ui
 t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view *views)
 {
     const t3r_config *config = &rt->config;
-    const uint32_t before = rt->build.gaussians - t3r_backdrop_count(config, rt->build.gaussians);
-    const uint32_t gaussians = T3R_MIN(before, rt->valid_points); /* filled holes don't raise the budget */
+    const uint32_t gaussians = t3r_gaussians_of(rt) - t3r_backdrop_count(rt, views);
     return (t3r_budget_settings){
         .allocate = rt->build.allocate,
         .gaussians = gaussians,

@@ -68,6 +68,13 @@ def room(size="64x64", name="room.mcap", frames=6):
     return name
 
 
+def beyond(path):
+    """Returns how many of the last Gaussians of a .ply are its rim and backdrop."""
+    with open(path, "rb") as file:
+        head = file.read().split(b"end_header\n", 1)[0]
+    return int(head.rsplit(b"comment trim3r backdrop ", 1)[1]) if b"trim3r backdrop" in head else 0
+
+
 def weight_file(path, bits="8"):
     """The float head small, quantized by the recording tiny.mcap under the file's name; the file's bytes."""
     expect(0, "quantize", os.path.join(HEADS, "small.safetensors"), "--calibrate", "tiny.mcap", "--weights", bits,

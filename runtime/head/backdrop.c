@@ -5,6 +5,7 @@
 #include "head.h"
 #include "pointmap/exposure.h"
 #include "pointmap/pointmap.h"
+#include "rim.h"
 
 #define SAMPLES 16u                                                          /* of each side of a view */
 #define OPACITY_Q15 32440                                                    /* 0.99 */
@@ -80,12 +81,19 @@ static void make(const t3r_runtime *rt, const t3r_pointmap maps[T3R_MAX_VIEWS], 
     }
 }
 
+uint32_t t3r_backdrop_count(const t3r_runtime *rt, const t3r_view *views)
+{
+    const uint32_t n = t3r_backdrop_side(&rt->config, t3r_gaussians_of(rt));
+    return 6 * n * n + t3r_make_rim(rt, views, NULL);
+}
+
 void t3r_add_backdrop(t3r_runtime *rt, const t3r_view *views)
 {
-    const int32_t n = (int32_t)t3r_backdrop_side(&rt->config, rt->build.gaussians);
+    const int32_t n = (int32_t)t3r_backdrop_side(&rt->config, t3r_gaussians_of(rt));
     t3r_gaussian *scene = t3r_buffer_at(rt, T3R_BUFFER_SCENE);
     t3r_pointmap maps[T3R_MAX_VIEWS];
     t3r_pointmaps_of(views, rt->views, rt->frame.exponent, maps);
+    rt->gaussians += t3r_make_rim(rt, views, scene + rt->gaussians);
     for (int32_t face = 0; face < 6 && n > 0; face++) {
         const int32_t axis = face / 2;
         for (int32_t cell = 0; cell < n * n; cell++) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The backdrop: wide Gaussians far away in all directions, in the colours of the borders of the context views. So a
- * view beyond what the context views show is not black. It has no depth, and refinement draws it but leaves it as it
- * is (SPEC.md, "Backdrop"). */
+ * view in any direction is not black. It has no depth, and refinement corrects its colours alone (SPEC.md, "Backdrop").
+ */
 #ifndef T3R_BACKDROP_H
 #define T3R_BACKDROP_H
 
@@ -24,14 +24,10 @@ static inline uint32_t t3r_backdrop_side(const t3r_config *config, uint32_t budg
     return n;
 }
 
-/* Returns how many Gaussians of a budget the backdrop takes, at most 54. */
-static inline uint32_t t3r_backdrop_count(const t3r_config *config, uint32_t budget)
-{
-    const uint32_t n = t3r_backdrop_side(config, budget);
-    return 6 * n * n;
-}
+/* Returns how many Gaussians of its budget a build's rim and backdrop take, at most 24 a view and 54. */
+uint32_t t3r_backdrop_count(const t3r_runtime *rt, const t3r_view *views);
 
-/* Writes the backdrop after the scene's Gaussians, which leave room for it in their budget. */
+/* Writes the rim and the backdrop after the scene's Gaussians, which leave room for it in their budget. */
 void t3r_add_backdrop(t3r_runtime *rt, const t3r_view *views);
 
 #endif

@@ -4,6 +4,12 @@
 
 #if !T3R_FEATURE_BACKDROP
 
+uint32_t t3r_backdrop_count(const t3r_runtime *rt, const t3r_view *views)
+{
+    (void)rt, (void)views;
+    return 0;
+}
+
 void t3r_add_backdrop(t3r_runtime *rt, const t3r_view *views)
 {
     (void)rt, (void)views;

@@ -70,13 +70,13 @@ extern "C" {
 #define T3R_TEXT_(number) T3R_QUOTE_(number)
 #define T3R_QUOTE_(number) #number
 /* Raised by every change of any output bit; recordings and scenes carry the epoch that made them. */
-#define T3R_BITS_EPOCH 17
+#define T3R_BITS_EPOCH 18
 
 #define T3R_MAX_SIDE 4096         /* largest width or height of working size, frame or target, in pixels */
 #define T3R_MIN_SIDE 8            /* smallest working width or height, in pixels */
 #define T3R_STEREO_LEAST_SIDE 32u /* smallest working width or height with depth by stereo, in pixels */
 #define T3R_MAX_VIEWS 16          /* most context views */
-#define T3R_NO_VIEW 255           /* t3r_gaussian.view of the backdrop */
+#define T3R_NO_VIEW 255           /* t3r_gaussian.view of rim and backdrop */
 #define T3R_MAX_REMEMBERED 16     /* most keyframes that a stream remembers without planes */
 #define T3R_MAX_CLUSTERS 512      /* most SuperClusters */
 #define T3R_MAX_GAUSSIANS 16777216
@@ -105,7 +105,7 @@ enum {
     T3R_ERR_CANCELLED = -8, /* the progress callback asked to stop */
     T3R_ERR_EPOCH = -9,     /* a copied arena made by another version, layout or bits epoch */
     T3R_ERR_FULL = -10,     /* no room for another Gaussian in the scene */
-    T3R_ERR_WEIGHTS = -11,  /* weights that are foreign, damaged, of another epoch, or too large a head for the arena */
+    T3R_ERR_WEIGHTS = -11,  /* weights: foreign, damaged, of another epoch, or of too large a head for the arena */
     T3R_ERR_STEREO = -12,   /* no depth can be made of the views: t3r_stereo_pair() has the reason */
     T3R_ERR_UNSUPPORTED = -13, /* the library was built without a requested feature: t3r_features() */
     T3R_ERR_INTERFACE = -14    /* the program was compiled with another trim3r.h, other features or another layout of
@@ -300,7 +300,7 @@ typedef struct t3r_gaussian {
     /* The exponent of F, -60..15. */
     int8_t factor_exponent;
     /* The index of its context view; in a stream, its keyframe's number modulo `views`; T3R_NO_VIEW = it belongs to the
-     * backdrop, is drawn after all others and has no depth. */
+     * rim or the backdrop, and has no depth. */
     uint8_t view;
     /* The colour r g b in 8-bit levels, 0..32640, in 1/128. */
     uint16_t colour_q7[3];
@@ -625,7 +625,8 @@ t3r_status t3r_add_rows(t3r_runtime *rt, const t3r_frame *frame, const t3r_camer
 t3r_status t3r_reset(t3r_runtime *rt);
 
 /* Analyses the views added so far and builds a scene of them by the request (NULL: by the configuration). It has
- * exactly the budget, or all valid points if they are fewer.
+ * exactly the budget, or as many Gaussians as there are valid points if they are fewer. Those of rim and backdrop
+ * count, so that so many points less are retained.
  *
  * With an importance, the points of the highest importance are retained, with ties in the order of views and rows.
  * Doubtful points and surfaces seen twice then get no special treatment. Heads see the share of points retained about

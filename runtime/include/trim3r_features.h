@@ -40,7 +40,7 @@
 #define T3R_FEATURE_EXTRAS 1
 #endif
 
-/* Gaussians far away around a scene: t3r_config.backdrop. */
+/* Gaussians beyond the pictures: t3r_config.rim and backdrop. */
 #ifndef T3R_FEATURE_BACKDROP
 #define T3R_FEATURE_BACKDROP 1
 #endif

@@ -24,7 +24,7 @@
       "most context views that the arena has room for; 0 = it renders scenes from files alone")                        \
     X(max_gaussians, number, 1, T3R_MAX_GAUSSIANS, gaussians, NONE, 0, FIELD, NULL,                                    \
       "most Gaussians that the arena has room for")                                                                    \
-    /* A scene has exactly this number, or all valid points if they are fewer. */                                      \
+    /* A scene has exactly this number, or the number of valid points if that is less. */                              \
     X(gaussians, number, 1, T3R_MAX_GAUSSIANS, gaussians, NONE, 0, FIELD, NULL,                                        \
       "budget of a scene in Gaussians, at most max_gaussians")                                                         \
     /* The largest target that t3r_render() may draw. */                                                               \
@@ -77,9 +77,15 @@
       "refine structure more than level: local contrast, and not what a whole view shows brighter")                    \
     X(depth, depth, T3R_DEPTH_SENSOR, T3R_DEPTH_COUNT - 1, T3R_DEPTH_SENSOR, STEREO, T3R_DEPTH_STEREO, BUILD, "depth", \
       "source of depth; stereo matches the colours of two or more posed frames and ignores recorded depth")            \
+    /* 1 = at most 24 Gaussians a view lie around its picture, four times as far as the surfaces at its border and     \
+     * behind all that was seen, in the border's colours; at most 12 with a budget below 384 a view, none below 192.   \
+     * So a view beside the context views, and a gap between near surfaces, is not black. The t3r_gaussian.view of     \
+     * these is T3R_NO_VIEW, and renders have no depth there. Ignored with `stream`, and without `guess`. */           \
+    X(rim, toggle, 0, 1, T3R_FEATURE_BACKDROP, BACKDROP, 1, BUILD, "rim",                                              \
+      "continue the pictures beyond their borders with some wide Gaussians in the borders' colours")                   \
     /* 1 = 54 of a budget of 864 and more, 24 of 384, 6 of 96 are wide Gaussians 256 scene units away. They lie in all \
-     * directions and have the colours of the views' borders, so that views for people are not black where no context  \
-     * view saw. Their t3r_gaussian.view is T3R_NO_VIEW, and renders have no depth there. Ignored with `stream`. */    \
+     * directions and have the colours of the views' borders, so that an orbit is not black where no context view saw. \
+     * Their t3r_gaussian.view is T3R_NO_VIEW, and renders have no depth there. Ignored with `stream`. */              \
     X(backdrop, toggle, 0, 1, 0, BACKDROP, 1, BUILD, "backdrop",                                                       \
       "surround the scene with some wide Gaussians far away, in the colours of the pictures' borders")                 \
     X(fill_radius, number, 0, 8, 4, NONE, 0, BUILD, "fill-radius",                                                     \
@@ -123,7 +129,7 @@
     /* 1 = a frame is measured before it touches the map, and refused if it cannot be trusted: t3r_refusal lists the   \
      * reasons. 0 = every frame with a depth is taken. Ignored without `stream`. */                                    \
     X(gate, toggle, 0, 1, 1, NONE, 0, STREAM, "gate",                                                                  \
-      "refuse frames that are dark, blurred, covered, without depth, or contradict the map")                           \
+      "refuse frames that are dark, blurred, covered or without depth, or that contradict the map")                    \
     X(half_life, number, 0, 1024, 32, NONE, 0, STREAM, "half-life",                                                    \
       "number of keyframes that halve the density of what they do not see; 0 = nothing fades")                         \
     /* 2 = a pass compares one pixel in 2 x 2, another one in each pass and view, for about a quarter of the time. 1 = \

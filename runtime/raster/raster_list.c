@@ -29,10 +29,10 @@ static void project_chunk(void *context, uint32_t index, uint32_t worker)
         if (lattice.spread > 0 && job->splats[i].z_q20 != 0) {
             t3r_to_lattice(&lattice, &job->splats[i]);
         }
-        if (T3R_FEATURE_BACKDROP && job->gaussians[i].view == T3R_NO_VIEW && job->splats[i].z_q20 != 0) {
-            job->splats[i].z_q20 = T3R_BACKDROP_Z_Q20;
-        }
         job->depths[i] = (uint32_t)job->splats[i].z_q20;
+        if (T3R_FEATURE_BACKDROP && job->gaussians[i].view == T3R_NO_VIEW && job->splats[i].z_q20 != 0) {
+            job->splats[i].z_q20 = T3R_WITHOUT_DEPTH;
+        }
         job->spans[i] = t3r_span_of(&job->splats[i]);
     }
 }

@@ -11,8 +11,9 @@
 #include "kernels/kernels.h"
 #include "trim3r.h"
 
-/* The depth by which the splats of a backdrop are ordered: after all others. */
-#define T3R_BACKDROP_Z_Q20 INT32_MAX
+/* z_q20 of the splats of rim and backdrop, once they are ordered. Where such a splat halves the light, the depth is 0:
+ * unknown. */
+#define T3R_WITHOUT_DEPTH (-1)
 
 /* Pixels of a view that form a smaller picture: columns x, x + 2^spread and so on of rows y, y + 2^spread and so on.
  * spread, x and y are 0 or 1; all 0: every pixel. */

@@ -64,6 +64,15 @@ static void write_alphas(const t3r_tile *tile, uint32_t j, uint32_t columns, uin
     }
 }
 
+/* Writes the noted depths; where a splat without depth was noted, none. */
+static void write_depths(const t3r_drawn_tile *tile, uint32_t j, uint32_t columns, uint32_t *depth_q20)
+{
+    for (uint32_t i = 0; i < columns; i++) {
+        const uint32_t z_q20 = tile->depth_q20[j][i];
+        depth_q20[i] = z_q20 == (uint32_t)T3R_WITHOUT_DEPTH ? 0 : z_q20;
+    }
+}
+
 void t3r_draw_end(const t3r_drawn_tile *tile, const t3r_target *target)
 {
     const uint32_t left = tile->place.left, top = tile->place.top;
@@ -79,8 +88,8 @@ void t3r_draw_end(const t3r_drawn_tile *tile, const t3r_target *target)
                          target->alpha_q15 + y * (target->alpha_stride_bytes / sizeof *target->alpha_q15) + left);
         }
         if (target->depth_q20 != NULL) {
-            memcpy(target->depth_q20 + y * (target->depth_stride_bytes / sizeof *target->depth_q20) + left,
-                   tile->depth_q20[j], columns * sizeof *target->depth_q20);
+            write_depths(tile, j, columns,
+                         target->depth_q20 + y * (target->depth_stride_bytes / sizeof *target->depth_q20) + left);
         }
     }
 }
@@ -141,8 +150,7 @@ void t3r_draw_list(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_s
         if (!tile->stopped) {
             kernels->blend(&tile->pixels, &placed[at]);
         }
-        const bool has_depth = !T3R_FEATURE_BACKDROP || splats[list[i]].z_q20 != T3R_BACKDROP_Z_Q20;
-        if (!tile->noted && target->depth_q20 != NULL && has_depth) {
+        if (!tile->noted && target->depth_q20 != NULL) {
             note_depth(tile, &placed[at], (uint32_t)splats[list[i]].z_q20);
         }
     }

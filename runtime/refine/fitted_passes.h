@@ -12,13 +12,14 @@
 
 /* Predicts the best number of whole passes for new views. A pass brings the Gaussians nearer to the context views, and
  * also to what these views don't share: noise, small errors of poses and depth, reflections. More passes help where
- * each Gaussian covers more pixels and where views agree. The best number is inversely proportional to the root of
- * (share of points retained x the views' disagreement, t3r_disagreement_q8()), as fitted to the training scenes with 2
- * to 100 % kept.
+ * each Gaussian covers more pixels and where views agree. Only the disagreement that neighbouring pixels share counts:
+ * noise and detail narrower than a pixel differ from pixel to pixel, and a Gaussian of some pixels averages them. The
+ * best number is inversely proportional to the root of (share of points retained x shared disagreement), as fitted to
+ * the training scenes with 2 to 20 % kept.
  *
- * points >= gaussians > 0: valid and retained points. disagreement_q8: levels^2, 0 counts as 1. most >= 1.
- * Returns 1..most. */
-uint32_t t3r_predict_passes(uint32_t points, uint32_t gaussians, uint32_t disagreement_q8, uint32_t most);
+ * points >= gaussians > 0: valid and retained points. shared_q8: of t3r_disagreement_q8(), levels^2, 0 counts as 1.
+ * most >= 1. Returns 1..most. */
+uint32_t t3r_predict_passes(uint32_t points, uint32_t gaussians, uint32_t shared_q8, uint32_t most);
 
 /* Whether a pass over a part of the pixels finds what one over all of them does. It does where views disagree by more
  * than noise and details narrower than a pixel: then neighbours differ alike, and one of them is enough. It does not

@@ -274,9 +274,8 @@ static void apply_chunk(void *context, uint32_t index, uint32_t worker)
     for (uint32_t i = index * CHUNK; i < end; i++) {
         const t3r_correction *correction = &job->work->corrections[i];
         if (T3R_FEATURE_BACKDROP && job->scene[i].view == T3R_NO_VIEW) {
-            continue;
-        }
-        if (!T3R_FEATURE_STREAMS || job->records == NULL) {
+            t3r_refine_apply_colour(correction, &job->scene[i]);
+        } else if (!T3R_FEATURE_STREAMS || job->records == NULL) {
             t3r_refine_apply(correction, job->from, &job->scene[i]);
         } else if (job->records[i].idle < job->idle_most) {
             const t3r_correction part = settled(correction, job->records[i].fitted, job->remembers);

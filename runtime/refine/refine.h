@@ -16,6 +16,9 @@ typedef struct t3r_viewpoints {
     int32_t position_q20[T3R_MAX_VIEWS][3];
 } t3r_viewpoints;
 
+/* Applies the part of a correction that is of the colour. */
+void t3r_refine_apply_colour(const t3r_correction *correction, t3r_gaussian *gaussian);
+
 /* Applies a correction to a Gaussian, which comes no nearer to a camera than 7/8 of its distance. */
 void t3r_refine_apply(const t3r_correction *correction, const t3r_viewpoints *from, t3r_gaussian *gaussian);
 

@@ -71,11 +71,16 @@ static void apply_shape(const int16_t step_q16[3], t3r_gaussian *g)
     }
 }
 
-void t3r_refine_apply(const t3r_correction *c, const t3r_viewpoints *from, t3r_gaussian *g)
+void t3r_refine_apply_colour(const t3r_correction *c, t3r_gaussian *g)
 {
     for (int i = 0; i < 3; i++) {
         g->colour_q7[i] = (uint16_t)t3r_clamp32(g->colour_q7[i] + c->colour_q7[i], 0, 255 * 128);
     }
+}
+
+void t3r_refine_apply(const t3r_correction *c, const t3r_viewpoints *from, t3r_gaussian *g)
+{
+    t3r_refine_apply_colour(c, g);
     apply_opacity(c->step_q16[0], g);
     apply_shift(c->step_q16 + 1, from, g);
     apply_shape(c->step_q16 + 3, g);

@@ -11,6 +11,7 @@
 #include "ablation.h"
 #include "core/assertion.h"
 #include "core/features.h"
+#include "core/fixed.h"
 #include "core/placement.h"
 #include "core/workers.h"
 #include "kernels/kernels.h"
@@ -122,6 +123,13 @@ static inline void t3r_pose_as_given(t3r_runtime *rt, uint32_t v)
 {
     t3r_place_camera(&rt->camera[v], &rt->given[v]);
     memset(rt->deviation_q30[v], 0, sizeof rt->deviation_q30[v]);
+}
+
+/* Returns how many Gaussians a build makes: its budget, or the number of valid points if that is less. Filled holes and
+ * the rim don't raise it. */
+static inline uint32_t t3r_gaussians_of(const t3r_runtime *rt)
+{
+    return T3R_MIN(rt->build.gaussians, rt->valid_points);
 }
 
 static inline t3r_workers t3r_workers_of(const t3r_runtime *rt)

@@ -15,7 +15,7 @@ trim3r = sys.argv[1]
 SIDE = 64
 CONTEXT = ["--context", "0,2"]
 CASE = [*CONTEXT, "--target", "1"]
-BARE = ["--head", "none", "--refine", "0", "--keep", "100"]
+BARE = ["--head", "none", "--refine", "0", "--keep", "100", "--rim", "off"]
 SCORES = ("gaussians", "psnr", "ssim", "sharp", "holes", "context_psnr", "perceptual")
 # Means are rounded to other depth steps than the measured ones, and at edges a mean of the other view may be in front
 # of a pixel's own, so a few points differ.

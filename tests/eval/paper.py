@@ -24,7 +24,7 @@ except ImportError as error:
     skip(str(error))
 SCENES = ("hololens_b", "icl_livingroom_synth", "icl_livingroom_noisy_synth", "apc_shelf")
 METHODS = ("trim3r", "random", "eagles", "lightgaussian", "pup", "efficientgs")
-PRESETS = [f"trim3r, {name}" for name in ("fast", "balanced", "best", "balanced, backdrop", "best, backdrop")]
+PRESETS = [f"trim3r, {name}" for name in ("fast", "balanced", "best", "balanced, no rim", "best, no rim")]
 TUNED = [f"{method}+finetune, 3" for method in METHODS]
 MEASURES = ("psnr_all", "psnr", "ssim_all", "perceptual_all")
 

@@ -13,8 +13,8 @@ static _Alignas(T3R_ARENA_ALIGN) uint8_t arena[4 << 20];
 static t3r_config plain_config(void)
 {
     t3r_config config = t3r_default_config(SCENE_SIDE, SCENE_SIDE, 1, SCENE_BUDGET);
-    config.refine = config.fit_widths = config.align =
-        0; /* on by default if the library has the features that they need */
+    /* on by default if the library has the features that they need */
+    config.refine = config.fit_widths = config.align = config.rim = 0;
     return config;
 }
 

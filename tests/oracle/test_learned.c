@@ -36,6 +36,7 @@ static t3r_frame made_up_frame(int holes)
 static t3r_config learned_config(uint32_t gaussians)
 {
     t3r_config c = t3r_default_config(W, H, 2, gaussians);
+    c.rim = 0;
     c.clusters = 9;
     c.cluster_batches = 24;
     c.head = T3R_HEAD_LEARNED;

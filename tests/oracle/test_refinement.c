@@ -61,7 +61,7 @@ static t3r_gaussian *reconstruct(uint32_t refine, const splat_maker *maker, t3r_
     config.fit_passes = config.align = 0;
     config.head = maker->head;
     config.fill_radius = config.bridge_radius = 0;
-    config.flying = config.redundancy = config.exposure = 0; /* refinement only */
+    config.flying = config.redundancy = config.exposure = config.rim = 0; /* refinement only */
     arena a = arena_of(&config, ARENA_AT_FULL);
     t3r_runtime *rt;
     assert_int_equal(t3r_init(&rt, a.bytes, a.count, &config), T3R_OK);

@@ -23,8 +23,8 @@ PAPER = proof.ROOT / "docs" / "study" / "paper.md"
 COLUMNS = {"Cortex-M7 with DSP": ("AN500), DSP", 480), "Cortex-M55 with Helium": ("Helium", 400)}  # its title's end, MHz
 METHODS = {  # rows of README and docs/rivals.md, and their methods in docs/study/paper.md
     "trim3r, `--preset fast`": "trim3r, fast", "trim3r, `--preset balanced` (default)": "trim3r, balanced",
-    "trim3r, `--preset best`": "trim3r, best", "the default with `--backdrop on`": "trim3r, balanced, backdrop",
-    "`--preset best` with `--backdrop on`": "trim3r, best, backdrop", "random points, 50 iterations of fine-tuning": "random+finetune, 50",
+    "trim3r, `--preset best`": "trim3r, best", "the default with `--rim off`": "trim3r, balanced, no rim",
+    "`--preset best` with `--rim off`": "trim3r, best, no rim", "random points, 50 iterations of fine-tuning": "random+finetune, 50",
     "random points, 200 iterations": "random+finetune, 200", "random points, 1,000 iterations": "random+finetune, 1000"}
 PLAN = ["plan", "--size", "256x256", "--views", "2", "--gaussians", "13107", "--markdown"]
 STRICT = ["-std=c11", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror"]

@@ -26,7 +26,7 @@ def read(path):
 
 
 def prepare():
-    expect(0, "build", room(), "--keep", 10, "-o", "scene.ply")
+    expect(0, "build", room(), "--keep", 10, "--rim", "off", "-o", "scene.ply")
     write("pose.json", json.dumps({**SIZE, "transform_matrix": numpy.eye(4).tolist()}))
     write("path.txt", "0 0 0 0 0 0 0 1\n1 0 0 0.1 0 0 0 1\n")
 

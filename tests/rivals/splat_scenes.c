@@ -18,7 +18,7 @@ void set_ball(const splat_model *model, uint32_t gaussian, double x, double y, d
 
 splat_model plain_model(uint32_t count)
 {
-    splat_model model = {count, calloc(count, SPLAT_PARAMETERS * sizeof(double))};
+    splat_model model = {count, count, calloc(count, SPLAT_PARAMETERS * sizeof(double))};
     assert_non_null(model.parameters);
     for (uint32_t i = 0; i < count; i++) {
         set_ball(&model, i, 0, 0, 1, 1e-3, 0.5);

@@ -214,7 +214,7 @@ TEST(random_scores)
 {
     enum { COUNT = 10000 };
     static double first[COUNT], other[COUNT];
-    splat_model model = {COUNT, NULL};
+    splat_model model = {COUNT, COUNT, NULL};
     assert_true(score_random(&model, 1, first) && score_random(&model, 2, other));
     double sum = 0, product = 0, neighbours = 0;
     for (int i = 0; i < COUNT; i++) {
@@ -239,8 +239,28 @@ TEST(choosing)
     for (uint32_t count = 0; count <= 7; count++) {
         uint32_t *kept = calloc(count + 1, sizeof *kept);
         assert_non_null(kept);
-        assert_true(rival_choose(score, 7, count, kept));
+        assert_true(rival_choose(score, 7, 7, count, kept));
         assert_memory_equal(kept, wanted[count], count * sizeof *kept);
         free(kept);
     }
+}
+
+/* The last two Gaussians are a rim. */
+TEST(choosing_beside_a_rim)
+{
+    double score[40];
+    uint32_t kept[40];
+    for (uint32_t i = 0; i < 40; i++) {
+        score[i] = i; /* the rim's would be the highest */
+    }
+    for (uint32_t count = 0; count <= 40; count++) {
+        const uint32_t rim = count >= 32 ? 2 : 0;
+        assert_true(rival_choose(score, 38, 40, count, kept));
+        for (uint32_t n = 0; n < count; n++) {
+            assert_int_equal(kept[n], n < count - rim ? 38 - (count - rim) + n : 38 + n - (count - rim));
+        }
+    }
+    assert_true(rival_choose(score, 1, 3, 2, kept)); /* no room for a whole rim, and too few surfaces */
+    assert_int_equal(kept[0], 0);
+    assert_int_equal(kept[1], 1);
 }

@@ -31,7 +31,7 @@ static inline int plane_open(void **state, stress_contest contest)
     reconstruction_defaults(&contest.settings);
     contest.settings.config.width = contest.settings.config.height = SIDE;
     contest.settings.head = "analytic";
-    contest.settings.config.refine = 0;
+    contest.settings.config.refine = contest.settings.config.rim = 0;
     p->contest = contest;
     p->c = (stress_case){.name = "plane", .context = "0,1", .target = "2"};
     p->renders = malloc(METHODS * SIDE * SIDE * 3);

@@ -16,7 +16,7 @@ except ImportError as error:
     sys.exit(77)
 
 from checks import check, done  # noqa: E402
-from program import expect, expect_json  # noqa: E402
+from program import beyond, expect, expect_json  # noqa: E402
 
 
 
@@ -95,7 +95,7 @@ def retained_pixels(recording, folder, sizes, context):
     """Unmoved points are the retained pixels: their observations are pixel centres, and have the pixels' colours."""
     model, ply = f"{folder}/pixels", f"{folder}/pixels.ply"
     answer = expect_json("build", recording, "--context", context, "--keep", "20%", "--head", "none", "--refine", "0",
-                            "--exposure", "off", "--colmap", model, "-o", ply)
+                            "--exposure", "off", "--rim", "off", "--colmap", model, "-o", ply)
     check(answer["colmap"] == model, "JSON tells the folder")
     images, points, apart = check_model(model, sizes, answer["gaussians"])
     check(max(apart) < 0.01, f"reprojected within a hundredth of a pixel: {max(apart)}")
@@ -133,18 +133,20 @@ def other_views(folder, images, points):
 
 
 def adapted(recording, folder, sizes):
-    model = f"{folder}/adapted"
-    answer = expect_json("build", recording, "--context", "0,2", "--keep", "20%", "--backdrop", "on", "--colmap", model)
+    model, ply = f"{folder}/adapted", f"{folder}/adapted.ply"
+    build = ["build", recording, "--context", "0,2", "--keep", "20%", "--backdrop", "on"]
+    answer = expect_json(*build, "--colmap", model)
     check("scene" not in answer, "no scene file was asked for")
-    check(answer["gaussians"] >= 864, "a scene with a whole backdrop")
-    _, points, apart = check_model(model, sizes, answer["gaussians"] - 54)  # a backdrop is no points
+    expect_json(*build, "-o", ply)
+    check(beyond(ply) > 54, f"no whole backdrop and rim: {beyond(ply)}")
+    _, points, apart = check_model(model, sizes, answer["gaussians"] - beyond(ply))  # these are no points
     check(max(apart) < 0.01 and len(apart) > 0.9 * len(points), "reprojected")
 
 
 def local(recording, folder, sizes):
     """With --local: the same, relative to the first camera's centre."""
     model = f"{folder}/local"
-    count = json.loads(expect(0, "build", recording, "--context", "0,1", "--gaussians", "500", "--local", "--colmap", model,
+    count = json.loads(expect(0, "build", recording, "--context", "0,1", "--gaussians", "500", "--local", "--rim", "off", "--colmap", model,
                            "--json"))["gaussians"]
     images, _, apart = check_model(model, sizes, count)
     check(max(apart) < 0.01, "reprojected")

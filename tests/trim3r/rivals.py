@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """rivals.py TRIM3R: scenes of the rivals by `trim3r build`."""
 
-from program import check, expect, expect_json, in_scratch, room, write
+from program import beyond, check, expect, expect_json, in_scratch, room, write
 
 
 def vertices(path, count=68):
@@ -11,10 +11,28 @@ def vertices(path, count=68):
     return {body[i:i + count] for i in range(0, len(body), 68)}
 
 
+def with_a_rim():
+    """Every method has the rim of trim3r's scenes: a rival that left it out would lose for that alone."""
+    build = ["build", room(), "--context", "0,2", "--working", "32x32", "--refine", 1, "--gaussians", 800]
+    expect_json(*build, "-o", "ours.ply")
+    count = beyond("ours.ply")
+    check(count > 0, "a scene of trim3r has no rim")
+    for method in ("random", "pup", "random+finetune", "efficientgs+finetune", "eagles+head", "trim3r+finetune"):
+        quick = ("--finetune-iterations", 3) if "+finetune" in method else ()
+        found = expect_json(*build, "--method", method, *quick, "-o", "rim.ply")
+        check(found["gaussians"] == 800 and beyond("rim.ply") == count, f"{method} has {beyond('rim.ply')} of {count}")
+        expect_json(*build, "--method", method, *quick, "--rim", "off", "-o", "none.ply")
+        check(beyond("none.ply") == 0, f"{method} has a rim that is off")
+    expect_json(*build, "--method", "random", "-o", "rim.ply")
+    expect_json("build", room(), "--context", "0,2", "--working", "32x32", "--prune", "rim.ply", "--method", "eagles",
+                "--gaussians", 780, "-o", "pruned.ply")
+    check(beyond("pruned.ply") == count, "a pruned file loses its rim")
+
+
 def rivals():
     """Scenes of the rivals: exact counts, Gaussians of the unpruned scene or fine-tuned ones; no hash."""
     recording = room()
-    small = ["build", recording, "--context", "0,2", "--working", "32x32", "--refine", 1]
+    small = ["build", recording, "--context", "0,2", "--working", "32x32", "--refine", 1, "--rim", "off"]
     whole = expect_json(*small, "--keep", 100, "--comments", "-o", "whole.ply")
     check("hash" in whole and whole["method"] == "trim3r", "a scene of trim3r has its hash")
     for rival in ("random", "eagles", "lightgaussian", "pup", "efficientgs"):
@@ -72,3 +90,4 @@ def rivals():
 
 
 in_scratch(rivals)
+in_scratch(with_a_rim)

@@ -18,7 +18,7 @@ bool bench_head_run(t3r_runtime *runtime)
         const t3r_head_input input = t3r_head_input_of(runtime, views, v, &settings);
         count += t3r_head_learned(&input, 0, input.map.view->height, scene + count);
     }
-    return count == runtime->gaussians;
+    return count == settings.gaussians;
 }
 
 double bench_head_macs(const void *weights, uint32_t width, uint32_t height, uint32_t views)

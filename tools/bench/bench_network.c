@@ -89,5 +89,5 @@ bool bench_network_run(const t3r_runtime *runtime, const int8_t *features)
         const t3r_head_input input = t3r_head_input_of(runtime, views, v, &settings);
         points += run_view(&input, features);
     }
-    return points == runtime->gaussians;
+    return points == settings.gaussians;
 }

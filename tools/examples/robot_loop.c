@@ -86,7 +86,8 @@ int main(int argc, char **argv)
         printf("%s\n", error);
         return 1;
     }
-    const t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, GAUSSIANS);
+    t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, GAUSSIANS);
+    config.rim = 0; /* nothing where no camera looked */
     t3r_runtime *rt;
     if (!fine(t3r_init(&rt, memory.arena, sizeof memory.arena, &config), 0) ||
         !fine(t3r_set_cpu(rt, t3r_cpu_features()), 0)) {

@@ -27,7 +27,7 @@ static inline int16_t *scene_file_harmonics(const scene_file *scene, uint32_t in
     return scene->harmonics_q12 + index * scene_file_harmonics_count(scene);
 }
 
-/* Returns how many of the Gaussians are of surfaces. A backdrop follows them. */
+/* Returns how many of the Gaussians are of surfaces. Rim and backdrop follow them. */
 static inline uint32_t scene_surfaces(const t3r_gaussian *gaussians, uint32_t count)
 {
     while (count > 0 && gaussians[count - 1].view == T3R_NO_VIEW) {

@@ -20,7 +20,7 @@ typedef struct scene_format {
     scene_bounds log_scale; /* of scales that are written; both 0: any */
     bool holds_origin;      /* a file can say where its origin is in the world */
     bool holds_mip;         /* a file can say that its opacities are those of mip-splatting */
-    bool holds_backdrop;    /* a file can say which of its Gaussians are a backdrop */
+    bool holds_backdrop;    /* a file can say which of its Gaussians are a rim or a backdrop */
     bool shares_bits;       /* the farthest Gaussian decides how exactly the others' positions are written */
     /* Hands the rows to the sink, and returns what it returns; -1 with the reason in error[] if the bytes are no such
      * file. NULL: not read. */

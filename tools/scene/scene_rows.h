@@ -36,7 +36,7 @@ typedef struct scene_rows {
     scene_axes axes;    /* of the file */
     scene_up up;        /* as a comment of the file names it */
     bool mip;           /* opacities are those of mip-splatting (SPZ's "antialiased") */
-    uint32_t backdrop;  /* the last so many rows are a backdrop: they have no depth; at most count */
+    uint32_t backdrop;  /* the last so many rows are rim and backdrop, without a depth; at most count */
     const char *remark; /* what of the file is not read; NULL: nothing */
     /* Reads row `index`, any number of times. Returns 0, or -1 with the reason in error[]. */
     int (*read)(void *user, uint32_t index, scene_row *row, char *error, size_t error_bytes);

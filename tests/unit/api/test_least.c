@@ -54,6 +54,7 @@ static t3r_runtime *analysed(const t3r_config *config)
 static t3r_config good_config(void)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, VIEWS, VIEWS * PIXELS);
+    config.rim = 0;
     config.keep_analysis = 1;
     return config;
 }

@@ -258,6 +258,7 @@ static t3r_runtime *with_views(const t3r_config *config)
 static t3r_config config_of(t3r_allocation allocation)
 {
     t3r_config config = t3r_default_config(W, H, VIEWS, 900);
+    config.rim = 0;
     config.clusters = 12;
     config.allocate = allocation;
     config.keep_analysis = 1;

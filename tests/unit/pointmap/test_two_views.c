@@ -456,6 +456,7 @@ TEST(in_the_pipeline)
     const int comparisons = 3 * 2 + 2 + 1 + 2; /* bridging, flying pixels, exposure, redundancy */
     for (int mode = T3R_ALLOCATE_CONFIGURED + 1; mode < T3R_ALLOCATE_GIVEN; mode++) {
         t3r_config config = t3r_default_config(W, H, 2, all);
+        config.rim = 0;
         config.clusters = 20;
         config.keep_analysis = 1;
         config.flying = config.redundancy = config.exposure = 1;
@@ -509,6 +510,7 @@ TEST(splats_are_levelled)
 {
     for (uint32_t on = 0; on < 2; on++) {
         t3r_config config = t3r_default_config(W, H, 2, 2 * PIXELS);
+        config.rim = 0;
         config.clusters = 20;
         config.exposure = on;
         t3r_plan_info plan;

@@ -5,24 +5,24 @@
 
 #include "refine/fitted_passes.h"
 
-/* Computes sqrt(512 / (share x levels^2)), rounded; a share above a quarter counts as one. */
-static double wanted(uint32_t points, uint32_t gaussians, uint32_t disagreement_q8)
+/* Computes sqrt(400 / (share x levels^2)); a share above a quarter counts as one. */
+static double wanted(uint32_t points, uint32_t gaussians, uint32_t shared_q8)
 {
-    return sqrt(512.0 * points / fmin(gaussians, ceil(points / 4.0)) / (disagreement_q8 / 256.0));
+    return sqrt(400.0 * points / fmin(gaussians, ceil(points / 4.0)) / (shared_q8 / 256.0));
 }
 
 TEST(as_in_double)
 {
-    assert_int_equal(t3r_predict_passes(100000, 100000, 512 * 256, 16), 2);
-    assert_int_equal(t3r_predict_passes(100000, 25000, 512 * 256, 16), 2);
-    assert_int_equal(t3r_predict_passes(100000, 20000, 160 * 256, 16), 4);
+    assert_int_equal(t3r_predict_passes(100000, 100000, 400 * 256, 16), 2);
+    assert_int_equal(t3r_predict_passes(100000, 25000, 400 * 256, 16), 2);
+    assert_int_equal(t3r_predict_passes(100000, 20000, 125 * 256, 16), 4);
     uint64_t seed = 3;
     for (int turn = 0; turn < 20000; turn++) {
         const uint32_t points = (uint32_t)unit_between(&seed, 1, 1 << 28);
         const uint32_t gaussians = (uint32_t)unit_between(&seed, 1 + points / 64, points);
-        const uint32_t disagreement_q8 = (uint32_t)unit_between(&seed, 1, 1 << (8 + turn % 16));
-        const double exact = wanted(points, gaussians, disagreement_q8);
-        const uint32_t got = t3r_predict_passes(points, gaussians, disagreement_q8, T3R_MAX_REFINE);
+        const uint32_t shared_q8 = (uint32_t)unit_between(&seed, 1, 1 << (8 + turn % 16));
+        const double exact = wanted(points, gaussians, shared_q8);
+        const uint32_t got = t3r_predict_passes(points, gaussians, shared_q8, T3R_MAX_REFINE);
         assert_true(got >= fmin(fmax(exact - 0.5001, 1), T3R_MAX_REFINE));
         assert_true(got <= fmin(fmax(exact + 0.5001, 1), T3R_MAX_REFINE));
     }
@@ -38,7 +38,7 @@ TEST(fewer_where_less_is_shared)
         by_share = share;
         by_views = views;
     }
-    assert_int_equal(by_share, 5);
+    assert_int_equal(by_share, 4);
     assert_int_equal(by_views, 2);
 }
 

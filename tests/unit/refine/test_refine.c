@@ -70,7 +70,7 @@ static t3r_config settings(uint32_t refine)
 {
     t3r_config config = t3r_default_config(SIDE, SIDE, 2, BUDGET);
     config.refine = refine;
-    config.fit_passes = config.fit_widths = 0;
+    config.fit_passes = config.fit_widths = config.rim = 0;
     config.clusters = 64;
     return config;
 }
@@ -490,7 +490,7 @@ TEST(fits_its_passes)
     assert_int_equal(t3r_refinement_passes(rt), 2);
     free(memory);
 
-    /* a single view does not show its noise: 150 levels^2 are assumed */
+    /* a single view does not show its errors: 100 levels^2 are assumed */
     config = settings(T3R_MAX_REFINE);
     config.gaussians = config.max_gaussians = BUDGET / 4;
     config.fit_passes = 1;
@@ -499,7 +499,7 @@ TEST(fits_its_passes)
     const t3r_frame frame = rgbd_frame(rgb[0], depth[0], SIDE, SIDE, ROOM_DEPTH_UNIT_Q40);
     assert_int_equal(t3r_add_view(rt, &frame, &camera[0]), T3R_OK);
     assert_int_equal(t3r_reconstruct(rt, NULL, &scene), T3R_OK);
-    assert_int_equal(t3r_refinement_passes(rt), lround(sqrt(512.0 * scene.valid_points / scene.count / 150)));
+    assert_int_equal(t3r_refinement_passes(rt), lround(sqrt(400.0 * scene.valid_points / scene.count / 100)));
     free(memory);
 }
 

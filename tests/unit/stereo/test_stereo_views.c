@@ -74,7 +74,7 @@ static bench open_bench(uint32_t views)
     bench b = {.config = t3r_default_config(W, H, views, BUDGET)};
     b.config.depth = T3R_DEPTH_STEREO;
     b.config.clusters = 32;
-    b.config.refine = 0;
+    b.config.refine = b.config.rim = 0;
     b.config.keep_analysis = 1;
     t3r_plan_info plan;
     assert_int_equal(t3r_plan(&b.config, &plan), T3R_OK);

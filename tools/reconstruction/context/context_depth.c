@@ -46,7 +46,7 @@ double context_depth_of_pair(const t3r_recording *recording, const char *path, c
     options.config.width = longest > LONGEST ? first->width * LONGEST / longest : first->width;
     options.config.height = longest > LONGEST ? first->height * LONGEST / longest : first->height;
     options.config.allocate = T3R_ALLOCATE_UNIFORM;
-    options.config.refine = 0;
+    options.config.refine = options.config.rim = 0;
     options.head = "analytic";
     options.hash = false;
     options.gaussians = GAUSSIANS;

@@ -132,7 +132,7 @@ static int write_all(const char *path, const scene_rows *rows, const scene_exten
     }
     if (rows->backdrop > 0 && !format->holds_backdrop) {
         scene_remark(caller, path,
-                     "this format has no place for the mark of the %" PRIu32 " Gaussians of the backdrop: drawn "
+                     "this format has no place for the mark of the %" PRIu32 " Gaussians beyond the pictures: drawn "
                      "from this file they have a depth; a .ply keeps the mark",
                      rows->backdrop);
     }

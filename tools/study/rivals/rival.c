@@ -13,24 +13,32 @@
 
 /* ---- pruning -------------------------------------------------------------------------------------------------- */
 
+/* Sets source->kept to the indices of the `count` best Gaussians of the unpruned scene. */
+static int choose(rival_source *source, method_kind kind, uint32_t count)
+{
+    free(source->kept);
+    source->kept = malloc(((size_t)count + 1) * sizeof *source->kept);
+    return source->kept != NULL && rival_choose(source->score[kind], source->model.surfaces, source->whole.scene.count,
+                                                count, source->kept)
+               ? CLI_OK
+               : cli_error(CLI_BAD_INPUT, "out of memory");
+}
+
 /* Copies the `count` best Gaussians of the unpruned scene, unchanged. */
 static int prune(rival_source *source, method_kind kind, uint32_t count, scene_file *scene)
 {
     const reconstruction *whole = &source->whole;
-    uint32_t *kept = malloc(((size_t)count + 1) * sizeof *kept);
-    int code = rival_scene_open(whole, count, whole->loaded.degree, scene) && kept != NULL &&
-                       rival_choose(source->score[kind], whole->scene.count, count, kept)
-                   ? CLI_OK
-                   : cli_error(CLI_BAD_INPUT, "out of memory");
+    int code = choose(source, kind, count);
+    if (code == CLI_OK && !rival_scene_open(whole, count, whole->loaded.degree, scene)) {
+        code = cli_error(CLI_BAD_INPUT, "out of memory");
+    }
     for (uint32_t n = 0; n < count && code == CLI_OK; n++) {
-        scene->gaussians[n] = whole->scene.gaussians[kept[n]];
+        scene->gaussians[n] = whole->scene.gaussians[source->kept[n]];
         if (scene->degree > 0) {
-            memcpy(scene_file_harmonics(scene, n), scene_file_harmonics(&whole->loaded, kept[n]),
+            memcpy(scene_file_harmonics(scene, n), scene_file_harmonics(&whole->loaded, source->kept[n]),
                    scene_file_harmonics_count(scene) * sizeof(int16_t));
         }
     }
-    free(source->kept);
-    source->kept = kept;
     return code;
 }
 
@@ -56,13 +64,9 @@ static int trace_chosen(rival_source *source, method_kind kind, uint32_t count, 
     all.gaussians = 0;
     all.keep_percent = 100;
     *points = (traced_points){0};
-    uint32_t *kept = malloc(((size_t)count + 1) * sizeof *kept);
-    int code = kept != NULL && rival_choose(source->score[kind], source->whole.scene.count, count, kept)
-                   ? traced_points_make(points, source->recording, source->path, &all, kept, count)
-                   : cli_error(CLI_BAD_INPUT, "out of memory");
-    free(source->kept);
-    source->kept = kept;
-    return code;
+    int code = choose(source, kind, count);
+    return code == CLI_OK ? traced_points_make(points, source->recording, source->path, &all, source->kept, count)
+                          : code;
 }
 
 static int build_by_head(rival_source *source, method_kind kind, const reconstruction_options *options,

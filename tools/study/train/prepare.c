@@ -99,6 +99,7 @@ static t3r_config config_of(const prepare_views *views, const prepare_settings *
     t3r_config config = t3r_default_config(views->width, views->height, views->count, gaussians);
     config.keep_analysis = 1;
     config.exposure = 0; /* the training's pictures keep their exposure */
+    config.rim = 0;      /* all Gaussians are points */
     if (rival) {         /* the settings with which `trim3r eval` makes the scene that rivals rank */
         config.head = T3R_HEAD_LEARNED;
         return config;

@@ -26,7 +26,7 @@ static bool rank(ranking *r, const t3r_runtime *rt, const t3r_scene *scene, cons
     r->score = malloc(((size_t)scene->count + 1) * sizeof *r->score);
     r->kept = malloc(((size_t)count + 1) * sizeof *r->kept);
     return done && r->score != NULL && r->kept != NULL && score_of(kind, &r->model, r->views, views, seed, r->score) &&
-           rival_choose(r->score, scene->count, count, r->kept);
+           rival_choose(r->score, r->model.surfaces, scene->count, count, r->kept);
 }
 
 t3r_status prepare_rival(const t3r_runtime *rt, const t3r_scene *scene, const t3r_camera *cameras, uint32_t views,

@@ -8,7 +8,7 @@
 
 #include "scene/scene_rows.h"
 
-/* The comment on how many of the last vertices are a backdrop; their number follows. */
+/* The comment on how many of the last vertices are rim and backdrop; their number follows. */
 #define PLY_BACKDROP_COMMENT "comment trim3r backdrop "
 
 /* The comment of Brush for scenes of mip-splatting. Of the comments on this that a file has, the last one counts. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "budget/budget.h"
+#include "core/fixed.h"
 #include "state/views.h"
 
 typedef struct ranked {
@@ -20,19 +21,33 @@ static int by_score(const void *a, const void *b)
     return (x->index > y->index) - (x->index < y->index);
 }
 
-bool rival_choose(const double *score, uint32_t of, uint32_t count, uint32_t *kept)
+/* A whole rim has 24 Gaussians a view, and needs a budget of 384 a view (runtime/SPEC.md, "Rim"). */
+#define BUDGET_PER_BEYOND 16u
+
+/* Returns how many of the Gaussians that are not of surfaces are kept. */
+static uint32_t beyond_kept(uint32_t surfaces, uint32_t of, uint32_t count)
 {
+    const uint32_t beyond = of - surfaces;
+    return count / BUDGET_PER_BEYOND >= beyond ? beyond : count - T3R_MIN(count, surfaces);
+}
+
+bool rival_choose(const double *score, uint32_t surfaces, uint32_t of, uint32_t count, uint32_t *kept)
+{
+    const uint32_t beyond = beyond_kept(surfaces, of, count);
     ranked *all = malloc(((size_t)of + 1) * sizeof *all);
     bool *stays = calloc((size_t)of + 1, sizeof *stays);
     bool done = all != NULL && stays != NULL;
-    for (uint32_t i = 0; i < of && done; i++) {
+    for (uint32_t i = 0; i < surfaces && done; i++) {
         all[i] = (ranked){score[i], i};
     }
     if (done) {
-        qsort(all, of, sizeof *all, by_score);
+        qsort(all, surfaces, sizeof *all, by_score);
     }
-    for (uint32_t n = 0; n < count && done; n++) {
+    for (uint32_t n = 0; n < count - beyond && done; n++) {
         stays[all[n].index] = true;
+    }
+    for (uint32_t n = 0; n < beyond && done; n++) {
+        stays[surfaces + n] = true;
     }
     for (uint32_t i = 0, n = 0; i < of && done; i++) {
         if (stays[i]) {

@@ -8,9 +8,10 @@
 
 #include "trim3r.h"
 
-/* Writes the indices of the `count` highest scores in rising order to kept[count]; ties go to the lower index. False
- * if out of memory. */
-bool rival_choose(const double *score, uint32_t of, uint32_t count, uint32_t *kept);
+/* Writes the indices of the `count` highest scores in rising order to kept[count]; ties go to the lower index. From
+ * index `surfaces` on, Gaussians are a rim or a backdrop. They have no place among the scores: all are kept if there is
+ * as much room for them as in trim3r's own scenes, else none. Returns false if out of memory. */
+bool rival_choose(const double *score, uint32_t surfaces, uint32_t of, uint32_t count, uint32_t *kept);
 
 /* Makes the importances of the allocation `given`: 65535 at the pixels whose points became the Gaussians kept[count]
  * (ascending indices into `scene`), 0 elsewhere; with kept == NULL, 65535 at every retained pixel. `scene` is the

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "scene/gaussian_shape.h"
+#include "scene/scene_file.h"
 
 #define COLOUR_ONE 32640.0   /* 255 in Q7 */
 #define OPACITY_ONE 32768.0  /* 1 in Q15 */
@@ -35,6 +36,7 @@ static void load(double p[SPLAT_PARAMETERS], const t3r_gaussian *g)
 bool splat_model_of(splat_model *model, const t3r_gaussian *gaussians, uint32_t count)
 {
     model->count = count;
+    model->surfaces = scene_surfaces(gaussians, count);
     model->parameters = malloc(((size_t)count + 1) * SPLAT_PARAMETERS * sizeof *model->parameters);
     if (model->parameters == NULL) {
         return false;

@@ -23,6 +23,7 @@ enum {
 
 typedef struct splat_model {
     uint32_t count;
+    uint32_t surfaces;  /* the first so many are of surfaces; rim and backdrop follow */
     double *parameters; /* count rows of SPLAT_PARAMETERS */
 } splat_model;
 

@@ -13,7 +13,8 @@
 bool tuned_model_of(tuned_model *tuned, const splat_model *whole)
 {
     const size_t bytes = (size_t)whole->count * SPLAT_PARAMETERS * sizeof(double);
-    *tuned = (tuned_model){{whole->count, malloc(bytes + 1)}, malloc(((size_t)whole->count + 1) * sizeof(uint32_t))};
+    *tuned = (tuned_model){{whole->count, whole->surfaces, malloc(bytes + 1)},
+                           malloc(((size_t)whole->count + 1) * sizeof(uint32_t))};
     if (tuned->model.parameters == NULL || tuned->of == NULL) {
         return false;
     }
@@ -53,14 +54,19 @@ static bool score_model(const splat_model *model, method_kind kind, uint32_t see
 static bool keep_best(tuned_model *tuned, const double *score, uint32_t count)
 {
     uint32_t *kept = malloc(((size_t)count + 1) * sizeof *kept);
-    const bool done = kept != NULL && rival_choose(score, tuned->model.count, count, kept);
+    const bool done = kept != NULL && rival_choose(score, tuned->model.surfaces, tuned->model.count, count, kept);
     double *parameters = tuned->model.parameters;
+    uint32_t surfaces = 0;
     for (uint32_t n = 0; n < count && done; n++) { /* kept[n] is at least n */
+        surfaces += kept[n] < tuned->model.surfaces;
         memmove(&parameters[(size_t)n * SPLAT_PARAMETERS], &parameters[(size_t)kept[n] * SPLAT_PARAMETERS],
                 SPLAT_PARAMETERS * sizeof(double));
         tuned->of[n] = tuned->of[kept[n]];
     }
-    tuned->model.count = done ? count : tuned->model.count;
+    if (done) {
+        tuned->model.count = count;
+        tuned->model.surfaces = surfaces;
+    }
     free(kept);
     return done;
 }
