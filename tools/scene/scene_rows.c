@@ -8,6 +8,8 @@
 #include "host/reason.h"
 #include "scene/gaussian_shape.h"
 
+#define UNIT_WITHIN 0x1p-22 /* of length 1: quaternions of floats are nearer if they were unit ones */
+
 /* Reads a row. Returns 0, or -1 with the reason in error[], if one of its numbers cannot be used. */
 static int read_valid(const scene_rows *rows, uint32_t index, scene_row *row, char *error, size_t error_bytes)
 {
@@ -103,6 +105,15 @@ static void make_finite(scene_row *row)
     }
 }
 
+/* Makes a quaternion a unit one. One that is so within the rounding of floats stays as it is: otherwise each conversion
+ * of a file would change its last digits. */
+static void make_unit(double rotation[4])
+{
+    if (fabs(quaternion_norm(rotation) - 1) > UNIT_WITHIN) {
+        quaternion_normalise(rotation);
+    }
+}
+
 void scene_source_row(const scene_source *source, uint32_t index, scene_row *row)
 {
     const scene_rows *rows = source->rows;
@@ -111,7 +122,7 @@ void scene_source_row(const scene_source *source, uint32_t index, scene_row *row
         row->position[i] += source->shift[i];
     }
     make_finite(row);
-    quaternion_normalise(row->rotation);
+    make_unit(row->rotation);
     scene_turn_apply(&source->turn, row->position, row->rotation, rows->degree, row->rest);
 }
 

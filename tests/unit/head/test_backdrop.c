@@ -326,8 +326,8 @@ TEST(test_the_rim_is_outside_the_picture)
     close_place(p);
 }
 
-/* What another view shows has no rim: each of two views leaves out the inner ring of the side that lies in the other's
- * picture, a quarter of a picture wide. */
+/* The rim leaves out what another view shows. The second view is a quarter of a picture to the right, so each of the
+ * two leaves out the inner ring on its side towards the other. */
 TEST(test_the_rim_leaves_out_what_another_view_shows)
 {
     place *one = build_wall(1), *two = build_wall(2);
