@@ -171,27 +171,27 @@ def another_head_ranks(folder, room):
 def rows_of_rivals(folder, room):
     methods = ["trim3r", "trim3r+head", *RIVALS, *(f"{rival}+head" for rival in RIVALS)]
     keeps = [100, 20, 5]
-    rows = json.loads(run(trim3r, "eval", room, *SMALL, "--target", "1", "--rim", "off", "--keep", ",".join(map(str, keeps)),
-                          "--methods", ",".join(methods), "--images", f"{folder}/pictures", "--json").stdout)["rows"]
+    settings = [*SMALL, "--target", "1", "--rim", "off", "--refine", "4"]
+    rows = json.loads(run(trim3r, "eval", room, *settings, "--keep", ",".join(map(str, keeps)), "--methods", ",".join(methods),
+                          "--images", f"{folder}/pictures", "--json").stdout)["rows"]
     by = {(row["method"], row["keep"]): row for row in rows}
     check(list(by) == [(m, k) for m in methods for k in keeps], "one row a method and budget")
     scores = ("gaussians", "psnr", "ssim", "holes", "context_psnr")
     for (name, keep), row in by.items():
         check(row["gaussians"] == by["trim3r", keep]["gaussians"], f"{name} at {keep} %: the count of trim3r")
-        check(row["picture"] == f"1/{name}_rim-off_working-{SIDE}x{SIDE}_{keep}.png" and os.path.exists(f"{folder}/pictures/{row['picture']}"),
-              "pictures")
+        named = row["picture"]
+        check(named.startswith(f"1/{name}_") and named.endswith(f"_{keep}.png") and os.path.exists(f"{folder}/pictures/{named}"),
+              f"the picture {named}")
     for rival in RIVALS:
         check([by[f"{rival}+head", 100][s] for s in scores] == [by["trim3r+head", 100][s] for s in scores],
               f"{rival}+head at 100 %: all points, whoever chose them")
         for keep in (20, 5):
             plain, head = by[rival, keep], by[f"{rival}+head", keep]
             check(head["psnr"] > plain["psnr"] + 0.5, f"{rival} at {keep} %: our head is better than none")
-            ahead = 0.7 if keep == 5 else -0.1  # measured: at least 1 dB, and 0: many passes nearly make up for other points
-            check(head["psnr"] < by["trim3r", keep]["psnr"] - ahead, f"{rival} at {keep} %: our points are better")
+            check(head["psnr"] < by["trim3r", keep]["psnr"] - 0.5, f"{rival} at {keep} %: our points are better")
             check(head["build_ms"] > plain["build_ms"] * 0.5, "the scores are part of the time")
     near(by["trim3r+head", 5]["psnr"], by["trim3r", 5]["psnr"], 0.5, "counting the spacing costs little")
-    again = json.loads(run(trim3r, "eval", room, *SMALL, "--target", "1", "--rim", "off", "--keep", "5", "--methods",
-                           "eagles+head", "--json").stdout)["rows"][0]
+    again = json.loads(run(trim3r, "eval", room, *settings, "--keep", "5", "--methods", "eagles+head", "--json").stdout)["rows"][0]
     check([again[s] for s in scores] == [by["eagles+head", 5][s] for s in scores], "alone as beside others")
 
 

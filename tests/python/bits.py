@@ -128,7 +128,7 @@ def check_figures(path, frames):
         for name, (column, digits) in FIGURES.items():
             near(getattr(row, name), theirs[column], 0.51 * 10 ** -digits, f"{name} at {row.keep} %")
         check(row.image.shape == (SIDE, SIDE, 3), "the image")
-    check(len(rows) == len(ours) == 2 and ours[0].psnr > ours[1].psnr, "two rows, and the larger budget is better")
+    check(len(rows) == len(ours) == 2 and ours[0].psnr > ours[1].psnr + 0.3, "two rows, and the larger budget is better")
     return ours[0]
 
 
