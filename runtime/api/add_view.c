@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Context views: converts frames to planes, and reports stereo's results. */
 #include "adding_checks.h"
+#include "core/gain.h"
 #include "core/memory.h"
 #include "image/image.h"
 #include "layout/arena.h"
@@ -59,6 +60,9 @@ t3r_status t3r_end_view(t3r_runtime *rt, uint32_t slot, const t3r_camera *undist
     rt->depth_unit_q40[slot] = stereo ? 1 : depth_unit_q40; /* stereo chooses its own unit */
     rt->stereo_pair[slot] = T3R_PAIR_OK;
     rt->stereo_partner[slot] = (uint8_t)slot;
+    for (int c = 0; c < 3; c++) {
+        rt->gain_q14[slot][c] = T3R_GAIN_ONE_Q14;
+    }
     if (replaces) {
         rt->next_slot = (slot + 1) % rt->config.views;
     } else {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Reads the scene in the arena, or writes one from a file. */
 #include "api/scene_checks.h"
+#include "core/memory.h"
 #include "layout/arena.h"
 #include "state/state.h"
 
@@ -45,5 +46,12 @@ t3r_status t3r_view_camera(const t3r_runtime *rt, uint32_t view, t3r_camera *cam
 {
     T3R_PASS(t3r_view_camera_checks(rt, view, camera, NULL));
     *camera = rt->camera[view];
+    return T3R_OK;
+}
+
+t3r_status t3r_view_gain(const t3r_runtime *rt, uint32_t view, uint16_t gain_q14[3])
+{
+    T3R_PASS(t3r_view_gain_checks(rt, view, gain_q14, NULL));
+    memcpy(gain_q14, rt->gain_q14[view], sizeof rt->gain_q14[view]);
     return T3R_OK;
 }

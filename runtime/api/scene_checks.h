@@ -53,13 +53,25 @@ T3R_CHECKS t3r_scene_append_checks(const t3r_runtime *rt, const t3r_gaussian *ga
     return T3R_OK;
 }
 
-T3R_CHECKS t3r_view_camera_checks(const t3r_runtime *rt, uint32_t view, const t3r_camera *camera, t3r_fault *fault)
+/* `null_text`: what is wrong if `result` is NULL. */
+T3R_CHECKS t3r_view_checks(const t3r_runtime *rt, uint32_t view, const void *result, const char *null_text,
+                           t3r_fault *fault)
 {
     T3R_PASS(t3r_runtime_checks(rt, fault));
-    T3R_MISUSE(fault, camera != NULL, T3R_ERR_ARGUMENT, "camera is NULL");
+    T3R_MISUSE(fault, result != NULL, T3R_ERR_ARGUMENT, null_text);
     T3R_MISUSE(fault, view < rt->views, T3R_ERR_ARGUMENT, "view is @: there are # views, counted from 0", view,
                rt->views);
     return T3R_OK;
+}
+
+T3R_CHECKS t3r_view_camera_checks(const t3r_runtime *rt, uint32_t view, const t3r_camera *camera, t3r_fault *fault)
+{
+    return t3r_view_checks(rt, view, camera, "camera is NULL", fault);
+}
+
+T3R_CHECKS t3r_view_gain_checks(const t3r_runtime *rt, uint32_t view, const uint16_t gain_q14[3], t3r_fault *fault)
+{
+    return t3r_view_checks(rt, view, gain_q14, "gain_q14 is NULL", fault);
 }
 
 /* --- targets -------------------------------------------------------------------------------------------------- */

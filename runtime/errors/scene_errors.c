@@ -98,3 +98,10 @@ const char *t3r_view_camera_error(t3r_status status, const t3r_runtime *rt, uint
     t3r_fault fault;
     return t3r_sentence(status, t3r_view_camera_checks(rt, view, camera, &fault), &fault, text, text_bytes);
 }
+
+const char *t3r_view_gain_error(t3r_status status, const t3r_runtime *rt, uint32_t view, const uint16_t gain_q14[3],
+                                char *text, size_t text_bytes)
+{
+    t3r_fault fault;
+    return t3r_sentence(status, t3r_view_gain_checks(rt, view, gain_q14, &fault), &fault, text, text_bytes);
+}

@@ -746,6 +746,11 @@ uint32_t t3r_refinement_passes(const t3r_runtime *rt);
  * it: with `align` its pose may be corrected. T3R_ERR_ARGUMENT: NULL, or a view that was not added. */
 t3r_status t3r_view_camera(const t3r_runtime *rt, uint32_t view, t3r_camera *camera);
 
+/* Returns the gains of r, g and b, in 1/2^14, that bring the colours of context view `view` to the exposure of the
+ * scene, as the last analysis found them. Without `exposure`, and before an analysis, all are 2^14. To draw the scene
+ * in the exposure of that view, divide by them. T3R_ERR_ARGUMENT: NULL, or a view that was not added. */
+t3r_status t3r_view_gain(const t3r_runtime *rt, uint32_t view, uint16_t gain_q14[3]);
+
 /* Runs the image stage of t3r_add_view() only: converts any frame to 8-bit RGB and 16-bit depth of the working size,
  * undistorted, in the caller's memory. depth_out may be NULL, and so may the frame's depth. *undistorted becomes the
  * camera of the result. T3R_ERR_STATE unless the runtime is empty. */
@@ -873,6 +878,8 @@ const char *t3r_render_error(t3r_status status, const t3r_runtime *rt, const t3r
                              const t3r_target *target, char *text, size_t text_bytes);
 const char *t3r_view_camera_error(t3r_status status, const t3r_runtime *rt, uint32_t view, const t3r_camera *camera,
                                   char *text, size_t text_bytes);
+const char *t3r_view_gain_error(t3r_status status, const t3r_runtime *rt, uint32_t view, const uint16_t gain_q14[3],
+                                char *text, size_t text_bytes);
 const char *t3r_develop_error(t3r_status status, const t3r_runtime *rt, const t3r_frame *frame,
                               const t3r_camera *camera, const uint8_t *rgb_out, const uint16_t *depth_out,
                               const t3r_camera *undistorted, char *text, size_t text_bytes);

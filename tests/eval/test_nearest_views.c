@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "evaluation/nearest_views.h"
+#include "reconstruction/context/nearest_views.h"
 #include "test.h"
 
 #define ONE_Q32 (INT64_C(1) << 32)

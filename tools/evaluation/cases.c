@@ -8,12 +8,12 @@
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
-#include "evaluation/nearest_views.h"
 #include "host/text.h"
 #include "import/estimation/recording_poses.h"
 #include "import/folders/planar_recording.h"
 #include "import/import_source.h"
 #include "reconstruction/context/context_frames.h"
+#include "reconstruction/context/nearest_views.h"
 #include "reconstruction/context_points.h"
 
 /* ---- names ------------------------------------------------------------------------------------------------------ */

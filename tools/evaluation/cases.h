@@ -27,8 +27,8 @@ uint32_t evaluation_name_parts(char *const *inputs, uint32_t count, uint32_t pai
 /* All triplets of every recording, or the one of the settings' `context` (context_count above 0) and `target`. With
  * `context_views` above 2 the frames nearest to a triplet's target, by the median depth of the triplet's first frame
  * or, where it has none, what stereo makes of the triplet's context, fill its context up to that many
- * (nearest_views.h); a recording that has too few is refused. Opens all of them: a bad one is reported before the work.
- * An exit status of cli.h; evaluation_cases_close() in any case. */
+ * (context/nearest_views.h); a recording that has too few is refused. Opens all of them: a bad one is reported before
+ * the work. An exit status of cli.h; evaluation_cases_close() in any case. */
 int evaluation_cases_of_recordings(evaluation_cases *cases, char **inputs, uint32_t count,
                                    const reconstruction_options *settings, uint32_t target);
 int evaluation_cases_of_images(evaluation_cases *cases, char **inputs, uint32_t count, uint32_t width, uint32_t height);

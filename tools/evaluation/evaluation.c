@@ -11,6 +11,7 @@
 #include "cli/cli.h"
 #include "cli/files/part_files.h"
 #include "pictures/metrics.h"
+#include "reconstruction/context/corrected_views.h"
 #include "reconstruction/reconstruction_error.h"
 #include "scene/scene_file.h"
 
@@ -54,14 +55,27 @@ static double share_of_holes(const uint16_t *alpha, const uint8_t *mask, size_t 
     return count == 0 ? NAN : (double)holes / (double)count;
 }
 
+/* Draws a picture's view as its camera would have seen it. */
+static int draw_corrected(reconstruction *r, const corrected_views *corrected, const evaluation_picture *picture,
+                          const evaluation_views *views, uint8_t *rgb, uint16_t *alpha)
+{
+    double gain[3];
+    const t3r_camera camera = corrected_views_camera(corrected, &picture->camera, gain);
+    const int code = evaluation_draw(r, &camera, views, rgb, alpha);
+    if (code == CLI_OK) {
+        corrected_views_expose(rgb, (size_t)views->width * views->height, gain);
+    }
+    return code;
+}
+
 /* Draws the target from the scene in `r`, and scores it. */
 static int score_target(evaluation_row *row, uint8_t *render, uint16_t *alpha, const evaluation_views *views,
-                        bool planar, reconstruction *r)
+                        bool planar, reconstruction *r, const corrected_views *corrected)
 {
     const uint32_t w = views->width, h = views->height;
     const evaluation_picture *target = &views->target;
     const double start = cli_now();
-    const int code = evaluation_draw(r, &target->camera, views, render, alpha);
+    const int code = draw_corrected(r, corrected, target, views, render, alpha);
     row->value[EVALUATION_RENDER_MS] = (cli_now() - start) * 1000;
     if (code != CLI_OK) {
         return code;
@@ -80,12 +94,13 @@ static int score_target(evaluation_row *row, uint8_t *render, uint16_t *alpha, c
 }
 
 /* Draws the context views, and sets the mean of their PSNR. */
-static int score_context(evaluation_row *row, uint8_t *rgb, const evaluation_views *views, reconstruction *r)
+static int score_context(evaluation_row *row, uint8_t *rgb, const evaluation_views *views, reconstruction *r,
+                         const corrected_views *corrected)
 {
     double sum = 0;
     for (uint32_t v = 0; v < views->context_count; v++) {
         const evaluation_picture *context = &views->context[v];
-        const int code = evaluation_draw(r, &context->camera, views, rgb, NULL);
+        const int code = draw_corrected(r, corrected, context, views, rgb, NULL);
         if (code != CLI_OK) {
             return code;
         }
@@ -198,15 +213,22 @@ int evaluation_name_row(evaluation_row *row, const evaluation_case *what, evalua
 }
 
 int evaluation_score(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
-                     reconstruction *r)
+                     reconstruction *r, const reconstruction_account *account)
 {
+    corrected_views corrected = {0};
+    if (account != NULL) {
+        const int code = corrected_views_of(what->recording, what->path, account, &corrected);
+        if (code != CLI_OK) {
+            return code;
+        }
+    }
     size_t pixels = (size_t)views->width * views->height;
     uint8_t *rgb = malloc(pixels * 3);
     uint16_t *alpha = malloc(pixels * sizeof *alpha);
     int code = rgb == NULL || alpha == NULL ? cli_error(CLI_BAD_INPUT, "out of memory")
-                                            : score_target(row, render, alpha, views, what->planar, r);
+                                            : score_target(row, render, alpha, views, what->planar, r, &corrected);
     if (code == CLI_OK && !what->planar) {
-        code = score_context(row, rgb, views, r);
+        code = score_context(row, rgb, views, r, &corrected);
     }
     free(alpha);
     free(rgb);
@@ -229,7 +251,7 @@ static int measure_scene(evaluation_row *row, uint8_t *render, const evaluation_
     scene_file_free(&scene);
     if (code == CLI_OK) {
         row->value[EVALUATION_ARENA_BYTES] = (double)loaded.arena_bytes;
-        code = evaluation_score(row, render, views, what, &loaded);
+        code = evaluation_score(row, render, views, what, &loaded, NULL);
         reconstruction_close(&loaded);
     }
     return code;
@@ -267,7 +289,7 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, evaluation_views *v
         code = through_file(&loaded, &built, views, &options);
     }
     if (code == CLI_OK) {
-        code = evaluation_score(row, render, views, what, from_file ? &loaded : &built);
+        code = evaluation_score(row, render, views, what, from_file ? &loaded : &built, &account);
     }
     reconstruction_close(&loaded);
     reconstruction_close(&built);

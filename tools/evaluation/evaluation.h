@@ -76,10 +76,11 @@ int evaluation_measure(evaluation_row *row, uint8_t *render, evaluation_views *v
 /* The steps of evaluation_measure() after the build, for callers that build from frames other than the views'
  * (stress). evaluation_draw() renders the scene as `camera` sees it; rgb (width x height x 3) or alpha (width
  * x height, 32767 = opaque) may be NULL. evaluation_score() renders the target into `render` and fills the scores
- * and render_ms of *row; context_psnr is NaN if the views hold no context. */
+ * and render_ms of *row; context_psnr is NaN if the views hold no context. `account`: of the build, for the pose and
+ * the exposure of the views (corrected_views.h); NULL = they are drawn from their own cameras. */
 int evaluation_draw(reconstruction *r, const t3r_camera *camera, const evaluation_views *views, uint8_t *rgb,
                     uint16_t *alpha);
 int evaluation_score(evaluation_row *row, uint8_t *render, const evaluation_views *views, const evaluation_case *what,
-                     reconstruction *r);
+                     reconstruction *r, const reconstruction_account *account);
 
 #endif

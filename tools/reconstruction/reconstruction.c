@@ -54,8 +54,10 @@ reconstruction_account reconstruction_account_of(const reconstruction *r)
     memcpy(account.crc, r->head.crc, sizeof account.crc);
     memcpy(account.context, r->context, sizeof account.context);
     account.has_cameras = r->runtime != NULL && account.context_count > 0;
+    account.unit = ldexp(1, r->scene.frame.exponent);
     for (uint32_t v = 0; v < account.context_count && account.has_cameras; v++) {
-        account.has_cameras = t3r_view_camera(r->runtime, v, &account.camera[v]) == T3R_OK;
+        account.has_cameras = t3r_view_camera(r->runtime, v, &account.camera[v]) == T3R_OK &&
+                              t3r_view_gain(r->runtime, v, account.gain_q14[v]) == T3R_OK;
     }
     return account;
 }

@@ -124,8 +124,10 @@ typedef struct reconstruction_account {
     uint32_t width, height;         /* working size */
     uint32_t context[T3R_MAX_VIEWS];
     uint32_t context_count;
-    bool has_cameras;                 /* false for a scene made elsewhere */
-    t3r_camera camera[T3R_MAX_VIEWS]; /* of the context views, as the build used them: `align` may have moved them */
+    bool has_cameras;                    /* false for a scene made elsewhere */
+    t3r_camera camera[T3R_MAX_VIEWS];    /* of the context views, as the build used them: `align` may have moved them */
+    uint16_t gain_q14[T3R_MAX_VIEWS][3]; /* of their r g b, to the exposure of the scene */
+    double unit;                         /* of the scene, in world units */
     uint32_t valid_points, requested;
     size_t arena_bytes;
     double seconds; /* from recorded frames to the scene */

@@ -52,6 +52,7 @@ typedef struct life_outcome {
     X("`t3r_scene_begin()`", begin, TO(ALONE), TO(ALONE), TO(ALONE), TO(ALONE), TO(ALONE), TO(ALONE), TO(ALONE))       \
     X("`t3r_scene_append()`", append, NO, NO, NO, NO, SAME, NO, SAME)                                                  \
     X("`t3r_view_camera()`", view_camera, NO_VIEW, SAME, SAME, SAME, SAME, SAME, NO_VIEW)                              \
+    X("`t3r_view_gain()`", view_gain, NO_VIEW, SAME, SAME, SAME, SAME, SAME, NO_VIEW)                                  \
     X("`t3r_stream_keyframe()`", keyframe, NO, NO, NO, NO, NO, NO, NO)                                                 \
     X("`t3r_stream_overlap()`", overlap, NO, NO, NO, NO, NO, NO, NO)                                                   \
     X("`t3r_bind_head()`", bind_head, SAME, SAME, SAME, SAME, SAME, SAME, SAME)                                        \

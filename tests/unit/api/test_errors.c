@@ -473,6 +473,8 @@ TEST(scenes)
     REFUSED("no Gaussian", T3R_ERR_ARGUMENT, t3r_scene_append, rt, NULL);
     REFUSED("a Gaussian before t3r_scene_begin()", T3R_ERR_STATE, t3r_scene_append, rt, &gaussian);
     REFUSED("the camera of a view that is not there", T3R_ERR_ARGUMENT, t3r_view_camera, rt, 2, &camera);
+    uint16_t gain_q14[3];
+    REFUSED("the gain of a view that is not there", T3R_ERR_ARGUMENT, t3r_view_gain, rt, 5, gain_q14);
     add(1);
     REFUSED("a view before the build", T3R_ERR_STATE, t3r_render, rt, &camera, &target);
     scene_frame.origin_q32[0] = INT64_MIN;
@@ -626,6 +628,7 @@ TEST(missing_arguments)
     REFUSED_TOO("frame is NULL", T3R_ERR_ARGUMENT, t3r_scene_begin, rt, NULL);
     REFUSED_TOO("camera is NULL", T3R_ERR_ARGUMENT, t3r_render, rt, NULL, &target);
     REFUSED_TOO("camera is NULL", T3R_ERR_ARGUMENT, t3r_view_camera, rt, 0, NULL);
+    REFUSED_TOO("gain_q14 is NULL", T3R_ERR_ARGUMENT, t3r_view_gain, rt, 0, NULL);
     REFUSED_TOO("camera is NULL", T3R_ERR_ARGUMENT, t3r_stream_overlap, rt, NULL, SIDE, SIDE, &overlap_q8);
     REFUSED_TOO("no stream", T3R_ERR_STATE, t3r_stream_overlap, rt, &camera, SIDE, SIDE, &overlap_q8);
     REFUSED_TOO("config is NULL", T3R_ERR_ARGUMENT, t3r_init, &rt, arena, sizeof arena, NULL);

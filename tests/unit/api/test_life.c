@@ -140,6 +140,12 @@ static t3r_status view_camera(void)
     return t3r_view_camera(rt, 0, &camera);
 }
 
+static t3r_status view_gain(void)
+{
+    uint16_t gain_q14[3];
+    return t3r_view_gain(rt, 0, gain_q14);
+}
+
 static t3r_status keyframe(void)
 {
     const t3r_frame frame = some_frame();

@@ -104,7 +104,8 @@ static int measure_row(const cell *it, stress_run *run, uint32_t keep, uint32_t 
         row->value[STRESS_GAUSSIANS] = built.scene.count;
         row->value[STRESS_ARENA_BYTES] = (double)account.arena_bytes;
         evaluation_row scores = {0};
-        code = evaluation_score(&scores, it->renders + index * picture_bytes(it), &run->views, &run->what, &built);
+        code =
+            evaluation_score(&scores, it->renders + index * picture_bytes(it), &run->views, &run->what, &built, NULL);
         if (code == CLI_OK) {
             take_scores(row, &scores);
         }
@@ -130,7 +131,7 @@ static int measure_all_points(cell *it, stress_run *run, uint32_t capture)
     int code = stress_run_build(run, &options, &built, &account);
     if (code == CLI_OK) {
         evaluation_row scores = {0};
-        code = capture == 0 ? evaluation_score(&scores, render, &run->views, &run->what, &built)
+        code = capture == 0 ? evaluation_score(&scores, render, &run->views, &run->what, &built, NULL)
                             : evaluation_draw(&built, &run->views.target.camera, &run->views, render, NULL);
         it->all[0] = capture == 0 ? scores.value[EVALUATION_PSNR] : it->all[0];
         it->all[1] = capture == 0 ? scores.value[EVALUATION_SSIM] : it->all[1];

@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
 #include "pictures/metrics.h"
+#include "reconstruction/context/corrected_views.h"
 #include "reconstruction/context/view_surface.h"
 #include "reconstruction/developed_frame.h"
 #include "reconstruction/reconstruction_error.h"
@@ -17,11 +18,12 @@ typedef struct drawing {
     const t3r_recording *recording;
     const char *path;
     reconstruction *r;
+    corrected_views corrected;
     uint8_t *rgb, *drawn, *shown;
     uint16_t *alpha;
 } drawing;
 
-/* Draws frame out->frame; `camera` replaces its recorded one (NULL: that one). */
+/* Draws frame out->frame from `camera` (NULL: from its recorded one, corrected as the context views around it). */
 static int draw(const drawing *d, const t3r_camera *camera, drawn_picture *out)
 {
     const uint32_t width = d->r->config.width, height = d->r->config.height;
@@ -41,10 +43,13 @@ static int draw(const drawing *d, const t3r_camera *camera, drawn_picture *out)
     if (code != CLI_OK) {
         return code;
     }
-    const t3r_status status = t3r_render(d->r->runtime, camera != NULL ? camera : &recorded, &target);
+    double gain[3];
+    const t3r_camera moved = corrected_views_camera(&d->corrected, &recorded, gain);
+    const t3r_status status = t3r_render(d->r->runtime, camera != NULL ? camera : &moved, &target);
     if (status != T3R_OK) {
         return reconstruction_error(status, d->path, &d->r->config, d->r->arena_bytes);
     }
+    corrected_views_expose(d->drawn, pixels, gain);
     uint32_t empty = 0, shown = 0;
     for (size_t i = 0; i < pixels; i++) {
         shown += d->shown[i] != 0;
@@ -118,13 +123,20 @@ int drawn_pictures(const t3r_recording *recording, const char *path, reconstruct
                    const reconstruction_account *account, drawn_picture pictures[DRAWN_MOST], uint32_t *count)
 {
     const size_t pixels = (size_t)r->config.width * r->config.height;
-    drawing d = {recording, path, r, malloc(3 * pixels), malloc(3 * pixels), malloc(pixels), malloc(2 * pixels)};
+    drawing d = {.recording = recording,
+                 .path = path,
+                 .r = r,
+                 .rgb = malloc(3 * pixels),
+                 .drawn = malloc(3 * pixels),
+                 .shown = malloc(pixels),
+                 .alpha = malloc(2 * pixels)};
     const bool counted = r->uncounted;
     *count = 0;
     r->uncounted = true;
     int code = d.rgb != NULL && d.drawn != NULL && d.shown != NULL && d.alpha != NULL
-                   ? draw_context(&d, account, pictures, count)
+                   ? corrected_views_of(recording, path, account, &d.corrected)
                    : cli_error(CLI_BAD_INPUT, "out of memory");
+    code = code == CLI_OK ? draw_context(&d, account, pictures, count) : code;
     if (code == CLI_OK) {
         draw_others(&d, pictures, count);
         mark_blurred(&d, pictures, *count);

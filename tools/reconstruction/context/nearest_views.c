@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "evaluation/nearest_views.h"
+#include "reconstruction/context/nearest_views.h"
 
 #include <math.h>
 #include <string.h>
