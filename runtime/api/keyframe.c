@@ -23,6 +23,14 @@ t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3
     return status;
 }
 
+t3r_status t3r_stream_again(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint32_t round)
+{
+    t3r_camera shown;
+    T3R_PASS(t3r_again_checks(rt, frame, camera, round, &shown, NULL));
+    rt->build = t3r_build_of(&rt->config);
+    return t3r_stream_show(rt, frame, &shown, round);
+}
+
 t3r_status t3r_stream_overlap(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
                               uint32_t *overlap_q8)
 {

@@ -14,6 +14,13 @@ t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3
     return T3R_ERR_UNSUPPORTED;
 }
 
+t3r_status t3r_stream_again(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint32_t round)
+{
+    (void)round;
+    T3R_REFUSE_UNLESS(rt != NULL && frame != NULL && camera != NULL, T3R_ERR_ARGUMENT);
+    return T3R_ERR_UNSUPPORTED;
+}
+
 t3r_status t3r_stream_overlap(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
                               uint32_t *overlap_q8)
 {

@@ -24,6 +24,18 @@ T3R_CHECKS t3r_keyframe_checks(const t3r_runtime *rt, const t3r_frame *frame, co
     return T3R_OK;
 }
 
+/* *resized becomes the camera at the working size. */
+T3R_CHECKS t3r_again_checks(const t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint32_t round,
+                            t3r_camera *resized, t3r_fault *fault)
+{
+    T3R_PASS(t3r_keyframe_checks(rt, frame, camera, resized, fault));
+    T3R_MISUSE(fault, round >= 1 && round <= T3R_MAX_ROUND, T3R_ERR_ARGUMENT, "round is @: it is 1..#", round,
+               T3R_MAX_ROUND);
+    T3R_MISUSE(fault, rt->keyframes > 0, T3R_ERR_STATE,
+               "there is no keyframe to show again: t3r_stream_keyframe() comes first");
+    return T3R_OK;
+}
+
 T3R_CHECKS t3r_overlap_checks(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,
                               const uint32_t *overlap_q8, t3r_fault *fault)
 {

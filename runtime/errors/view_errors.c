@@ -82,6 +82,16 @@ const char *t3r_stream_keyframe_error(t3r_status status, const t3r_runtime *rt, 
     return t3r_sentence(status, found, &fault, text, text_bytes);
 }
 
+const char *t3r_stream_again_error(t3r_status status, const t3r_runtime *rt, const t3r_frame *frame,
+                                   const t3r_camera *camera, uint32_t round, char *text, size_t text_bytes)
+{
+    t3r_fault fault;
+    t3r_camera resized;
+    t3r_status found = t3r_again_checks(rt, frame, camera, round, &resized, &fault);
+    found = found == T3R_OK ? streamed(status, rt, frame, camera, &fault) : found;
+    return t3r_sentence(status, found, &fault, text, text_bytes);
+}
+
 /* Writes the sentence of an error that the comparison with the newest keyframe finds in a camera that passed the
  * checks. */
 static t3r_status compared(const t3r_runtime *rt, const t3r_camera *camera, uint32_t width, uint32_t height,

@@ -701,6 +701,19 @@ t3r_pair t3r_stereo_pair(const t3r_runtime *rt, uint32_t view, uint32_t *partner
 t3r_status t3r_stream_keyframe(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                                t3r_stream_report *report);
 
+/* Streams: shows the map a frame again that was a keyframe before, from a recording. It adds no Gaussian, removes none,
+ * and nothing fades: refinement corrects the map, by this frame and the `views` - 1 shown before it. A map forgets what
+ * its first keyframes agreed on; after the last frame a round or two over all keyframes give it back. Keyframes that
+ * follow each other must differ, so take them in a mixed order. `round` is 1 in the first round, 2 in the second:
+ * corrections are divided by 1 + round, 1..T3R_MAX_ROUND. The frame's planes replace those of the oldest live keyframe.
+ * Exposure is not brought to the mean, and the gate does not judge.
+ *
+ * Statuses are those of t3r_stream_keyframe(). T3R_ERR_STATE also if there is no keyframe, T3R_ERR_NO_DEPTH and
+ * T3R_ERR_CAMERA with `gate`, too, and T3R_ERR_ARGUMENT also for a round out of range. After T3R_ERR_CANCELLED in
+ * refinement passes are missing. */
+#define T3R_MAX_ROUND 255u
+t3r_status t3r_stream_again(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint32_t round);
+
 /* Computes the overlap of a picture of width x height by this camera with the newest keyframe, 0..256, in 1/256. It is
  * the lesser of two shares: the share of the keyframe's points that the picture would show; and the number of cells of
  * an 8 x 8 grid that these points fall on in the picture, over the number in their own picture. The camera's
@@ -866,6 +879,8 @@ const char *t3r_rebuild_least_error(t3r_status status, const t3r_runtime *rt, co
 const char *t3r_stream_keyframe_error(t3r_status status, const t3r_runtime *rt, const t3r_frame *frame,
                                       const t3r_camera *camera, const t3r_stream_report *report, char *text,
                                       size_t text_bytes);
+const char *t3r_stream_again_error(t3r_status status, const t3r_runtime *rt, const t3r_frame *frame,
+                                   const t3r_camera *camera, uint32_t round, char *text, size_t text_bytes);
 const char *t3r_stream_overlap_error(t3r_status status, const t3r_runtime *rt, const t3r_camera *camera, uint32_t width,
                                      uint32_t height, const uint32_t *overlap_q8, char *text, size_t text_bytes);
 const char *t3r_get_scene_error(t3r_status status, const t3r_runtime *rt, const t3r_scene *scene, char *text,

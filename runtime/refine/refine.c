@@ -219,6 +219,7 @@ typedef struct slice_job {
     const t3r_map_record *records; /* NULL: all Gaussians change */
     uint32_t idle_most;
     bool remembers;                 /* a stream that remembers keyframes */
+    uint32_t round;                 /* of keyframes shown again; 0 = new ones */
     const t3r_structure *structure; /* one for each view, or NULL */
     bool in_parts;                  /* the pass compares a part of the pixels */
 } slice_job;
@@ -250,13 +251,16 @@ static void solve_chunk(void *context, uint32_t index, uint32_t worker)
 /* Damps opacity and place to a share of 1 / (1 + n) after n keyframes saw the Gaussian, so that the next one doesn't
  * undo what they agreed on, and a Gaussian that is seen again and again doesn't drift off its surface. Damps shape half
  * as much, and from the fourth keyframe on to three times that share: undamped, widths would shrink for ever. Where
- * keyframes are remembered, damps all alike; else colour follows the newest ones. */
-static t3r_correction settled(const t3r_correction *whole, uint32_t fitted, bool remembers)
+ * keyframes are remembered, damps all alike; else colour follows the newest ones. In round n of keyframes that are
+ * shown again, damps all alike to 1 / (1 + n), however many saw the Gaussian. */
+static t3r_correction settled(const t3r_correction *whole, uint32_t fitted, bool remembers, uint32_t round)
 {
-    const int32_t share_q15 = (1 << 15) / (1 + T3R_MIN((int32_t)fitted, T3R_FITTED_MOST));
-    const int32_t shape_q15 = remembers ? share_q15 : T3R_MIN((share_q15 + (1 << 15)) / 2, 3 * share_q15);
+    const bool alike = remembers || round > 0;
+    const uint32_t seen = round > 0 ? round : T3R_MIN(fitted, T3R_FITTED_MOST);
+    const int32_t share_q15 = (1 << 15) / (1 + (int32_t)seen);
+    const int32_t shape_q15 = alike ? share_q15 : T3R_MIN((share_q15 + (1 << 15)) / 2, 3 * share_q15);
     t3r_correction c = *whole;
-    for (int i = 0; i < 3 && remembers; i++) {
+    for (int i = 0; i < 3 && alike; i++) {
         c.colour_q7[i] = (int16_t)t3r_round_shift32(c.colour_q7[i] * share_q15, 15);
     }
     for (int i = 0; i < 6; i++) {
@@ -278,7 +282,7 @@ static void apply_chunk(void *context, uint32_t index, uint32_t worker)
         } else if (!T3R_FEATURE_STREAMS || job->records == NULL) {
             t3r_refine_apply(correction, job->from, &job->scene[i]);
         } else if (job->records[i].idle < job->idle_most) {
-            const t3r_correction part = settled(correction, job->records[i].fitted, job->remembers);
+            const t3r_correction part = settled(correction, job->records[i].fitted, job->remembers, job->round);
             t3r_refine_apply(&part, job->from, &job->scene[i]);
         }
     }
@@ -434,7 +438,8 @@ static t3r_status find_viewpoints(const t3r_runtime *rt, t3r_viewpoints *from)
     return T3R_OK;
 }
 
-t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes passes, const t3r_map_record *records)
+t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes passes, uint32_t round,
+                            const t3r_map_record *records)
 {
     const t3r_refine_layout w = t3r_refine_layout_of(rt);
     const t3r_workers workers = t3r_workers_of(rt);
@@ -450,7 +455,8 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes p
                      .from = &from,
                      .records = records,
                      .idle_most = rt->config.views,
-                     .remembers = rt->config.remember > 0};
+                     .remembers = rt->config.remember > 0,
+                     .round = round};
     const uint32_t slices = (rt->gaussians + w.slice - 1) / w.slice;
     uint32_t total = passes.count * slices * (rt->views + t3r_remembered_a_pass(rt)), done = 0;
     t3r_structure structure[T3R_MAX_VIEWS] = {0};
@@ -482,7 +488,7 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes p
 
 t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, t3r_passes passes)
 {
-    return t3r_refine_scene(rt, views, passes, NULL);
+    return t3r_refine_scene(rt, views, passes, 0, NULL);
 }
 
 t3r_status t3r_refine_error(t3r_runtime *rt, const t3r_view *views, uint32_t *error_q8)

@@ -32,8 +32,9 @@ typedef struct t3r_passes {
 t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, t3r_passes passes);
 
 /* Refines a map. A Gaussian changes only if a retained keyframe sees it as finely as its own keyframe did. records:
- * one per Gaussian; NULL: all change. */
-t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes passes, const t3r_map_record *records);
+ * one per Gaussian; NULL: all change. round: of keyframes that are shown to the map again; 0 = the newest is new. */
+t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes passes, uint32_t round,
+                            const t3r_map_record *records);
 
 /* Computes the distance of the scene in the arena from the context views: mean squared residual per channel, levels^2
  * Q8, at most 2^24, over the pixels that refinement counts. Works where t3r_refine() does: needs refine above 0. */

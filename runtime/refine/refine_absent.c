@@ -6,12 +6,14 @@
 
 t3r_status t3r_refine(t3r_runtime *rt, const t3r_view *views, t3r_passes passes)
 {
-    return t3r_refine_scene(rt, views, passes, NULL);
+    return t3r_refine_scene(rt, views, passes, 0, NULL);
 }
 
-t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes passes, const t3r_map_record *records)
+t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes passes, uint32_t round,
+                            const t3r_map_record *records)
 {
     (void)rt;
+    (void)round;
     (void)views;
     (void)records;
     return passes.count == 0 ? T3R_OK : T3R_ERR_UNSUPPORTED;

@@ -223,13 +223,14 @@ static __attribute__((noinline)) t3r_status take(t3r_runtime *rt, uint32_t slot,
     return status == T3R_OK ? join_map(rt, views, slot, report) : status;
 }
 
-static __attribute__((noinline)) t3r_status refine_map(t3r_runtime *rt)
+/* round: of keyframes shown again; 0 = a new one. */
+static __attribute__((noinline)) t3r_status refine_map(t3r_runtime *rt, uint32_t round)
 {
     t3r_view all[T3R_MAX_VIEWS];
     t3r_views_of(rt, all);
     const uint32_t passes = t3r_keyframe_passes_of(&rt->config, rt->config.warm && rt->keyframes > 1);
     const uint32_t parts = rt->config.refine_stride > 1 ? passes : 0;
-    const t3r_status status = t3r_refine_scene(rt, all, (t3r_passes){passes, parts}, t3r_map_of(rt).records);
+    const t3r_status status = t3r_refine_scene(rt, all, (t3r_passes){passes, parts}, round, t3r_map_of(rt).records);
     if (status == T3R_OK) {
         t3r_hash_scene(rt, T3R_STAGE_REFINE);
     }
@@ -302,7 +303,7 @@ static t3r_status enter(t3r_runtime *rt, const t3r_held *held, t3r_stream_report
     rt->keyframes += rt->keyframes < UINT32_MAX;
     rt->has_scene = 1;
     count_map(rt, report);
-    return rt->config.refine > 0 ? refine_map(rt) : T3R_OK;
+    return rt->config.refine > 0 ? refine_map(rt, 0) : T3R_OK;
 }
 
 t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, t3r_stream_report *report)
@@ -327,4 +328,54 @@ t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_ca
         *report = (t3r_stream_report){0};
     }
     return status;
+}
+
+/* --- a keyframe shown again -------------------------------------------------------------------------------------- */
+
+/* Notes which Gaussians the frame in the slot sees. Its colours count as they are: gains of neighbours on the path say
+ * nothing about keyframes in a mixed order. */
+static __attribute__((noinline)) t3r_status look_again(t3r_runtime *rt, uint32_t slot)
+{
+    t3r_view views[T3R_MAX_VIEWS];
+    t3r_views_of(rt, views);
+    t3r_hash_image(rt, views, slot, slot + 1);
+    const t3r_status status = t3r_find_depth(rt, views, alone(slot));
+    if (status != T3R_OK) {
+        return status;
+    }
+    leave_keyframes(rt, views, slot, false);
+    t3r_views_of(rt, views); /* poses in the current frame */
+    for (int c = 0; c < 3; c++) {
+        rt->gain_q14[slot][c] = T3R_GAIN_ONE_Q14;
+    }
+    const t3r_workers workers = t3r_workers_of(rt);
+    const t3r_pointmap keyframe = t3r_pointmap_of(&views[slot], rt->frame.exponent);
+    t3r_map map = t3r_map_of(rt);
+    t3r_map_look(&map, &keyframe, &workers, t3r_buffer_at(rt, T3R_BUFFER_MAP_DISCS));
+    return T3R_OK;
+}
+
+t3r_status t3r_stream_show(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint32_t round)
+{
+    if (frame->depth == NULL || !is_in_range(rt, camera)) {
+        return frame->depth == NULL ? T3R_ERR_NO_DEPTH : T3R_ERR_CAMERA;
+    }
+    const t3r_held held = t3r_hold(rt, rt->next_slot);
+    t3r_status status = develop(rt, held.slot, frame, camera);
+    if (status == T3R_OK) {
+        const t3r_view view = t3r_view_of(rt, held.slot);
+        status = t3r_is_reliable_anywhere(&view) ? T3R_OK : T3R_ERR_NO_DEPTH;
+    }
+    if (status != T3R_OK) {
+        t3r_put_back(rt, &held);
+        return status;
+    }
+    rt->views = T3R_MAX(held.views, held.slot + 1);
+    status = look_again(rt, held.slot);
+    if (status != T3R_OK) {
+        t3r_give_up(rt, &held);
+        return status;
+    }
+    rt->next_slot = (held.slot + 1) % rt->config.views;
+    return rt->config.refine > 0 ? refine_map(rt, round) : T3R_OK;
 }

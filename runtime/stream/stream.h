@@ -9,4 +9,7 @@
 t3r_status t3r_stream_take(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera,
                            t3r_stream_report *report);
 
+/* Shows the map a checked frame again that was a keyframe before: refinement alone, in this round, from 1 on. */
+t3r_status t3r_stream_show(t3r_runtime *rt, const t3r_frame *frame, const t3r_camera *camera, uint32_t round);
+
 #endif

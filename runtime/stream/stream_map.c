@@ -114,12 +114,30 @@ static void look_at_some(void *context, uint32_t begin, uint32_t end, uint32_t w
     }
 }
 
+static void look_at_all(const t3r_map *map, const t3r_pointmap *keyframe, const t3r_workers *workers, uint8_t *looks)
+{
+    look_job job = {.map = map, .keyframe = keyframe, .looks = looks};
+    t3r_run_rows(workers, map->count, look_at_some, &job);
+}
+
+static void note_idle(t3r_map_record *record, look seen)
+{
+    record->idle = seen == SEEN ? 0 : (uint8_t)T3R_MIN(record->idle + 1, UINT8_MAX);
+}
+
+void t3r_map_look(t3r_map *map, const t3r_pointmap *keyframe, const t3r_workers *workers, uint8_t *looks)
+{
+    look_at_all(map, keyframe, workers, looks);
+    for (uint32_t i = 0; i < map->count; i++) {
+        note_idle(&map->records[i], (look)looks[i]);
+    }
+}
+
 uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyframes, uint32_t half_life,
                      const t3r_workers *workers, uint8_t *looks)
 {
     const uint32_t fade = fade_q10(keyframes, half_life);
-    look_job job = {.map = map, .keyframe = keyframe, .looks = looks};
-    t3r_run_rows(workers, map->count, look_at_some, &job);
+    look_at_all(map, keyframe, workers, looks);
     uint32_t kept = 0;
     for (uint32_t i = 0; i < map->count; i++) {
         t3r_map_record *record = &map->records[i];
@@ -127,7 +145,7 @@ uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyfra
         if (seen == CONTRADICTED || seen == COARSE || (seen == HIDDEN && record->faded_q10 >= LOST_Q10)) {
             continue;
         }
-        record->idle = seen == SEEN ? 0 : (uint8_t)T3R_MIN(record->idle + 1, UINT8_MAX);
+        note_idle(record, seen);
         if (seen == SEEN) {
             record->fitted = (uint8_t)T3R_MIN(record->fitted + 1, T3R_FITTED_MOST);
         }

@@ -49,6 +49,9 @@ t3r_pinhole t3r_map_wide_picture(const t3r_view *view);
 uint32_t t3r_map_see(t3r_map *map, const t3r_pointmap *keyframe, uint32_t keyframes, uint32_t half_life,
                      const t3r_workers *workers, uint8_t *looks);
 
+/* Notes which Gaussians a keyframe sees as t3r_map_see() does, and changes nothing else. */
+void t3r_map_look(t3r_map *map, const t3r_pointmap *keyframe, const t3r_workers *workers, uint8_t *looks);
+
 /* Removes the Gaussians that leave. Returns their number. */
 uint32_t t3r_map_drop(t3r_map *map);
 

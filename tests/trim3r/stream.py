@@ -21,6 +21,25 @@ def the_map_in_a_file(recording, base):
     expect(2, "replay", recording, "-o", "map.ply", err="--output belongs to --stream; trim3r build -o writes")
 
 
+def rounds(recording):
+    """Checks that keyframes shown again make the final map better, the same in every run, and with a budget as before."""
+    base = ["replay", recording, "--working", "64x64", "--stream", "--every", 1, "--at-hand", 1, "--gaussians", 500]
+    plain, again = expect_json(*base), expect_json(*base, "--rounds", 2)
+    check(plain["keyframes"][-1]["hash"] == again["keyframes"][-1]["hash"], "rounds come after the last keyframe")
+    check(plain["hash"] != again["hash"] and "rounds" not in plain and again["rounds"] == 2 and again["rounds_ms"] > 0, "told")
+    check(plain["gaussians"] == again["gaussians"] == 500, "the map keeps its size")
+    write("rounds.json", json.dumps(again))
+    for more in (["--threads", 2], ["--arena", "min"], ["--cpu-mask", 0]):
+        expect(0, *base, "--rounds", 2, "--expect", "rounds.json", *more, out="as expected")
+    base[base.index("--every") + 1] = 2
+    scores = [expect_json(*base, "--rounds", n)["final_psnr"] for n in (0, 1, 2)]
+    check(scores[2] > scores[1] > scores[0] + 0.05, f"each round makes the map better: {scores}")
+    expect(0, *base, "--rounds", 1, "-o", "rounds.ply", out="1 round over all keyframes")
+    expect(2, *base, "--rounds", 17, err="--rounds takes")
+    expect(2, *base, "--rounds", 1, "--state", "a.t3s", err="--rounds and --state exclude each other")
+    expect(2, "replay", recording, "--rounds", 1, err="--rounds belongs to --stream")
+
+
 def stream():
     recording = room()
     base = ["replay", recording, "--working", "64x64", "--stream", "--every", 2, "--at-hand", 2]
@@ -54,6 +73,7 @@ def stream():
     write("remembered.json", json.dumps(remembered))
     for more in (["--threads", 2], ["--arena", "min"], ["--cpu-mask", 0]):
         expect(0, *base[:-4], "--at-hand", 1, "--remember", 2, "--gaussians", 500, "--expect", "remembered.json", *more, out="as expected")
+    rounds(recording)
     expect(2, *base, "--remember", 17, err="--remember")
     expect(2, "replay", recording, "--remember", 2, err="--remember belongs to --stream")
     expect(1, *base, "--expect", "0" * 16, err=found["hash"])

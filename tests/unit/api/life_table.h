@@ -54,6 +54,7 @@ typedef struct life_outcome {
     X("`t3r_view_camera()`", view_camera, NO_VIEW, SAME, SAME, SAME, SAME, SAME, NO_VIEW)                              \
     X("`t3r_view_gain()`", view_gain, NO_VIEW, SAME, SAME, SAME, SAME, SAME, NO_VIEW)                                  \
     X("`t3r_stream_keyframe()`", keyframe, NO, NO, NO, NO, NO, NO, NO)                                                 \
+    X("`t3r_stream_again()`", again, NO, NO, NO, NO, NO, NO, NO)                                                       \
     X("`t3r_stream_overlap()`", overlap, NO, NO, NO, NO, NO, NO, NO)                                                   \
     X("`t3r_bind_head()`", bind_head, SAME, SAME, SAME, SAME, SAME, SAME, SAME)                                        \
     X("`t3r_set_hooks()`, `t3r_set_cpu()`", set_hooks, SAME, SAME, SAME, SAME, SAME, SAME, SAME)                       \
@@ -116,6 +117,7 @@ static const struct {
     {STEREO, AT_add_blind, VIEWS, TO(FULL)},
     {STREAM, AT_keyframe, EMPTY, TO(BUILT)},
     {STREAM, AT_keyframe, BUILT, TO(BUILT)},
+    {STREAM, AT_again, BUILT, TO(BUILT)},
     {STREAM, AT_overlap, BUILT, SAME},
     {STREAM, AT_render, BUILT, TO(BUILT)},
     {STREAM, AT_cancel_render, BUILT, AFTER(CANCELLED, BUILT)},

@@ -442,6 +442,8 @@ TEST(streams)
     open_runtime();
     REFUSED("a keyframe by importance", T3R_ERR_STATE, t3r_stream_keyframe, rt, &frame, &camera, &report);
     WITH(stream, 1);
+    REFUSED("a keyframe shown again before the first", T3R_ERR_STATE, t3r_stream_again, rt, &frame, &camera, 1);
+    REFUSED("a round 0", T3R_ERR_ARGUMENT, t3r_stream_again, rt, &frame, &camera, 0);
     REFUSED("an overlap before the first keyframe", T3R_ERR_STATE, t3r_stream_overlap, rt, &camera, SIDE, SIDE,
             &overlap_q8);
     REFUSED("an overlap of a picture of width 0", T3R_ERR_ARGUMENT, t3r_stream_overlap, rt, &camera, 0, SIDE,

@@ -153,6 +153,13 @@ static t3r_status keyframe(void)
     return t3r_stream_keyframe(rt, &frame, &camera, NULL);
 }
 
+static t3r_status again(void)
+{
+    const t3r_frame frame = some_frame();
+    const t3r_camera camera = straight_camera(SIDE);
+    return t3r_stream_again(rt, &frame, &camera, 1);
+}
+
 static t3r_status overlap(void)
 {
     const t3r_camera camera = straight_camera(SIDE);

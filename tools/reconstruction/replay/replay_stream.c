@@ -147,6 +147,9 @@ static int run(stream_run *s)
             s->held[s->is.held_count++] = (held_back){.frame = frame.index};
         }
     }
+    if (code == CLI_OK && s->options->rounds > 0) {
+        code = stream_rounds(s);
+    }
     if (code == CLI_OK) {
         code = stream_save(s, NULL); /* before views of the whole map: they count in the hashes */
     }

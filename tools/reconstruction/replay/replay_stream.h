@@ -17,6 +17,7 @@ typedef struct replay_stream_options {
     uint32_t until_frame; /* the last frame; UINT32_MAX = by time */
     uint64_t until_ns;    /* the last time, from the first frame on */
     const char *images;   /* folder for the views drawn; NULL = none */
+    uint32_t rounds;      /* in which keyframes are shown again after the last frame */
     bool no_hash;         /* time the keyframes without the hashes of their stages */
     bool json;
 } replay_stream_options;

@@ -149,6 +149,10 @@ static void add_work(cJSON *root, const stream_run *s)
     cJSON_AddNumberToObject(root, "keyframes_per_s", latency_rate(&w.times));
     json_add_integer(root, "passes", (int64_t)w.passes);
     json_add_integer(root, "passes_planned", (int64_t)w.planned);
+    if (s->options->rounds > 0) {
+        json_add_integer(root, "rounds", s->options->rounds);
+        cJSON_AddNumberToObject(root, "rounds_ms", s->rounds_seconds * 1000);
+    }
     if (s->options->live.most_ms > 0) {
         cJSON_AddNumberToObject(root, "max_ms", s->options->live.most_ms);
     }
@@ -238,6 +242,10 @@ void stream_print(const stream_run *s, uint64_t hash)
     printf("%s: %" PRIu64 " keyframes of %" PRIu32 " frames, %.1f a second%s\n", s->path, w.times.count, s->is.next,
            latency_rate(&w.times), s->options->no_hash ? " without hashes" : "");
     printf("a keyframe: %s\n", latency_text(&w.times, spread));
+    if (s->options->rounds > 0) {
+        printf("%" PRIu32 " %s over all keyframes: %.1f s\n", s->options->rounds,
+               s->options->rounds == 1 ? "round" : "rounds", s->rounds_seconds);
+    }
     print_skipped(s);
     print_means(s);
     if (o->scene != NULL) {

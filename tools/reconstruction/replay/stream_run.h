@@ -36,10 +36,13 @@ typedef struct stream_run {
     held_back *held; /* likewise */
     bool resumed;
     uint32_t resumed_at;
+    double rounds_seconds; /* of all rounds */
 } stream_run;
 
 /* Writes map and state, as live_output_snapshot(). These return an exit status of cli.h after a message. */
 int stream_save(stream_run *s, const live_row *row);
+/* Shows the map its keyframes again, in the options' number of rounds. */
+int stream_rounds(stream_run *s);
 /* Opens the output, and continues from a state if there is one and the options request it. */
 int stream_open(stream_run *s);
 

@@ -47,7 +47,7 @@ typedef struct replayed_view {
     work_times times;
 } replayed_view;
 
-enum { KEY_JSON = 0x1000, KEY_EVERY, KEY_UNTIL };
+enum { KEY_JSON = 0x1000, KEY_EVERY, KEY_UNTIL, KEY_ROUNDS };
 
 static const struct argp_option options[] = {
     OPTION_ARGUMENTS("REC.mcap", OPTION_READS | OPTION_FOLDER),
@@ -64,6 +64,9 @@ static const struct argp_option options[] = {
     {"every", KEY_EVERY, "N", 0, "distance of keyframes in frames, 1..1000 (3)", 0},
     {"until", KEY_UNTIL, "FRAME|TIME", 0,
      "last frame to take, by its number, or by its time since the first one with a unit: 90s, 500ms (the last)", 0},
+    {"rounds", KEY_ROUNDS, "N", 0,
+     "rounds in which all keyframes are shown to the map again after the last frame, 0..16: it then forgets less (0)",
+     0},
     {"no-hash", OPTION_TO(replay_options, stream.no_hash), NULL, 0,
      "hash no stage, which takes time in each keyframe; nothing can be expected then", 0},
     {"images", OPTION_TO(replay_options, stream.images), "DIR", OPTION_WRITES(FILE_PICTURE) | OPTION_FOLDER,
@@ -82,6 +85,7 @@ static void check_stream(struct argp_state *state, const replay_options *o)
     const live_options *live = &o->stream.live;
     const char *given = live_options_given(live, &o->settings.config);
     given = o->stream.has_until        ? "until"
+            : o->stream.rounds > 0     ? "rounds"
             : o->stream.no_hash        ? "no-hash"
             : o->stream.images != NULL ? "images"
             : live->scene != NULL      ? "output"
@@ -96,6 +100,9 @@ static void check_stream(struct argp_state *state, const replay_options *o)
         (reconstruction_names_context(&o->settings) || reconstruction_chooses(&o->settings) ||
          o->settings.config.depth == T3R_DEPTH_STEREO || o->settings.config.allocate == T3R_ALLOCATE_GIVEN)) {
         argp_error(state, "--stream takes no --context, --auto, --min-psnr, --allocate given or --depth stereo");
+    }
+    if (o->stream.rounds > 0 && live->state != NULL) {
+        argp_error(state, "--rounds and --state exclude each other: after its rounds a map cannot be continued");
     }
     if (o->stream.no_hash && o->expect != NULL) {
         argp_error(state, "--no-hash and --expect exclude each other");
@@ -131,6 +138,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_EVERY:
         o->stream.live.every = option_number(state, "every", arg, 1, 1000);
+        return 0;
+    case KEY_ROUNDS:
+        o->stream.rounds = option_number(state, "rounds", arg, 0, 16);
         return 0;
     case KEY_UNTIL:
         parse_until(state, arg, &o->stream);
@@ -176,6 +186,7 @@ static const struct argp argp = {
         "  trim3r replay room.mcap --expect golden.json --threads 2 --arena min\n"
         "  trim3r replay walk.mcap --slide --warm on\n"
         "  trim3r replay walk.mcap --stream --every 3 --gaussians 10000 -o map.ply\n"
+        "  trim3r replay walk.mcap --stream --gaussians 10000 --rounds 1 -o map.ply\n"
         "  trim3r replay walk.mcap --stream --at-hand 2 --remember 6\n\n"
         "With a file to compare with, the first stage that differs is named, and for the raster the first 16x16 tile.",
     .children = children,
