@@ -14,10 +14,11 @@ def recording(options):
 
 
 def host(path, options):
-    """Returns this machine's hash and {stage: hash}."""
+    """Returns this machine's hash and {stage: hash}. A firmware without the feature has no rim."""
+    rim = "on" if "backdrop" in options.features else "off"
     context = ",".join(map(str, range(options.views)))
     said = json.loads(run(options.program, "replay", path, "--context", context, "--head",
                           options.head, "--gaussians", options.gaussians, "--clusters", options.clusters, "--refine",
                           options.refine, "--fit-passes", "off", "--fit-widths", "off", "--align", "off",
-                          "--json"))
+                          "--rim", rim, "--json"))
     return said["hash"], said["stages"]
