@@ -12,6 +12,7 @@ import tempfile
 
 from checks import check, done, run
 from common import need_numpy
+from stepped_wall import stepped_wall
 
 numpy, cv2 = need_numpy()
 trim3r = sys.argv[1]
@@ -99,25 +100,7 @@ def walk(folder, degrees, exposure):
     """Makes a walk of seven frames along a wall with a step. Each recorded pose turns by so many degrees against the one
     before, and each picture is so much brighter; with 0 all are exact."""
     made = f"{folder}/walk-{degrees}-{exposure}"
-    os.mkdir(made)
-    random = numpy.random.default_rng(2)
-    wall = cv2.GaussianBlur(random.integers(0, 255, (500, 500, 3), dtype=numpy.uint8), (0, 0), 5)
-    wall = cv2.normalize(wall, None, 20, 150, cv2.NORM_MINMAX)
-    v, u = numpy.mgrid[0:64, 0:96].astype(numpy.float32)
-    frames = []
-    for i in range(7):
-        depth = numpy.where(v < 32, 2, 1.5)
-        x, y = (u - 47.5) / 90 * depth + 0.1 * i, (v - 31.5) / 90 * depth
-        shown = cv2.remap(wall, (200 + 100 * x).astype(numpy.float32), (250 + 100 * y).astype(numpy.float32), cv2.INTER_CUBIC)
-        cv2.imwrite(f"{made}/{i}.png", numpy.clip(shown * (1 + exposure) ** i + 0.5, 0, 255).astype(numpy.uint8))
-        cv2.imwrite(f"{made}/{i}.depth.png", (1000 * depth).astype(numpy.uint16))
-        pose = numpy.diag([1.0, -1, -1, 1])
-        pose[:3, :3] = cv2.Rodrigues(numpy.array([0, math.radians(degrees * i), 0]))[0] @ pose[:3, :3]
-        pose[0, 3] = 0.1 * i
-        frames.append({"file_path": f"{i}.png", "depth_path": f"{i}.depth.png", "transform_matrix": pose.tolist()})
-    with open(f"{made}/transforms.json", "w", encoding="utf-8") as file:
-        json.dump({"fl_x": 90, "fl_y": 90, "cx": 48, "cy": 32, "w": 96, "h": 64, "integer_depth_scale": 0.001,
-                   "frames": frames}, file)
+    stepped_wall(made, axis=1, degrees=[degrees * i for i in range(7)], exposure=exposure, levels=(20, 150))
     run(trim3r, "import", made, "-o", f"{made}.mcap")
     return f"{made}.mcap"
 

@@ -17,6 +17,7 @@ except ImportError as error:
 
 from checks import check, done  # noqa: E402
 from program import beyond, expect, expect_json  # noqa: E402
+from stepped_wall import stepped_wall  # noqa: E402
 
 
 
@@ -190,26 +191,7 @@ def lens_recording(folder):
 def moved_recording(folder):
     """Makes two frames of a smooth wall with a step, the second's pose rolled by half a degree."""
     made = f"{folder}/moved"
-    os.mkdir(made)
-    random = numpy.random.default_rng(3)
-    wall = cv2.GaussianBlur(random.integers(0, 255, (400, 400, 3), dtype=numpy.uint8), (0, 0), 5)
-    wall = cv2.normalize(wall, None, 0, 255, cv2.NORM_MINMAX)
-    v, u = numpy.mgrid[0:64, 0:96].astype(numpy.float32)
-    frames = []
-    for i in range(2):
-        depth = numpy.where(v < 32, 2, 1.5)
-        x, y = (u - 47.5) / 90 * depth + 0.1 * i, (v - 31.5) / 90 * depth
-        shown = cv2.remap(wall, (200 + 100 * x).astype(numpy.float32), (200 + 100 * y).astype(numpy.float32),
-                          cv2.INTER_CUBIC)
-        cv2.imwrite(f"{made}/{i}.png", shown)
-        cv2.imwrite(f"{made}/{i}.depth.png", (1000 * depth).astype(numpy.uint16))
-        pose = numpy.diag([1.0, -1, -1, 1])
-        pose[:3, :3] = cv2.Rodrigues(numpy.array([0, 0, math.radians(0.5 * i)]))[0] @ pose[:3, :3]
-        pose[0, 3] = 0.1 * i
-        frames.append({"file_path": f"{i}.png", "depth_path": f"{i}.depth.png", "transform_matrix": pose.tolist()})
-    with open(f"{made}/transforms.json", "w", encoding="utf-8") as file:
-        json.dump({"fl_x": 90, "fl_y": 90, "cx": 48, "cy": 32, "w": 96, "h": 64, "integer_depth_scale": 0.001,
-                   "frames": frames}, file)
+    stepped_wall(made, axis=2, degrees=(0, 0.5))
     expect(0, "import", made, "-o", f"{made}.mcap")
     return f"{made}.mcap"
 
