@@ -55,13 +55,15 @@ static double share_of_holes(const uint16_t *alpha, const uint8_t *mask, size_t 
     return count == 0 ? NAN : (double)holes / (double)count;
 }
 
-/* Draws a picture's view as its camera would have seen it. */
+/* Draws a picture's view as its camera would have seen it. *milliseconds: those of the drawing alone. */
 static int draw_corrected(reconstruction *r, const corrected_views *corrected, const evaluation_picture *picture,
-                          const evaluation_views *views, uint8_t *rgb, uint16_t *alpha)
+                          const evaluation_views *views, uint8_t *rgb, uint16_t *alpha, double *milliseconds)
 {
     double gain[3];
     const t3r_camera camera = corrected_views_camera(corrected, &picture->camera, gain);
+    const double start = cli_now();
     const int code = evaluation_draw(r, &camera, views, rgb, alpha);
+    *milliseconds = (cli_now() - start) * 1000;
     if (code == CLI_OK) {
         corrected_views_expose(rgb, (size_t)views->width * views->height, gain);
     }
@@ -74,9 +76,7 @@ static int score_target(evaluation_row *row, uint8_t *render, uint16_t *alpha, c
 {
     const uint32_t w = views->width, h = views->height;
     const evaluation_picture *target = &views->target;
-    const double start = cli_now();
-    const int code = draw_corrected(r, corrected, target, views, render, alpha);
-    row->value[EVALUATION_RENDER_MS] = (cli_now() - start) * 1000;
+    const int code = draw_corrected(r, corrected, target, views, render, alpha, &row->value[EVALUATION_RENDER_MS]);
     if (code != CLI_OK) {
         return code;
     }
@@ -97,10 +97,10 @@ static int score_target(evaluation_row *row, uint8_t *render, uint16_t *alpha, c
 static int score_context(evaluation_row *row, uint8_t *rgb, const evaluation_views *views, reconstruction *r,
                          const corrected_views *corrected)
 {
-    double sum = 0;
+    double sum = 0, milliseconds;
     for (uint32_t v = 0; v < views->context_count; v++) {
         const evaluation_picture *context = &views->context[v];
-        const int code = draw_corrected(r, corrected, context, views, rgb, NULL);
+        const int code = draw_corrected(r, corrected, context, views, rgb, NULL, &milliseconds);
         if (code != CLI_OK) {
             return code;
         }

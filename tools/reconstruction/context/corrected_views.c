@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <string.h>
 
 #include "cli/cli.h"
 #include "cli/files/recorded_frame.h"
@@ -27,10 +28,8 @@ int corrected_views_of(const t3r_recording *recording, const char *path, const r
         }
         views->given[v] = frame.camera;
         views->used[v] = account->camera[v];
-        for (int c = 0; c < 3; c++) {
-            views->gain_q14[v][c] = account->gain_q14[v][c];
-        }
     }
+    memcpy(views->gain_q14, account->gain_q14, sizeof views->gain_q14);
     views->count = account->context_count;
     return CLI_OK;
 }
@@ -125,7 +124,7 @@ t3r_camera corrected_views_camera(const corrected_views *views, const t3r_camera
 
 void corrected_views_expose(uint8_t *rgb, size_t pixels, const double gain[3])
 {
-    const bool changes = gain[0] != 1 || gain[1] != 1 || gain[2] != 1; /* a picture as drawn costs no time */
+    const bool changes = gain[0] != 1 || gain[1] != 1 || gain[2] != 1;
     for (size_t i = 0; i < 3 * pixels && changes; i++) {
         rgb[i] = (uint8_t)fmin(rgb[i] * gain[i % 3] + 0.5, 255);
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Draws a view as its camera would have seen it: with the pose and the exposure that the context views around it had.
+/* Finds the pose and the exposure with which a view is drawn as its camera saw it, from the context views around it.
  *
  * A build corrects the poses of its context views (`align`) and brings them to one exposure (`exposure`). A camera
  * among them was placed by the same tracker and exposed by the same control, so it is off as they are. Its correction
