@@ -183,11 +183,12 @@ t3r_status t3r_find_texture(t3r_runtime *rt, t3r_view *views, t3r_view_span span
     return T3R_OK;
 }
 
-/* Whether covered points are deferred: in a small budget of a build, and in a stream, whose map already shows them. */
+/* Whether covered points are deferred: in a small budget of a pair, in every build of more views, where a surface would
+ * be laid many times, and in a stream, whose map already shows them. */
 static bool passes_over_covered(const t3r_runtime *rt, const t3r_view *views, uint32_t gaussians)
 {
     return t3r_is_stream(&rt->config) || (t3r_marks_covered(&rt->config) && rt->build.allocate != T3R_ALLOCATE_GIVEN &&
-                                          t3r_is_sparse(views, rt->views, gaussians));
+                                          (rt->views > 2 || t3r_is_sparse(views, rt->views, gaussians)));
 }
 
 t3r_budget_settings t3r_budget_settings_of(const t3r_runtime *rt, const t3r_view *views)

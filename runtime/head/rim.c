@@ -7,7 +7,7 @@
 #include "pointmap/pointmap.h"
 #include "pointmap/reproject.h"
 
-#define BORDERS 4            /* least distance, in depths of the border */
+#define BORDER_TIMES_Q8 320  /* least distance, in depths of the border: 5/4 */
 #define FARTHER_SHIFT 2      /* at least a quarter farther than the largest depth of all views */
 #define MOST_TIMES 256       /* most distance, in depths of the border */
 #define DEPTH_SAMPLES 16u    /* along each side of a view, of its depth */
@@ -23,11 +23,12 @@ enum { LEFT, RIGHT, TOP, BOTTOM, SIDES };
 typedef struct ring {
     uint8_t beyond, width; /* from the border to the centre; standard deviation across it */
     uint8_t fewer;         /* segments along a side are T3R_RIM_MOST_SEGMENTS >> fewer */
+    uint8_t times;         /* farther than the inner ring, so that this one shows before the outer one */
 } ring;
 
 /* The inner ring continues the border. The outer one reaches half a picture beyond it, and behind the whole picture, so
  * that it shows in gaps between surfaces. Its Gaussians are few, as they are drawn at every pixel. */
-static const ring rings[] = {{1, 1, 0}, {5, 6, 1}};
+static const ring rings[] = {{1, 1, 0, 1}, {5, 6, 1, 4}};
 enum { RINGS = sizeof rings / sizeof rings[0] };
 
 /* A segment of a side of a view, and its ring. */
@@ -35,8 +36,9 @@ typedef struct segment {
     const t3r_pointmap *map;
     const ring *ring;
     uint32_t side, index, count;
-    int64_t least_q20; /* the rim is at least so far from the view */
-    uint32_t inset;    /* of the surface from the border */
+    int64_t least_q20;     /* the rim is at least so far from the view */
+    uint32_t inset;        /* of the surface from the border */
+    int32_t beside_q20[3]; /* where the surface at the border would continue */
 } segment;
 
 static bool is_upright(const segment *s)
@@ -102,7 +104,8 @@ static bool place(segment *s, t3r_gaussian *g)
         return false;
     }
     const int64_t z_q20 = T3R_MAX(t3r_depth_q20(s->map->scale, view->depth[(size_t)uv[1] * view->width + uv[0]]), 1);
-    const int64_t times_q8 = t3r_clamp64(s->least_q20 * 256 / z_q20, BORDERS * 256, MOST_TIMES * 256);
+    const int64_t times_q8 =
+        s->ring->times * t3r_clamp64(s->least_q20 * 256 / z_q20, BORDER_TIMES_Q8, MOST_TIMES * 256);
     int64_t side_q24[2][3], entry_q28[9];
     pixel_sides(s->map, z_q20, side_q24);
     const int64_t width_q4 = (int64_t)across(s) * s->ring->width;
@@ -114,6 +117,7 @@ static bool place(segment *s, t3r_gaussian *g)
     for (int i = 0; i < 3; i++) {
         const int64_t from_q20 = view->pose.position_q20[i];
         const int64_t beside_q20 = point_q20[i] + t3r_round_shift64(move_q4 * outwards_q24[i], 4 + 24 - 20);
+        s->beside_q20[i] = (int32_t)t3r_clamp64(beside_q20, -T3R_POSITION_MOST_Q20, T3R_POSITION_MOST_Q20);
         const int64_t x_q20 = from_q20 + t3r_round_shift64(times_q8 * (beside_q20 - from_q20), 8);
         g->position_q20[i] = (int32_t)t3r_clamp64(x_q20, -T3R_POSITION_MOST_Q20, T3R_POSITION_MOST_Q20);
         for (int axis = 0; axis < 2; axis++) { /* sides are below 2^8 x 2^30, extents 2^20 */
@@ -125,13 +129,13 @@ static bool place(segment *s, t3r_gaussian *g)
     return true;
 }
 
-/* Whether another view's picture contains the place. */
-static bool is_shown(const t3r_runtime *rt, const t3r_view *views, uint32_t own, const t3r_gaussian *g)
+/* Whether another view's picture contains the place where the surface at the border would continue. */
+static bool is_shown(const t3r_runtime *rt, const t3r_view *views, uint32_t own, const segment *s)
 {
     bool shown = false;
     for (uint32_t v = 0; v < rt->views && !shown; v++) {
         t3r_projected_pixel projected;
-        shown = v != own && t3r_project_to_pixel(&views[v], g->position_q20, &projected);
+        shown = v != own && t3r_project_to_pixel(&views[v], s->beside_q20, &projected);
     }
     return shown;
 }
@@ -187,9 +191,9 @@ static uint32_t make_ring(const t3r_runtime *rt, const t3r_view *views, uint32_t
     const uint32_t count = T3R_RIM_MOST_SEGMENTS >> of->fewer >> fewer;
     uint32_t made = 0;
     for (uint32_t i = 0; i < SIDES * count; i++) {
-        segment s = {&map, of, i / count, i % count, count, least_q20, 0};
+        segment s = {&map, of, i / count, i % count, count, least_q20, 0, {0}};
         t3r_gaussian g = {.view = T3R_NO_VIEW, .opacity_q15 = OPACITY_Q15};
-        const bool is_made = place(&s, &g) && colour(&s, rt->gain_q14[v], &g) && !is_shown(rt, views, v, &g);
+        const bool is_made = place(&s, &g) && colour(&s, rt->gain_q14[v], &g) && !is_shown(rt, views, v, &s);
         if (is_made && out != NULL) {
             out[made] = g;
         }

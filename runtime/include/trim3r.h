@@ -70,7 +70,7 @@ extern "C" {
 #define T3R_TEXT_(number) T3R_QUOTE_(number)
 #define T3R_QUOTE_(number) #number
 /* Raised by every change of any output bit; recordings and scenes carry the epoch that made them. */
-#define T3R_BITS_EPOCH 18
+#define T3R_BITS_EPOCH 19
 
 #define T3R_MAX_SIDE 4096         /* largest width or height of working size, frame or target, in pixels */
 #define T3R_MIN_SIDE 8            /* smallest working width or height, in pixels */
@@ -338,7 +338,8 @@ typedef struct t3r_target {
     uint8_t *rgb;
     /* The bytes from row to row of the colour picture, at least 3 x width. */
     uint32_t rgb_stride_bytes;
-    /* The depth along z in scene units of the splat at which transmittance falls below 1/2; 0 = there is none. */
+    /* The depth along z in scene units, at this pixel, of the splat at which transmittance falls below 1/2; 0 = there
+     * is none. */
     uint32_t *depth_q20;
     /* The bytes from row to row of the depth picture, a multiple of 4 and at least 4 x width. */
     uint32_t depth_stride_bytes;

@@ -39,8 +39,7 @@ static bool draw_tile(const tile_job *job, uint32_t tile)
         if (from > 0 && !t3r_progress(job->rt, T3R_STAGE_RASTER, tile, bin->tiles)) {
             return false;
         }
-        t3r_draw_list(&drawn, bin->kernels, bin->splats, bin->lists + begin + from, T3R_MIN(count - from, DRAW_SPLATS),
-                      job->target);
+        t3r_draw_list(&drawn, bin, bin->lists + begin + from, T3R_MIN(count - from, DRAW_SPLATS), job->target);
     }
     t3r_draw_end(&drawn, job->target);
     return true;

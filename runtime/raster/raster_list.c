@@ -72,6 +72,8 @@ t3r_binning t3r_raster_list(const t3r_runtime *rt, const t3r_projection *project
 
     t3r_binning bin = {
         .kernels = &rt->kernels,
+        .projection = projection,
+        .gaussians = projecting.gaussians,
         .splats = room->splats,
         .order = order,
         .spans = spans,

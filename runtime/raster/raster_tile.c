@@ -4,24 +4,53 @@
 #include "core/fixed.h"
 #include "core/memory.h"
 
-/* Stores a depth in each of eight pixels whose transmittance has just fallen below one half. Without branches, and not
- * inlined, so that the compiler vectorizes it. */
-static __attribute__((noinline)) void note_row(const uint16_t *restrict transmittance_q16, uint32_t z_q20,
-                                               uint32_t *restrict depth_q20)
+/* Whether the transmittance of any of eight pixels has just fallen below one half. Without branches, and not inlined,
+ * so that the compiler vectorizes it. */
+static __attribute__((noinline)) bool is_halved(const uint16_t *restrict transmittance_q16,
+                                                const uint32_t *restrict depth_q20)
 {
     _Static_assert(T3R_HALF_Q16 == 1 << 15, "the highest bit is enough");
+    uint32_t any = 0;
     for (uint32_t i = 0; i < T3R_LANES; i++) {
         const uint32_t is_below = (uint32_t)(transmittance_q16[i] >> 15) - 1u, is_open = (depth_q20[i] != 0) - 1u;
-        depth_q20[i] |= z_q20 & is_below & is_open;
+        any |= is_below & is_open;
     }
+    return any != 0;
 }
 
-static void note_depth(t3r_drawn_tile *tile, const t3r_tile_splat *splat, uint32_t z_q20)
+/* A splat that depth is noted of. Its surface is computed only if a pixel needs it. */
+typedef struct noted_splat {
+    const t3r_binning *bin;
+    uint32_t index;
+    bool has_surface;
+    t3r_splat_surface surface;
+} noted_splat;
+
+static uint32_t depth_at(noted_splat *noted, uint32_t x, uint32_t y)
 {
-    for (uint32_t group = 0; group < splat->groups; group++) {
-        const uint32_t column = splat->column + group * T3R_LANES;
-        for (uint32_t j = splat->first; j <= splat->last && (splat->drawn >> group & 1) != 0; j++) {
-            note_row(tile->pixels.transmittance_q16[j] + column, z_q20, tile->depth_q20[j] + column);
+    const t3r_splat *splat = &noted->bin->splats[noted->index];
+    if (splat->z_q20 == T3R_WITHOUT_DEPTH) {
+        return (uint32_t)T3R_WITHOUT_DEPTH;
+    }
+    if (!noted->has_surface) {
+        noted->surface = t3r_splat_surface_of(noted->bin->projection, &noted->bin->gaussians[noted->index], splat);
+        noted->has_surface = true;
+    }
+    return t3r_surface_depth_q20(&noted->surface, x, y);
+}
+
+static void note_depth(t3r_drawn_tile *tile, const t3r_tile_splat *placed, noted_splat *noted)
+{
+    for (uint32_t group = 0; group < placed->groups; group++) {
+        const uint32_t column = placed->column + group * T3R_LANES;
+        for (uint32_t j = placed->first; j <= placed->last && (placed->drawn >> group & 1) != 0; j++) {
+            const uint16_t *transmittance_q16 = tile->pixels.transmittance_q16[j] + column;
+            uint32_t *depth_q20 = tile->depth_q20[j] + column;
+            for (uint32_t i = 0; i < T3R_LANES && is_halved(transmittance_q16, depth_q20); i++) {
+                if (transmittance_q16[i] < T3R_HALF_Q16 && depth_q20[i] == 0) {
+                    depth_q20[i] = depth_at(noted, tile->place.left + column + i, tile->place.top + j);
+                }
+            }
         }
     }
 }
@@ -133,25 +162,27 @@ static void look_for_end(t3r_drawn_tile *tile, const t3r_target *target)
                                     t3r_tile_is_below(&tile->pixels, T3R_STOP_Q16));
 }
 
-void t3r_draw_list(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_splat *splats, const uint32_t *list,
-                   uint32_t count, const t3r_target *target)
+void t3r_draw_list(t3r_drawn_tile *tile, const t3r_binning *bin, const uint32_t *list, uint32_t count,
+                   const t3r_target *target)
 {
+    const t3r_splat *splats = bin->splats;
     t3r_tile_splat placed[PLACE_SPLATS];
     for (uint32_t i = 0; i < count && !tile->stopped; i++) {
         const uint32_t at = i % PLACE_SPLATS;
         if (at == 0) {
             const uint32_t next = T3R_MIN(count - i, 2 * PLACE_SPLATS);
             fetch(splats, list + i + PLACE_SPLATS, next > PLACE_SPLATS ? next - PLACE_SPLATS : 0);
-            kernels->place(splats, list + i, T3R_MIN(count - i, PLACE_SPLATS), &tile->place, placed);
+            bin->kernels->place(splats, list + i, T3R_MIN(count - i, PLACE_SPLATS), &tile->place, placed);
         }
         if (i % T3R_STOP_INTERVAL == T3R_STOP_INTERVAL - 1) {
             look_for_end(tile, target);
         }
         if (!tile->stopped) {
-            kernels->blend(&tile->pixels, &placed[at]);
+            bin->kernels->blend(&tile->pixels, &placed[at]);
         }
         if (!tile->noted && target->depth_q20 != NULL) {
-            note_depth(tile, &placed[at], (uint32_t)splats[list[i]].z_q20);
+            noted_splat noted = {.bin = bin, .index = list[i]};
+            note_depth(tile, &placed[at], &noted);
         }
     }
 }

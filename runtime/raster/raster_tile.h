@@ -9,6 +9,7 @@
 #include "core/workers.h"
 #include "kernels/kernels.h"
 #include "raster_splat.h"
+#include "splat_surface.h"
 
 /* The tiles that a splat's box touches, bounds inclusive. A byte is enough: T3R_MAX_SIDE is 256 tiles. */
 typedef struct t3r_tile_span {
@@ -24,6 +25,8 @@ static inline t3r_tile_span t3r_span_of(const t3r_splat *splat)
 /* The splats in depth order and the tiles of the target. */
 typedef struct t3r_binning {
     const t3r_kernels *kernels;
+    const t3r_projection *projection; /* of the splats, from the Gaussians at their indices: for depth alone */
+    const t3r_gaussian *gaussians;
     const t3r_splat *splats;
     const uint32_t *order;
     const t3r_tile_span *spans; /* in the same order */
@@ -62,8 +65,8 @@ typedef struct t3r_drawn_tile {
 /* Draw one tile: t3r_draw_begin() clears it, t3r_draw_list() blends its list front to back in any number of parts,
  * t3r_draw_end() writes it into the target. All parts but the last have a multiple of T3R_STOP_INTERVAL splats. */
 void t3r_draw_begin(t3r_drawn_tile *tile, uint32_t tile_x, uint32_t tile_y);
-void t3r_draw_list(t3r_drawn_tile *tile, const t3r_kernels *kernels, const t3r_splat *splats, const uint32_t *list,
-                   uint32_t count, const t3r_target *target);
+void t3r_draw_list(t3r_drawn_tile *tile, const t3r_binning *bin, const uint32_t *list, uint32_t count,
+                   const t3r_target *target);
 void t3r_draw_end(const t3r_drawn_tile *tile, const t3r_target *target);
 
 /* Steps of drawing, for callers that do more with a tile than writing it into a target. */

@@ -209,6 +209,9 @@ static uint32_t chunks_of(uint32_t count)
     return (count + CHUNK - 1) / CHUNK;
 }
 
+/* Views between two changes of a build's scene, about. */
+#define VIEWS_A_GROUP 4u
+
 typedef struct slice_job {
     const t3r_kernels *kernels;
     const t3r_refine_layout *work;
@@ -222,6 +225,7 @@ typedef struct slice_job {
     uint32_t round;                 /* of keyframes shown again; 0 = new ones */
     const t3r_structure *structure; /* one for each view, or NULL */
     bool in_parts;                  /* the pass compares a part of the pixels */
+    uint32_t group, groups;         /* the step compares the views v with v mod groups = group */
 } slice_job;
 
 static void begin_chunk(void *context, uint32_t index, uint32_t worker)
@@ -367,12 +371,12 @@ static t3r_status accumulate_remembered(const t3r_runtime *rt, slice_job *slice,
     return T3R_OK;
 }
 
-/* Computes the sums of a slice over all views. */
+/* Computes the sums of a slice over the views of a step. */
 static t3r_status accumulate_views(const t3r_runtime *rt, slice_job *slice, const t3r_view *views, uint32_t turn,
                                    uint32_t *done, uint32_t total)
 {
     memset(slice->slice.sums, 0, (size_t)slice->slice.count * sizeof *slice->slice.sums);
-    for (uint32_t v = 0; v < rt->views; v++, ++*done) {
+    for (uint32_t v = slice->group; v < rt->views; v += slice->groups, ++*done) {
         if (!t3r_progress(rt, T3R_STAGE_REFINE, *done, total)) {
             return T3R_ERR_CANCELLED;
         }
@@ -438,11 +442,38 @@ static t3r_status find_viewpoints(const t3r_runtime *rt, t3r_viewpoints *from)
     return T3R_OK;
 }
 
+/* Returns the groups that the views of a build form in a pass. Changed after each group, a scene of many views comes as
+ * far in a pass as one of few. All views together have the last word. */
+static uint32_t groups_of(const t3r_runtime *rt, bool is_last)
+{
+    const bool in_groups = !t3r_is_stream(&rt->config) && !is_last;
+    return in_groups ? T3R_MAX((rt->views + VIEWS_A_GROUP / 2) / VIEWS_A_GROUP, 1) : 1;
+}
+
+/* Fits all Gaussians to the views of a step, slice by slice, and changes them. */
+static t3r_status refine_step(const t3r_runtime *rt, slice_job *job, const t3r_view *views, uint32_t turn,
+                              uint32_t *done, uint32_t total)
+{
+    const t3r_workers workers = t3r_workers_of(rt);
+    for (uint32_t first = 0; first < rt->gaussians; first += job->work->slice) {
+        job->slice.first = first;
+        job->slice.count = T3R_MIN(job->work->slice, rt->gaussians - first);
+        t3r_status status = accumulate_views(rt, job, views, turn, done, total);
+        if (status != T3R_OK) {
+            return status;
+        }
+        t3r_run_tasks(&workers, chunks_of(job->slice.count), solve_chunk, job);
+    }
+    job->slice.first = 0;
+    job->slice.count = rt->gaussians;
+    t3r_run_tasks(&workers, chunks_of(rt->gaussians), apply_chunk, job);
+    return T3R_OK;
+}
+
 t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes passes, uint32_t round,
                             const t3r_map_record *records)
 {
     const t3r_refine_layout w = t3r_refine_layout_of(rt);
-    const t3r_workers workers = t3r_workers_of(rt);
     t3r_viewpoints from;
     t3r_status found = find_viewpoints(rt, &from);
     if (found != T3R_OK) {
@@ -470,18 +501,13 @@ t3r_status t3r_refine_scene(t3r_runtime *rt, const t3r_view *views, t3r_passes p
                 return status;
             }
         }
-        for (uint32_t first = 0; first < rt->gaussians; first += w.slice) {
-            job.slice.first = first;
-            job.slice.count = T3R_MIN(w.slice, rt->gaussians - first);
-            t3r_status status = accumulate_views(rt, &job, views, rt->keyframes * passes.count + pass, &done, total);
+        job.groups = groups_of(rt, pass + 1 == passes.count);
+        for (job.group = 0; job.group < job.groups; job.group++) {
+            t3r_status status = refine_step(rt, &job, views, rt->keyframes * passes.count + pass, &done, total);
             if (status != T3R_OK) {
                 return status;
             }
-            t3r_run_tasks(&workers, chunks_of(job.slice.count), solve_chunk, &job);
         }
-        job.slice.first = 0;
-        job.slice.count = rt->gaussians;
-        t3r_run_tasks(&workers, chunks_of(rt->gaussians), apply_chunk, &job);
     }
     return T3R_OK;
 }

@@ -233,11 +233,11 @@ def scene_by_a_lens():
     scores = {name: [p["psnr"] for p in expect_json("scene", name, "-o", f"{name}.ply")["pictures"] if p["chosen"]]
               for name in ("posed", "bent")}
     check(min(scores["bent"]) > min(scores["posed"]) - 4, f"drawn: {scores}")
-    # eval has the same number for the same picture
+    # eval has the same number for the same picture, but for the last digits of the pose, which alignment corrects
     expect(0, "import", "bent", "-o", "bent.mcap")
     row = expect_json("eval", "bent.mcap", "--scene", "bent.ply", "--depth", "stereo", "--context", "0,1", "--target", "2",
                       "--images", "bent pictures")["rows"][0]
-    check(abs(row["psnr_all"] - scores["bent"][2]) < 1e-3, f"by scene {scores['bent'][2]}, by eval {row['psnr_all']}")
+    check(abs(row["psnr_all"] - scores["bent"][2]) < 5e-3, f"by scene {scores['bent'][2]}, by eval {row['psnr_all']}")
     check("shown.png" in os.listdir("bent pictures/2"), "the pixels that count are not written")
 
 

@@ -29,11 +29,12 @@ static void compare_planes(const char *name, const oracle_image *want, const dra
         double alpha = 1 - want->transmittance[i];
         alpha_off += fabs(got->alpha_q15[i] / 32768.0 - alpha) > ALPHA_TOLERANCE;
         /* one step of Q20 from rounding z, relative 2^-16 beyond */
-        double depth = got->depth_q20[i] / 1048576.0, slack = 2e-6 + depth * 1.6e-5;
-        int none_is_right = want->depth_most[i] == HUGE_VAL;
+        double depth = got->depth_q20[i] / 1048576.0, slack = 2e-6 + depth * 1.6e-5 + want->depth_slack[i];
+        double first = want->depth_first[i], last = want->depth_last[i];
+        int none_is_right = last == HUGE_VAL;
         depth_off += got->depth_q20[i] == 0 ? !none_is_right
-                                            : want->depth_least[i] == 0 || depth < want->depth_least[i] - slack ||
-                                                  depth > want->depth_most[i] + slack;
+                                            : first == 0 || depth < fmin(fmin(first, last), want->depth[i]) - slack ||
+                                                  depth > fmax(fmax(first, last), want->depth[i]) + slack;
     }
     if ((double)alpha_off > ALPHA_SHARE * (double)pixels || (double)depth_off > DEPTH_SHARE * (double)pixels) {
         fail_msg("%s: of %zu pixels, alpha is off in %zu and median depth in %zu", name, pixels, alpha_off, depth_off);

@@ -135,7 +135,9 @@ static void draw_at_once(const t3r_gaussian *gaussians, uint32_t count, const t3
     const t3r_target target = {.width = 16, .height = 16, .rgb = rgb, .rgb_stride_bytes = 16 * 3};
     t3r_drawn_tile tile;
     t3r_draw_begin(&tile, 0, 0);
-    t3r_draw_list(&tile, &t3r_kernels_c, splats, list, count, &target);
+    const t3r_binning bin = {
+        .kernels = &t3r_kernels_c, .projection = &projection, .gaussians = gaussians, .splats = splats};
+    t3r_draw_list(&tile, &bin, list, count, &target);
     t3r_draw_end(&tile, &target);
     free(list);
     free(splats);

@@ -12,7 +12,7 @@
 enum { SIDE = 64, VIEWS = 2, BUDGET = 400, SEED = 1, PIXELS = SIDE * SIDE };
 
 /* A change of any bit needs a new epoch, and a new hash: `trim3r doctor` prints it. */
-_Static_assert(T3R_BITS_EPOCH == 18, "SELF_CHECK_HASH is that of another bits epoch");
+_Static_assert(T3R_BITS_EPOCH == 19, "SELF_CHECK_HASH is that of another bits epoch");
 
 typedef struct check {
     uint8_t rgb[PIXELS * 3], depth[PIXELS * 2], view[PIXELS * 3];

@@ -6,22 +6,29 @@
 #define WIDENED 0.3 /* square pixels that the rasterizer adds; runtime/SPEC.md, "Raster" */
 #define HELD 1.3    /* bound of the Jacobian over the tangent to the picture's farther edge, as there */
 
+/* Returns the bound of the slope for which a Gaussian's shape is projected. */
+static double limit_of(double pixels, int32_t centre_q16, int32_t focal_q16)
+{
+    const double before = centre_q16 * 0x1p-16 + 0.5, after = pixels - before; /* from the axis to the edges */
+    return HELD * (before > after ? before : after) / (focal_q16 * 0x1p-16);
+}
+
 void seen_from_camera(const t3r_camera *camera, const t3r_scene_frame *frame, const seen_traits *traits, uint32_t width,
                       uint32_t height, seen_from *out)
 {
     *out = (seen_from){.camera = *camera, .width = width, .height = height, .frame = *frame};
     out->is_own = t3r_pose_in_scene(camera, frame, &out->pose) != T3R_OK || traits->is_spread;
     if (out->is_own) {
-        view_frame_of(camera, frame, traits->finer, &out->view);
+        const double limit[2] = {limit_of(width, camera->cx_q16, camera->fx_q16),
+                                 limit_of(height, camera->cy_q16, camera->fy_q16)};
+        view_frame_of(camera, frame, traits->finer, limit, &out->view);
         out->frame = out->view.frame;
         out->pose = out->view.pose;
     }
 }
 
-static double held(double slope, double pixels, double centre, double focal)
+static double held(double slope, double most)
 {
-    const double before = centre + 0.5, after = pixels - before; /* from the axis to the edges */
-    const double most = HELD * (before > after ? before : after) / focal;
     return slope > most ? most : slope < -most ? -most : slope;
 }
 
@@ -61,8 +68,8 @@ static uint16_t mip_opacity_q15(const t3r_gaussian *gaussian, const seen_from *f
         return gaussian->opacity_q15; /* it is not drawn */
     }
     const double fx = from->camera.fx_q16 * 0x1p-16, fy = from->camera.fy_q16 * 0x1p-16;
-    const double u = held(seen[0] / seen[2], from->width, from->camera.cx_q16 * 0x1p-16, fx),
-                 v = held(seen[1] / seen[2], from->height, from->camera.cy_q16 * 0x1p-16, fy);
+    const double u = held(seen[0] / seen[2], limit_of(from->width, from->camera.cx_q16, from->camera.fx_q16)),
+                 v = held(seen[1] / seen[2], limit_of(from->height, from->camera.cy_q16, from->camera.fy_q16));
     for (int k = 0; k < 3; k++) { /* pixels a scene unit along each axis of the scene */
         row[0][k] = fx / seen[2] * (r[3 * k] - u * r[3 * k + 2]);
         row[1][k] = fy / seen[2] * (r[3 * k + 1] - v * r[3 * k + 2]);

@@ -136,6 +136,9 @@ typedef struct splat {
     double gx[3], gy[3]; /* the projected factor: covariance = gx.gx + 0.3, gx.gy, gy.gy + 0.3 */
     double inverse_det;
     double reach_x, reach_y; /* half sides of the box outside which alpha < 1/255 */
+    double slope_x, slope_y; /* change of depth a pixel, in parts of z */
+    double most;             /* of one over depth, in parts of 1 / z */
+    double with_depth;       /* |covariance| of a pixel's coordinates with depth, in parts of z, both added */
     double opacity;
     double colour[3];
 } splat;
@@ -157,6 +160,36 @@ static int compare_order(const void *a, const void *b)
 static double clamped(double x, double limit)
 {
     return x < -limit ? -limit : x > limit ? limit : x;
+}
+
+/* The surface of the drawn footprint: the mean depth of the Gaussian at a pixel is linear about its mean, and two
+ * standard deviations from it at most. row: of the factor, along the axis, in parts of z. */
+static void find_surface(splat *s, const double row[3])
+{
+    double xx = 0.3, xy = 0, yy = 0.3, xz = 0, yz = 0, zz = 0;
+    for (int k = 0; k < 3; k++) {
+        xx += s->gx[k] * s->gx[k];
+        xy += s->gx[k] * s->gy[k];
+        yy += s->gy[k] * s->gy[k];
+        xz += s->gx[k] * row[k];
+        yz += s->gy[k] * row[k];
+        zz += row[k] * row[k];
+    }
+    s->slope_x = (yy * xz - xy * yz) * s->inverse_det;
+    s->slope_y = (xx * yz - xy * xz) * s->inverse_det;
+    s->most = 2 * sqrt(zz) / (1 + 2 * sqrt(zz));
+    s->with_depth = fabs(xz) + fabs(yz);
+}
+
+static double depth_at(const splat *s, double dx, double dy)
+{
+    return s->z / (1 - clamped(s->slope_x * dx + s->slope_y * dy, s->most));
+}
+
+/* The error that steps of 2^-30 in the inverse covariance allow, and a hundredth of a standard deviation. */
+static double slack_at(const splat *s, double z, double distance)
+{
+    return z * z / s->z * (5e-3 * s->most + ldexp(s->with_depth * distance, -30));
 }
 
 /* 0 = culled */
@@ -202,6 +235,8 @@ static int project(const oracle_gaussian *g, const oracle_camera *c, splat *s)
     s->y = c->fy * t[1] / z + c->cy;
     s->z = z;
     s->opacity = g->opacity;
+    find_surface(s, (const double[]){clamped(f[6] / z, ORACLE_DEEPEST), clamped(f[7] / z, ORACLE_DEEPEST),
+                                     clamped(f[8] / z, ORACLE_DEEPEST)});
     memcpy(s->colour, g->colour, sizeof s->colour);
     return 1;
 }
@@ -243,9 +278,13 @@ static void blend(const splat *s, oracle_image *image)
                 image->rgb[pixel * 3 + (size_t)i] += *t * alpha * s->colour[i];
             }
             double after = *t * (1 - alpha);
-            note_depth(&image->depth_least[pixel], s->z, *t, after, 0.5 + ORACLE_DEPTH_MARGIN);
-            note_depth(&image->depth[pixel], s->z, *t, after, 0.5);
-            note_depth(&image->depth_most[pixel], s->z, *t, after, 0.5 - ORACLE_DEPTH_MARGIN);
+            const double z = depth_at(s, dx, dy);
+            note_depth(&image->depth_first[pixel], z, *t, after, 0.5 + ORACLE_DEPTH_MARGIN);
+            note_depth(&image->depth[pixel], z, *t, after, 0.5);
+            note_depth(&image->depth_last[pixel], z, *t, after, 0.5 - ORACLE_DEPTH_MARGIN);
+            if (*t >= 0.5 && after < 0.5) {
+                image->depth_slack[pixel] = slack_at(s, z, fabs(dx) + fabs(dy));
+            }
             *t = after;
         }
     }
@@ -260,12 +299,13 @@ void oracle_render(const oracle_gaussian *gaussians, size_t count, const oracle_
         .rgb = allocate(pixels * 3, sizeof(double)),
         .transmittance = allocate(pixels, sizeof(double)),
         .depth = allocate(pixels, sizeof(double)),
-        .depth_least = allocate(pixels, sizeof(double)),
-        .depth_most = allocate(pixels, sizeof(double)),
+        .depth_slack = allocate(pixels, sizeof(double)),
+        .depth_first = allocate(pixels, sizeof(double)),
+        .depth_last = allocate(pixels, sizeof(double)),
     };
     for (size_t i = 0; i < pixels; i++) {
         image->transmittance[i] = 1;
-        image->depth_most[i] = HUGE_VAL;
+        image->depth_last[i] = HUGE_VAL;
     }
     splat *splats = allocate(count, sizeof *splats);
     order *orders = allocate(count, sizeof *orders);
@@ -289,8 +329,9 @@ void oracle_image_free(oracle_image *image)
     free(image->rgb);
     free(image->transmittance);
     free(image->depth);
-    free(image->depth_least);
-    free(image->depth_most);
+    free(image->depth_slack);
+    free(image->depth_first);
+    free(image->depth_last);
     *image = (oracle_image){0};
 }
 

@@ -14,6 +14,8 @@
 /* Bound of each entry of the projected factor, in pixels; larger splats look alike on any target (SPEC.md, "Raster").
  */
 #define ORACLE_MOST_PIXELS 4096.0
+/* Bound of each entry of the factor along the axis, in parts of the mean's depth. */
+#define ORACLE_DEEPEST 16.0
 /* The allowed error of a renderer's transmittance when it decides on the median depth. */
 #define ORACLE_DEPTH_MARGIN 0.003
 
@@ -37,12 +39,11 @@ typedef struct oracle_image {
     uint32_t width, height;
     double *rgb;           /* 0..1 */
     double *transmittance; /* 0..1 */
-    double *depth;         /* camera z at which transmittance falls below 1/2; 0 = none */
-    double
-        *depth_least; /* depth at which transmittance falls below 1/2 + ORACLE_DEPTH_MARGIN: least valid median depth */
-    double *depth_most; /* depth at which it falls below 1/2 - ORACLE_DEPTH_MARGIN: greatest valid one; HUGE_VAL: no
-                           depth is valid, too */
-    uint32_t drawn;     /* number of Gaussians that are not culled */
+    double *depth;         /* that of the splat's surface where transmittance falls below 1/2; 0 = none */
+    double *depth_slack;   /* error that is allowed there, from the steps of the conic */
+    double *depth_first;   /* where it falls below 1/2 + ORACLE_DEPTH_MARGIN: valid, as all between it and depth_last */
+    double *depth_last;    /* where it falls below 1/2 - ORACLE_DEPTH_MARGIN; HUGE_VAL: no depth is valid, too */
+    uint32_t drawn;        /* number of Gaussians that are not culled */
 } oracle_image;
 
 void oracle_from_t3r(const t3r_gaussian *from, oracle_gaussian *to);

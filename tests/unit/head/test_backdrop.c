@@ -294,8 +294,8 @@ static place *build_wall(uint32_t views)
     return p;
 }
 
-/* Beyond each border of a wall lie two rings outside the picture, four times as far as the wall, in the border's
- * colour: four Gaussians a side at 1/16 of the picture, two at 5/16. */
+/* Beyond each border of a wall lie two rings outside the picture, in the border's colour: four Gaussians a side at 1/16
+ * of the picture, 5/4 as far as the wall, and two at 5/16, four times as far as these. */
 TEST(test_the_rim_is_outside_the_picture)
 {
     place *p = build_wall(1);
@@ -311,16 +311,18 @@ TEST(test_the_rim_is_outside_the_picture)
         if (g->view != T3R_NO_VIEW) {
             continue;
         }
-        assert_true(llabs(g->position_q20[2] - 4 * wall) <= wall >> 8);
+        const int64_t times = g->position_q20[2] > 2 * wall ? 20 : 5; /* in quarters of the wall's distance */
+        assert_true(llabs(4 * g->position_q20[2] - times * wall) <= wall >> 6);
         assert_int_equal(g->confidence, 0);
         const int64_t x = llabs(g->position_q20[0]), y = llabs(g->position_q20[1]);
         const bool sideways = x > y;
         left += sideways && g->position_q20[0] < 0 && g->colour_q7[0] < 20 << 7;
         right += sideways && g->position_q20[0] > 0 && g->colour_q7[0] > 230 << 7;
         others += !sideways && g->colour_q7[0] > 10 << 7 && g->colour_q7[0] < 245 << 7;
-        const int64_t sixteenths = (T3R_MAX(x, y) - 4 * edge) * 8 / (4 * edge); /* of the picture, beyond its border */
-        inner += sixteenths >= 0 && sixteenths <= 1;
-        outer += sixteenths >= 4 && sixteenths <= 5;
+        /* of the picture, beyond its border */
+        const int64_t sixteenths = (4 * T3R_MAX(x, y) - times * edge) * 8 / (times * edge);
+        inner += times == 5 && sixteenths >= 0 && sixteenths <= 1;
+        outer += times == 20 && sixteenths >= 4 && sixteenths <= 5;
     }
     assert_int_equal(left, 4 + 2);
     assert_int_equal(right, 4 + 2);
