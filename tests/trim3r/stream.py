@@ -55,8 +55,11 @@ def stream():
     check(all(os.path.exists(f"held/{what}_00001.png") for what in ("frame", "mask", "live", "final")), "no pictures")
     text = expect(0, *base, "--gaussians", 500)
     for when, name in (("drawn after the next keyframe", "live"), ("drawn from the final map", "final")):
-        row = [f"{found[key]:.2f}" for key in (f"{name}_psnr", f"{name}_psnr_all")]
-        check(any(line.startswith(when) and line.split()[-2:] == row for line in text.splitlines()), f"no {when} {row}: {text}")
+        found_seen = (f"{found[f'{name}_psnr_seen']:.2f},", f"{100 * found[f'{name}_seen']:.0f}", "%")
+        row = [f"{found[f'{name}_psnr']:.2f}", *found_seen, f"{found[f'{name}_psnr_all']:.2f}"]
+        check(any(line.startswith(when) and line.split()[-5:] == row for line in text.splitlines()), f"no {when} {row}: {text}")
+    check(all(0.5 < h.get("live_seen", h["final_seen"]) <= h["final_seen"] <= 1 for h in held), f"keyframes saw: {held}")
+    check(found["final_psnr_seen"] > found["final_psnr"] - 0.1, "what keyframes saw is drawn worse than the rest")
     check(max(map(len, text.splitlines())) <= 80, f"a line of over 80 columns: {text}")
     the_map_in_a_file(recording, base)
     write("stream.json", json.dumps(found))

@@ -50,8 +50,7 @@ void drawn_frame_close(drawn_frame *d)
 t3r_status drawn_frame_draw(drawn_frame *d, const reconstruction *r, const t3r_capture_frame *frame, drawn_mask mask)
 {
     const bool has_alpha = mask == DRAWN_WITH_ALPHA;
-    t3r_camera camera;
-    t3r_status status = t3r_develop(d->runtime, &frame->frame, &frame->camera, d->target, d->depth, &camera);
+    t3r_status status = t3r_develop(d->runtime, &frame->frame, &frame->camera, d->target, d->depth, &d->camera);
     if (status != T3R_OK) {
         return status;
     }
@@ -61,7 +60,7 @@ t3r_status drawn_frame_draw(drawn_frame *d, const reconstruction *r, const t3r_c
                                .rgb_stride_bytes = d->width * 3,
                                .alpha_q15 = has_alpha ? d->alpha_q15 : NULL,
                                .alpha_stride_bytes = has_alpha ? d->width * 2 : 0};
-    status = t3r_render(r->runtime, &camera, &target);
+    status = t3r_render(r->runtime, &d->camera, &target);
     for (size_t i = 0; i < (size_t)d->width * d->height; i++) {
         const bool counts = frame->frame.depth != NULL && d->depth[i] != 0;
         d->mask[i] = counts && (!has_alpha || d->alpha_q15[i] >= HALF_Q15) ? 255 : 0;

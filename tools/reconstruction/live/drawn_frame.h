@@ -15,6 +15,7 @@ typedef struct drawn_frame {
     uint8_t *target, *drawn; /* the frame and the view, 3 bytes a pixel */
     uint8_t *mask;           /* 255 = the pixel counts */
     uint16_t *depth, *alpha_q15;
+    t3r_camera camera; /* of the frame, without distortion */
 } drawn_frame;
 
 /* Allocates for this size. Returns an exit status of cli.h; drawn_frame_close() is due in any case. */

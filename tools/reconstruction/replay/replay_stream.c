@@ -32,19 +32,36 @@ static int write_picture(const stream_run *s, const char *what, uint32_t frame, 
     return picture_write_png(path, &p, error, sizeof error) == 0 ? CLI_OK : cli_error(CLI_BAD_INPUT, "%s", error);
 }
 
-/* Returns the PSNR in dB over the pixels that the recorded picture reaches; NaN on failure. */
-static double psnr_of_all(const stream_run *s, const t3r_capture_frame *captured, uint32_t frame)
+/* Scores the view over the pixels that the recorded picture reaches, and over those of them that a keyframe saw. */
+static int score_all(stream_run *s, const t3r_capture_frame *captured, uint32_t frame, held_scores *scores)
 {
     const drawn_frame *d = &s->view;
-    uint8_t *shown = malloc((size_t)d->width * d->height);
-    const bool known = shown != NULL && developed_shown(captured, s->path, frame, d->width, d->height, shown) == CLI_OK;
-    const double psnr = known ? metric_psnr(d->target, d->drawn, shown, d->width, d->height) : NAN;
+    const size_t pixels = (size_t)d->width * d->height;
+    uint8_t *shown = malloc(pixels), *seen = malloc(pixels);
+    int code = shown != NULL && seen != NULL ? CLI_OK : cli_error(CLI_BAD_INPUT, "out of memory");
+    if (code == CLI_OK) {
+        code = developed_shown(captured, s->path, frame, d->width, d->height, shown);
+    }
+    if (code == CLI_OK) {
+        scores->psnr_all = metric_psnr(d->target, d->drawn, shown, d->width, d->height);
+        code = stream_seen_mask(&s->seen, captured, &d->camera, d->depth, seen);
+    }
+    uint32_t of_all = 0, of_seen = 0;
+    for (size_t i = 0; i < pixels && code == CLI_OK; i++) {
+        of_all += shown[i] != 0;
+        of_seen += seen[i] != 0;
+    }
+    if (code == CLI_OK) {
+        scores->psnr_seen = metric_psnr(d->target, d->drawn, seen, d->width, d->height);
+        scores->seen = (double)of_seen / of_all;
+    }
     free(shown);
-    return psnr;
+    free(seen);
+    return code;
 }
 
-/* Draws the frame's view from the current map and compares: over pixels where the frame has a depth, and over all. */
-static int draw_held(stream_run *s, uint32_t frame, const char *when, double *psnr, double *psnr_all)
+/* Draws the frame's view from the current map and compares. */
+static int draw_held(stream_run *s, uint32_t frame, const char *when, held_scores *scores)
 {
     const drawn_frame *d = &s->view;
     t3r_capture_frame captured;
@@ -54,23 +71,24 @@ static int draw_held(stream_run *s, uint32_t frame, const char *when, double *ps
     }
     const t3r_status status = drawn_frame_draw(&s->view, &s->map.r, &captured, DRAWN_WITH_DEPTH);
     if (status == T3R_ERR_CAMERA) { /* out of the map's range: nothing to compare */
-        *psnr = *psnr_all = NAN;
+        *scores = (held_scores){NAN, NAN, NAN, NAN};
         return CLI_OK;
     }
     if (status != T3R_OK) {
         return cli_error(CLI_BAD_INPUT, "%s: frame %" PRIu32 ": %s", s->path, frame, t3r_error_text(status));
     }
-    *psnr = drawn_frame_psnr(d);
-    *psnr_all = psnr_of_all(s, &captured, frame);
+    scores->psnr = drawn_frame_psnr(d);
     s->is.views_hash = t3r_hash_bytes(s->is.views_hash, d->drawn, (size_t)d->width * d->height * 3);
-    if (s->options->images == NULL) {
-        return CLI_OK;
+    if (s->options->images != NULL) {
+        code = write_picture(s, when, frame, 3, d->drawn);
+        if (code == CLI_OK) {
+            code = write_picture(s, "frame", frame, 3, d->target);
+        }
+        if (code == CLI_OK) {
+            code = write_picture(s, "mask", frame, 1, d->mask);
+        }
     }
-    code = write_picture(s, when, frame, 3, d->drawn);
-    if (code == CLI_OK) {
-        code = write_picture(s, "frame", frame, 3, d->target);
-    }
-    return code == CLI_OK ? write_picture(s, "mask", frame, 1, d->mask) : code;
+    return code == CLI_OK ? score_all(s, &captured, frame, scores) : code; /* it reads other frames */
 }
 
 /* Draws the frames between the keyframe just taken and the previous one. */
@@ -79,7 +97,7 @@ static int draw_live(stream_run *s)
     int code = CLI_OK;
     for (; code == CLI_OK && s->is.drawn < s->is.held_count; s->is.drawn++) {
         held_back *h = &s->held[s->is.drawn];
-        code = draw_held(s, h->frame, "live", &h->live_psnr, &h->live_psnr_all);
+        code = draw_held(s, h->frame, "live", &h->live);
     }
     return code;
 }
@@ -89,7 +107,7 @@ static int draw_final(stream_run *s)
     int code = CLI_OK;
     for (uint32_t i = 0; i < s->is.held_count && code == CLI_OK; i++) {
         held_back *h = &s->held[i];
-        code = draw_held(s, h->frame, "final", &h->final_psnr, &h->final_psnr_all);
+        code = draw_held(s, h->frame, "final", &h->final);
     }
     return code;
 }
@@ -124,6 +142,9 @@ static int end_row(stream_run *s)
 {
     const live_row *row = &s->rows[s->is.row_count++];
     int code = live_output_row(&s->output, &s->map, row);
+    if (code == CLI_OK && live_row_is_taken(row)) {
+        code = stream_seen_add(&s->seen, row->frame);
+    }
     if (code == CLI_OK && live_row_is_taken(row)) {
         code = draw_live(s);
     }
@@ -205,8 +226,17 @@ static int open_run(stream_run *s)
     if (prints_text(s)) {
         stream_print_begin(s);
     }
-    const int code = drawn_frame_open(&s->view, config->width, config->height);
-    return code == CLI_OK ? stream_open(s) : code;
+    int code = drawn_frame_open(&s->view, config->width, config->height);
+    if (code == CLI_OK) {
+        code = stream_seen_open(&s->seen, s->recording, s->path, config->width, config->height);
+    }
+    if (code == CLI_OK) {
+        code = stream_open(s);
+    }
+    for (uint32_t i = 0; i < s->is.row_count && code == CLI_OK; i++) { /* of a stream that goes on */
+        code = live_row_is_taken(&s->rows[i]) ? stream_seen_add(&s->seen, s->rows[i].frame) : CLI_OK;
+    }
+    return code;
 }
 
 int replay_stream(const replay_stream_options *options, const t3r_recording *recording, const char *path,
@@ -228,6 +258,7 @@ int replay_stream(const replay_stream_options *options, const t3r_recording *rec
     }
     live_output_close(&s.output);
     drawn_frame_close(&s.view);
+    stream_seen_close(&s.seen);
     free(s.held);
     free(s.rows);
     live_map_close(&s.map);

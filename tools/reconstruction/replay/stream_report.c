@@ -12,33 +12,48 @@
 
 /* ---- sums over the run ------------------------------------------------------------------------------------------- */
 
-/* Means in dB; NaN without frames. */
+/* Means of scores over the frames that have them; NaN without any. */
 typedef struct means {
-    uint32_t live_count, final_count;
-    double live, live_all, final, final_all;
+    uint32_t count, seen_count; /* frames; those of which a keyframe saw anything */
+    held_scores of;
 } means;
 
-static means means_of(const stream_run *s)
+static void add_scores(means *m, const held_scores *scores)
 {
-    means m = {0};
-    for (uint32_t i = 0; i < s->is.held_count; i++) {
-        const held_back *h = &s->held[i];
-        if (i < s->is.drawn && !isnan(h->live_psnr)) {
-            m.live += h->live_psnr;
-            m.live_all += h->live_psnr_all;
-            m.live_count++;
-        }
-        if (!isnan(h->final_psnr)) {
-            m.final += h->final_psnr;
-            m.final_all += h->final_psnr_all;
-            m.final_count++;
-        }
+    if (isnan(scores->psnr)) {
+        return;
     }
-    m.live /= m.live_count;
-    m.live_all /= m.live_count;
-    m.final /= m.final_count;
-    m.final_all /= m.final_count;
+    m->count++;
+    m->of.psnr += scores->psnr;
+    m->of.psnr_all += scores->psnr_all;
+    m->of.seen += scores->seen;
+    if (!isnan(scores->psnr_seen)) {
+        m->seen_count++;
+        m->of.psnr_seen += scores->psnr_seen;
+    }
+}
+
+static means mean_of(const means *sums)
+{
+    means m = *sums;
+    m.of.psnr /= m.count;
+    m.of.psnr_all /= m.count;
+    m.of.seen /= m.count;
+    m.of.psnr_seen /= m.seen_count;
     return m;
+}
+
+static void find_means(const stream_run *s, means *live, means *final)
+{
+    *live = *final = (means){0};
+    for (uint32_t i = 0; i < s->is.held_count; i++) {
+        if (i < s->is.drawn) {
+            add_scores(live, &s->held[i].live);
+        }
+        add_scores(final, &s->held[i].final);
+    }
+    *live = mean_of(live);
+    *final = mean_of(final);
 }
 
 /* The keyframes, their times and passes. */
@@ -90,7 +105,7 @@ static const char *new_reason(const stream_run *s, uint32_t i)
 
 /* ---- JSON -------------------------------------------------------------------------------------------------------- */
 
-static void add_decibels(cJSON *object, const char *key, double value)
+static void add_number(cJSON *object, const char *key, double value)
 {
     if (isnan(value) || isinf(value)) {
         cJSON_AddNullToObject(object, key);
@@ -114,6 +129,23 @@ static void add_rows(cJSON *root, const stream_run *s)
     }
 }
 
+/* Adds the scores of `when`, "live" or "final". */
+static void add_scores_json(cJSON *object, const char *when, const held_scores *scores)
+{
+    const struct {
+        const char *key;
+        double value;
+    } each[] = {{"psnr", scores->psnr},
+                {"psnr_seen", scores->psnr_seen},
+                {"psnr_all", scores->psnr_all},
+                {"seen", scores->seen}};
+    for (size_t i = 0; i < sizeof each / sizeof each[0]; i++) {
+        char key[32];
+        (void)snprintf(key, sizeof key, "%s_%s", when, each[i].key);
+        add_number(object, key, each[i].value);
+    }
+}
+
 static void add_held(cJSON *root, const stream_run *s)
 {
     cJSON *list = cJSON_AddArrayToObject(root, "held_back");
@@ -122,18 +154,15 @@ static void add_held(cJSON *root, const stream_run *s)
         cJSON *item = cJSON_CreateObject();
         json_add_integer(item, "frame", h->frame);
         if (i < s->is.drawn) {
-            add_decibels(item, "live_psnr", h->live_psnr);
-            add_decibels(item, "live_psnr_all", h->live_psnr_all);
+            add_scores_json(item, "live", &h->live);
         }
-        add_decibels(item, "final_psnr", h->final_psnr);
-        add_decibels(item, "final_psnr_all", h->final_psnr_all);
+        add_scores_json(item, "final", &h->final);
         cJSON_AddItemToArray(list, item);
     }
-    const means m = means_of(s);
-    add_decibels(root, "live_psnr", m.live);
-    add_decibels(root, "live_psnr_all", m.live_all);
-    add_decibels(root, "final_psnr", m.final);
-    add_decibels(root, "final_psnr_all", m.final_all);
+    means live, final;
+    find_means(s, &live, &final);
+    add_scores_json(root, "live", &live.of);
+    add_scores_json(root, "final", &final.of);
 }
 
 static void add_work(cJSON *root, const stream_run *s)
@@ -215,23 +244,24 @@ static void print_skipped(const stream_run *s)
     printf("%s", any ? "\n" : "");
 }
 
-/* Prints a row: the mean of pixels that have a depth, and of all. */
-static void print_mean(const char *when, uint32_t frames, double with_depth, double everywhere)
+static void print_mean(const char *when, const means *m)
 {
-    printf("%-33s  %7" PRIu32 "  %10.2f  %10.2f\n", when, frames, with_depth, everywhere);
+    printf("%-30s  %6" PRIu32 "  %10.2f  %7.2f, %3.0f %%  %10.2f\n", when, m->count, m->of.psnr, m->of.psnr_seen,
+           100 * m->of.seen, m->of.psnr_all);
 }
 
 static void print_means(const stream_run *s)
 {
-    const means m = means_of(s);
-    if (m.final_count == 0) {
+    means live, final;
+    find_means(s, &live, &final);
+    if (final.count == 0) {
         return;
     }
-    printf("held-back frames, mean PSNR in dB   frames  with depth  everywhere\n");
-    if (m.live_count > 0) {
-        print_mean("drawn after the next keyframe", m.live_count, m.live, m.live_all);
+    printf("held-back frames, PSNR in dB    frames  with depth  seen, of all    everywhere\n");
+    if (live.count > 0) {
+        print_mean("drawn after the next keyframe", &live);
     }
-    print_mean("drawn from the final map", m.final_count, m.final, m.final_all);
+    print_mean("drawn from the final map", &final);
 }
 
 void stream_print(const stream_run *s, uint64_t hash)

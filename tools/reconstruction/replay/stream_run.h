@@ -6,13 +6,19 @@
 #include "reconstruction/live/live_map.h"
 #include "reconstruction/live/live_output.h"
 #include "reconstruction/replay/replay_stream.h"
+#include "reconstruction/replay/stream_seen.h"
+
+/* How well the map draws a frame: PSNR in dB over the pixels with depth, over those whose surface a keyframe saw, and
+ * over all; and the share of those that a keyframe saw in all. NaN: not known. */
+typedef struct held_scores {
+    double psnr, psnr_seen, psnr_all, seen;
+} held_scores;
 
 /* A frame that was no keyframe, drawn from the map after the next keyframe, and at the end. Frames after the last
  * keyframe are drawn only at the end. */
 typedef struct held_back {
     uint32_t frame;
-    double live_psnr, final_psnr; /* over pixels with depth */
-    double live_psnr_all, final_psnr_all;
+    held_scores live, final;
 } held_back;
 
 /* Counts and hashes, which a state holds before the rows and the frames held back. */
@@ -31,6 +37,7 @@ typedef struct stream_run {
     live_map map;
     live_output output;
     drawn_frame view;
+    stream_seen seen;
     stream_counts is;
     live_row *rows;  /* room for all frames of the recording */
     held_back *held; /* likewise */
