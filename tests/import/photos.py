@@ -180,8 +180,8 @@ def scene_of_photos():
         check('"my photos"' in page and "trim3r-scene-" not in page, "the page is not named after the photos")
     text = expect(0, "scene", "my photos", "--recording", "kept.mcap", "--size", "96x72", "--keep", "5%", "-o", "small.spz")
     lines = text.splitlines()
-    check(sum(not line.startswith("  ") for line in lines) == 5 and max(map(len, lines)) <= 80 and "photo 3.png" in text,
-          f"not five lines: {text}")
+    check(sum(not line.startswith("  ") for line in lines) == 6 and max(map(len, lines)) <= 80 and "photo 3.png" in text,
+          f"not six lines: {text}")
     chosen, others = lines[[line.startswith("frames: ") for line in lines].index(True)], "; not chosen: " in " ".join(text.split())
     check(("sharp ones that together show most" in chosen) == others, f"why some are chosen: {text}")
     check(read("kept.mcap")["image"][0].shape == (72, 96, 3), "--size")

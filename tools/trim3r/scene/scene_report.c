@@ -9,6 +9,7 @@
 #include "cli/tables/json_output.h"
 #include "cli/text/wrapped.h"
 #include "import/estimation/poses_output.h"
+#include "trim3r/scene/scene_quality.h"
 
 #define EMPTY_MOST 0.1     /* of a picture, that goes without saying */
 #define UNSURE_DEGREES 3.0 /* standard deviation of the direction from one camera to the next */
@@ -175,6 +176,27 @@ static void write_drawn(FILE *out, const scene_report *r)
     }
 }
 
+/* Writes "fair; below 18 dB: a.jpg, b.jpg". */
+static void write_quality(FILE *out, const scene_report *r)
+{
+    const scene_quality quality = scene_quality_of(r->drawn, r->drawn_count);
+    fputs(scene_quality_name(quality), out);
+    uint32_t named = 0;
+    for (uint32_t i = 0; i < r->drawn_count; i++) {
+        const drawn_picture *p = &r->drawn[i];
+        picture_name name;
+        if (p->used && p->psnr < SCENE_POOR_DB) {
+            if (named++ == 0) {
+                fprintf(out, "; below %.0f dB: ", SCENE_POOR_DB);
+            }
+            fprintf(out, "%s%s", named > 1 ? ", " : "", name_of(r, p->frame, name));
+        }
+    }
+    if (quality == SCENE_POOR) {
+        fputs("; take sharp pictures of one exposure, a hand's breadth from one to the next", out);
+    }
+}
+
 void scene_report_print(const scene_report *r)
 {
     char input[256];
@@ -183,6 +205,7 @@ void scene_report_print(const scene_report *r)
     print_line(r, "poses: ", write_poses);
     print_line(r, "frames: ", write_frames);
     print_line(r, "drawn, dB: ", write_drawn);
+    print_line(r, "quality: ", write_quality);
     printf("%s: %" PRIu32 " Gaussians of %" PRIu32 " valid points; %.1f s\n", r->output, r->gaussians, r->valid_points,
            r->seconds);
 }
@@ -231,6 +254,7 @@ void scene_report_print_json(const scene_report *r)
     json_add_integer(root, "gaussians", r->gaussians);
     json_add_integer(root, "valid_points", r->valid_points);
     add_drawn(r, root);
+    cJSON_AddStringToObject(root, "quality", scene_quality_name(scene_quality_of(r->drawn, r->drawn_count)));
     cJSON_AddNumberToObject(root, "seconds", r->seconds);
     json_print(root);
 }
