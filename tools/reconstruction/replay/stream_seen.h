@@ -32,8 +32,8 @@ int stream_seen_open(stream_seen *s, const t3r_recording *recording, const char 
 void stream_seen_close(stream_seen *s);
 /* Adds a keyframe. */
 int stream_seen_add(stream_seen *s, uint32_t frame);
-/* Sets mask (width x height) to 255 where one of the keyframes so far saw the surface of the developed frame, whose
- * depth is given in steps of `unit` world units. */
+/* Sets mask (width x height) to 255 where one of the keyframes so far saw the surface of a frame, else to 0. camera and
+ * depth are those of the developed frame. Reads other frames of the recording. */
 int stream_seen_mask(stream_seen *s, const t3r_capture_frame *frame, const t3r_camera *camera, const uint16_t *depth,
                      uint8_t *mask);
 
